@@ -1,0 +1,60 @@
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// One finished step of a run, as the run record lists it.
+  struct StepRecord
+  {
+    std::string name;
+    double      seconds;      ///< wall time [s]
+    double      peak_memory;  ///< peak resident memory of this process so far [byte]
+    std::string summary;      ///< what the step found, one phrase
+  };
+
+  /**
+   * The one channel through which computing code speaks while it works: one
+   * line per step with its elapsed time, and on a terminal a live counter.
+   * Silent on every process but the one that was given a stream.
+   */
+  class Progress
+  {
+  public:
+    /// A channel that records steps but prints nothing.
+    Progress();
+
+    /// A channel that prints to @p stream; @p live: it is a terminal.
+    Progress(std::ostream &stream, bool live);
+
+    /// Begins a step; an unfinished one is finished first.
+    void begin(const std::string &name);
+
+    /// Shows @p state of the current step on a terminal, at most ten times a second.
+    void update(const std::string &state);
+
+    /// Ends the current step with the line that stays.
+    void finish(const std::string &summary = "");
+
+    /// Prints a line that belongs to no step.
+    void note(const std::string &text);
+
+    /// All finished steps.
+    const std::vector<StepRecord> &steps() const;
+
+    /// Seconds since construction.
+    double elapsed() const;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    std::ostream           *stream = nullptr;
+    bool                    live   = false;
+    Clock::time_point       start, step_start, last_update;
+    std::string             current;
+    std::vector<StepRecord> records;
+  };
+} // namespace Squeal

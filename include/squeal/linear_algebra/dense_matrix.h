@@ -1,0 +1,119 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * A small dense matrix in LAPACK's column-major order, the same on every
+   * process. Only reduced quantities are stored like this: never n × n.
+   */
+  template <typename Number>
+  class DenseMatrixOf
+  {
+  public:
+    DenseMatrixOf() = default;
+
+    /// A zero matrix of @p n_rows × @p n_columns.
+    DenseMatrixOf(const int n_rows, const int n_columns)
+      : rows(n_rows)
+      , columns(n_columns)
+      , values(static_cast<std::size_t>(n_rows) * n_columns)
+    {}
+
+    int n_rows() const
+    {
+      return rows;
+    }
+    int n_columns() const
+    {
+      return columns;
+    }
+
+    Number &operator()(const int i, const int j)
+    {
+      return values[i + static_cast<std::size_t>(rows) * j];
+    }
+    const Number &operator()(const int i, const int j) const
+    {
+      return values[i + static_cast<std::size_t>(rows) * j];
+    }
+
+    /// First entry of column @p j.
+    Number *column(const int j = 0)
+    {
+      return values.data() + static_cast<std::size_t>(rows) * j;
+    }
+    const Number *column(const int j = 0) const
+    {
+      return values.data() + static_cast<std::size_t>(rows) * j;
+    }
+
+  private:
+    int                 rows = 0, columns = 0;
+    std::vector<Number> values;
+  };
+
+  using DenseMatrix        = DenseMatrixOf<double>;
+  using ComplexDenseMatrix = DenseMatrixOf<std::complex<double>>;
+
+  /// alpha op(A) op(B), op = transpose where asked.
+  DenseMatrix multiply(const DenseMatrix &A,
+                       const DenseMatrix &B,
+                       bool               transpose_A = false,
+                       bool               transpose_B = false,
+                       double             alpha       = 1.);
+
+  ComplexDenseMatrix multiply(const ComplexDenseMatrix &A,
+                              const ComplexDenseMatrix &B,
+                              bool                      conjugate_transpose_A = false);
+
+  /// A + factor B.
+  DenseMatrix add(const DenseMatrix &A, const DenseMatrix &B, double factor = 1.);
+
+  DenseMatrix transpose(const DenseMatrix &A);
+
+  DenseMatrix identity(int n);
+
+  /// Columns [first, first + n) of A.
+  DenseMatrix columns(const DenseMatrix &A, int first, int n);
+
+  /// Largest absolute entry; 0 for an empty matrix.
+  double max_norm(const DenseMatrix &A);
+
+  /// LU factors of a small square matrix.
+  class DenseLU
+  {
+  public:
+    /// Throws SolverError naming @p what if A is singular to working precision.
+    DenseLU(DenseMatrix A, const char *what);
+
+    /// Solves A X = B (or Aᵀ X = B) in place.
+    void solve(DenseMatrix &B, bool transpose = false) const;
+
+    /// Estimated reciprocal condition number in the 1-norm.
+    double reciprocal_condition() const;
+
+  private:
+    DenseMatrix      factors;
+    std::vector<int> pivots;
+    double           rcond = 0.;
+  };
+
+  /// Eigenpairs of a symmetric matrix, ascending: A is replaced by its eigenvectors.
+  std::vector<double> symmetric_eigenvalues(DenseMatrix &A);
+
+  /**
+   * Eigenvalues of a real square matrix with right and, where asked, left
+   * eigenvectors (LAPACK's dgeev: left vectors satisfy yᴴ A = λ yᴴ).
+   */
+  struct DenseEigenpairs
+  {
+    std::vector<std::complex<double>> values;
+    ComplexDenseMatrix                right; ///< one column per value
+    ComplexDenseMatrix                left;  ///< empty unless asked for
+  };
+  DenseEigenpairs eigenpairs(DenseMatrix A, bool left_vectors = false);
+} // namespace Squeal

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <squeal/linear_algebra/multivector.h>
+
+#include <memory>
+#include <string>
+
+namespace Squeal
+{
+  /// A linear map on distributed vectors, y = A x, for many vectors at once.
+  class LinearOperator
+  {
+  public:
+    virtual ~LinearOperator() = default;
+
+    /// Y = A X; X and Y have the same map and number of columns and do not alias.
+    virtual void apply(const MultiVector &X, MultiVector &Y) const = 0;
+
+    /// Distribution of rows of X and Y.
+    virtual const Epetra_Map &map() const = 0;
+  };
+
+  /// The inverse of a sparse matrix by a direct factorisation.
+  class Factorization : public LinearOperator
+  {
+  public:
+    /// Y = A⁻ᵀ X.
+    virtual void apply_transpose(const MultiVector &X, MultiVector &Y) const = 0;
+
+    /// Entries of the factors; 0 where the library does not tell.
+    virtual double n_factor_entries() const = 0;
+  };
+
+  /// Libraries that factorise; automatic: CHOLMOD or UMFPACK on one process, MUMPS on several.
+  enum class FactorizationLibrary
+  {
+    automatic,
+    cholmod, ///< symmetric positive definite, one process
+    umfpack, ///< general, one process
+    mumps    ///< any matrix, any number of processes
+  };
+
+  /**
+   * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite
+   * matrix. Throws SolverError naming @p what if it is not positive definite
+   * or the library cannot be used here.
+   */
+  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix  &A,
+                                                             FactorizationLibrary library,
+                                                             const std::string   &what);
+
+  /// LU factors of a nonsymmetric matrix. Throws SolverError naming @p what if it is singular.
+  std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
+
+  /**
+   * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of
+   * inertia: negative pivots of LDLᵀ with 2 × 2 pivoting (MUMPS).
+   * @p n_null receives the number of pivots that vanish to working precision.
+   */
+  int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null = nullptr);
+} // namespace Squeal

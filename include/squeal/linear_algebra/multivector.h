@@ -1,0 +1,53 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_matrix.h>
+
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_Map.h>
+#include <Epetra_MultiVector.h>
+
+#include <memory>
+
+namespace Squeal
+{
+  /// Vectors in bulk: n × k, distributed by rows.
+  using MultiVector = Epetra_MultiVector;
+  /// Sparse matrices: distributed by rows.
+  using SparseMatrix = Epetra_CrsMatrix;
+
+  /// XᵀY, k_X × k_Y, the same on every process.
+  DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
+
+  /// Y = alpha X S + beta Y.
+  void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);
+
+  /// X S.
+  MultiVector operator*(const MultiVector &X, const DenseMatrix &S);
+
+  /// A X for a sparse matrix.
+  MultiVector operator*(const SparseMatrix &A, const MultiVector &X);
+
+  /// Aᵀ X for a sparse matrix.
+  MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
+
+  /// Columns [first, first + n) of X as a view; X must outlive it.
+  MultiVector view(const MultiVector &X, int first, int n);
+
+  /// [X Y ...]: the columns of all, copied.
+  MultiVector join(const std::vector<const MultiVector *> &parts);
+
+  /// Euclidean norms of the columns.
+  std::vector<double> column_norms(const MultiVector &X);
+
+  /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
+  MultiVector random_vectors(const Epetra_Map &map, int n_vectors, unsigned int seed = 1);
+
+  /**
+   * Orthonormalises the columns of @p X in the inner product of the symmetric
+   * positive definite @p M against the M-orthonormal columns of @p Q and among
+   * each other (twice), and drops directions whose norm falls below
+   * @p tolerance times the largest one: a scaled, rank-revealing factorisation
+   * (eigenvalues of the scaled Gram matrix). Returns the kept directions.
+   */
+  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance);
+} // namespace Squeal

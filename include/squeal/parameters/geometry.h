@@ -1,0 +1,41 @@
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Where the pins of one side of the disc are.
+  struct PinLayout
+  {
+    std::vector<double> radii;  ///< distance of each pin's axis from the disc's [m]
+    std::vector<double> angles; ///< angle of each pin's axis [degree]
+  };
+
+  /// Shape and mesh of disc and pins (section `Geometry`).
+  struct GeometryParameters
+  {
+    std::string  file                 = "disc_pins.geo"; ///< plan (.geo) or mesh (.geo, .msh)
+    double       disc_inner_radius    = 0.1505;          ///< [m]
+    double       disc_outer_radius    = 0.3155;          ///< [m]
+    double       disc_thickness       = 0.0463;          ///< [m]
+    double       pin_diameter         = 0.0520;          ///< [m]
+    double       pin_height           = 0.0318;          ///< [m]
+    PinLayout    top                  = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585},
+                                         {-18.4, 0., 18.4, -18.4, 0., 18.4}};
+    PinLayout    bottom               = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585},
+                                         {-18.4, 0., 18.4, -18.4, 0., 18.4}};
+    unsigned int nodes_per_pin_face   = 19;
+    unsigned int pin_layers           = 4;
+    unsigned int disc_layers          = 3;
+    double       element_size         = 0.0100; ///< in the plane of the disc [m]
+    double       pairing_tolerance    = 1e-6;   ///< distance of the two nodes of a contact pair [m]
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError where values or their combination make no sense.
+    void check() const;
+  };
+} // namespace Squeal
