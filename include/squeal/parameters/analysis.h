@@ -1,0 +1,120 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+#include <squeal/base/factorization_library.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+
+namespace Squeal
+{
+  /// Which question a run answers.
+  enum class Study
+  {
+    stability ///< component, real coupled and complex modes at one friction coefficient
+  };
+
+  template <>
+  struct EnumTable<Study>
+  {
+    static constexpr std::array<EnumName<Study>, 1> names = {{{Study::stability, "stability"}}};
+  };
+
+  /// Elements and band (sections `Discretization` and `Band`).
+  struct DiscretizationParameters
+  {
+    unsigned int degree            = 1;     ///< polynomial degree of the hexahedra, 1 or 2
+    double       maximum_frequency = 5000.; ///< upper end of the band [Hz]
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+
+  /// Libraries for symmetric modes.
+  enum class RealSolver
+  {
+    anasazi, ///< block Krylov-Schur
+    arpack   ///< implicitly restarted Lanczos, the paper's method
+  };
+
+  template <>
+  struct EnumTable<RealSolver>
+  {
+    static constexpr std::array<EnumName<RealSolver>, 2> names = {{{RealSolver::anasazi, "Anasazi"}, {RealSolver::arpack, "ARPACK"}}};
+  };
+
+  /// Ways to the complex modes.
+  enum class ComplexSolver
+  {
+    krylov,            ///< shift-invert block Krylov on the quadratic pencil: the reference
+    residual_iteration ///< basis of real modes grown by right and left residuals
+  };
+
+  template <>
+  struct EnumTable<ComplexSolver>
+  {
+    static constexpr std::array<EnumName<ComplexSolver>, 2> names = {
+      {{ComplexSolver::krylov, "Krylov"}, {ComplexSolver::residual_iteration, "residual iteration"}}};
+  };
+
+  /// How the shifted pencil is inverted for the Krylov solver.
+  enum class ShiftInverse
+  {
+    updated_cholesky, ///< one Cholesky factor of K_c and a correction of rank n_c
+    sparse_lu         ///< LU factors of the nonsymmetric matrix
+  };
+
+  template <>
+  struct EnumTable<ShiftInverse>
+  {
+    static constexpr std::array<EnumName<ShiftInverse>, 2> names = {
+      {{ShiftInverse::updated_cholesky, "updated Cholesky"}, {ShiftInverse::sparse_lu, "sparse LU"}}};
+  };
+
+  /// Eigensolvers and factorisations (sections `Real modes`, `Complex modes`, `Linear algebra`).
+  struct SolverParameters
+  {
+    RealSolver           real_solver         = RealSolver::anasazi;
+    double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
+    ComplexSolver        complex_solver      = ComplexSolver::krylov;
+    ShiftInverse         shift_inverse       = ShiftInverse::updated_cholesky;
+    double               complex_tolerance   = 1e-9; ///< on the residual ‖Q(λ)φ‖ / ‖Kφ‖ [-]
+    double               iteration_tolerance = 1e-7; ///< on the estimated |δλ| / |λ| [-]
+    unsigned int         maximum_basis       = 1500; ///< of the residual iteration [vectors]
+    FactorizationLibrary library             = FactorizationLibrary::automatic;
+    unsigned int         blas_threads        = 1;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+
+  /// Which complex modes are written as fields.
+  enum class FieldSelection
+  {
+    none,
+    unstable,
+    all
+  };
+
+  template <>
+  struct EnumTable<FieldSelection>
+  {
+    static constexpr std::array<EnumName<FieldSelection>, 3> names = {
+      {{FieldSelection::none, "none"}, {FieldSelection::unstable, "unstable"}, {FieldSelection::all, "all"}}};
+  };
+
+  /// What a run leaves behind (section `Output`).
+  struct OutputParameters
+  {
+    FieldSelection fields           = FieldSelection::all;
+    unsigned int   animation_frames = 16; ///< per period of an unstable mode; 0: no animation
+    bool           write_matrices   = false;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+  };
+} // namespace Squeal

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Isotropic linear elasticity.
+  struct Material
+  {
+    double young_modulus; ///< E [Pa]
+    double poisson_ratio; ///< ν [-]
+    double density;       ///< ρ [kg/m³]
+  };
+
+  /**
+   * Elastic foundation on a named surface. Its directions are those of the
+   * disc's axis (z): radial, tangential (circumferential) and axial.
+   */
+  struct ElasticMount
+  {
+    std::string surface;
+    double      radial;     ///< stiffness per area [N/m³]
+    double      tangential; ///< stiffness per area [N/m³]
+    double      axial;      ///< stiffness per area [N/m³]
+  };
+
+  /// Materials and supports (sections `Disc material`, `Pin material`, `Mounts`).
+  struct MaterialParameters
+  {
+    Material                  disc   = {210e9, 0.3, 7850.};
+    Material                  pin    = {1.90e9, 0.25, 3070.};
+    std::vector<ElasticMount> mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}};
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+
+    /// Names of the surfaces that carry a mount.
+    std::vector<std::string> mounted_surfaces() const;
+  };
+} // namespace Squeal

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace Squeal
+{
+  /// Sense in which the disc turns about e_z: the sliding direction is t = ±e_θ.
+  enum class Rotation
+  {
+    positive,
+    negative
+  };
+
+  template <>
+  struct EnumTable<Rotation>
+  {
+    static constexpr std::array<EnumName<Rotation>, 2> names = {
+      {{Rotation::positive, "positive"}, {Rotation::negative, "negative"}}};
+  };
+
+  /**
+   * Viscous contact damping along b, c_b [N s/m] per node: from the
+   * linearisation of R_t = μ R_n w/|w| it is μ |R_n0| / w_0 (consistent); the
+   * paper prints R_n0 / w_0 below its eq. (3) (published).
+   */
+  enum class RadialDissipation
+  {
+    none,
+    consistent,
+    published
+  };
+
+  template <>
+  struct EnumTable<RadialDissipation>
+  {
+    static constexpr std::array<EnumName<RadialDissipation>, 3> names = {{{RadialDissipation::none, "none"},
+                                                                          {RadialDissipation::consistent, "consistent"},
+                                                                          {RadialDissipation::published, "published"}}};
+  };
+
+  /// The braking conditions (section `Operation`).
+  struct OperationParameters
+  {
+    double            friction_coefficient = 0.4;   ///< μ [-]
+    Rotation          rotation             = Rotation::positive;
+    double            rotation_speed       = 4.;    ///< Ω [rad/s]
+    double            load_per_side        = 1000.; ///< [N]
+    RadialDissipation radial_dissipation   = RadialDissipation::none;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+} // namespace Squeal

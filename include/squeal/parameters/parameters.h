@@ -1,0 +1,38 @@
+#pragma once
+
+#include <squeal/parameters/analysis.h>
+#include <squeal/parameters/geometry.h>
+#include <squeal/parameters/materials.h>
+#include <squeal/parameters/operation.h>
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Everything a run depends on; a plain value once read.
+  struct Parameters
+  {
+    Study                    study = Study::stability;
+    GeometryParameters       geometry;
+    MaterialParameters       materials;
+    DiscretizationParameters discretization;
+    OperationParameters      operation;
+    SolverParameters         solvers;
+    OutputParameters         output;
+
+    /**
+     * Reads a parameter file, then applies overrides of the form
+     * "Section/Name=value", then checks every value and combination.
+     * Throws ParameterError; an unknown name is answered with the nearest known one.
+     */
+    static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
+
+    /// Every parameter with its value and documentation, as a parameter file.
+    void print(std::ostream &stream, bool with_documentation) const;
+
+    /// Throws ParameterError where values or their combination make no sense.
+    void check() const;
+  };
+} // namespace Squeal

@@ -1,0 +1,83 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/analysis.h>
+#include <squeal/parameters/enum_parameter.h>
+
+namespace Squeal
+{
+  using dealii::Patterns::Double;
+  using dealii::Patterns::Integer;
+
+  void DiscretizationParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Discretization");
+    prm.add_parameter("Degree", degree,
+                      "Polynomial degree of the hexahedra: 1 (trilinear) or 2 (triquadratic, on curved boundaries). Units: none.",
+                      Integer(1, 2));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Band");
+    prm.add_parameter("Maximum frequency", maximum_frequency,
+                      "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
+                      "meshes: results hold in a stated band. Units: Hz.",
+                      Double(0.));
+    prm.leave_subsection();
+  }
+
+  void DiscretizationParameters::check() const
+  {
+    if (!(maximum_frequency > 0.))
+      throw ParameterError("the band ends at " + std::to_string(maximum_frequency) + " Hz", "parameter Band/Maximum frequency",
+                           "give a positive frequency");
+  }
+
+  void SolverParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Real modes");
+    add_enum_parameter(prm, "Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
+    prm.add_parameter("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", Double(1e-14, 1e-4));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Complex modes");
+    add_enum_parameter(prm, "Solver", complex_solver,
+                       "Krylov: shift-invert block Krylov on the quadratic pencil of full order (the reference). residual iteration: "
+                       "a basis of real modes grown by right and left residuals, one Cholesky factor for every friction coefficient.");
+    add_enum_parameter(prm, "Shift inverse", shift_inverse,
+                       "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
+                       "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
+    prm.add_parameter("Tolerance", complex_tolerance,
+                      "Largest relative residual of a complex mode found by Krylov. Units: none.", Double(1e-13, 1e-4));
+    prm.add_parameter("Iteration tolerance", iteration_tolerance,
+                      "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.",
+                      Double(1e-12, 1e-2));
+    prm.add_parameter("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", Integer(1));
+    prm.leave_subsection();
+
+    prm.enter_subsection("Linear algebra");
+    add_enum_parameter(prm, "Factorization", library,
+                       "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
+    prm.add_parameter("BLAS threads", blas_threads,
+                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.",
+                      Integer(1, 256));
+    prm.leave_subsection();
+  }
+
+  void SolverParameters::check() const
+  {
+    if (library == FactorizationLibrary::umfpack)
+      return;
+    if (library == FactorizationLibrary::cholmod && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)
+      throw ParameterError("CHOLMOD cannot factorise the nonsymmetric matrix that `Shift inverse = sparse LU` asks for",
+                           "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");
+  }
+
+  void OutputParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    prm.enter_subsection("Output");
+    add_enum_parameter(prm, "Mode shapes", fields, "Complex modes of which VTU files are written.");
+    prm.add_parameter("Animation frames", animation_frames,
+                      "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", Integer(0, 1000));
+    prm.add_parameter("Write matrices", write_matrices,
+                      "Writes M, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form and the node coordinates.");
+    prm.leave_subsection();
+  }
+} // namespace Squeal

@@ -1,0 +1,32 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/operation.h>
+
+namespace Squeal
+{
+  void OperationParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    prm.enter_subsection("Operation");
+    prm.add_parameter("Friction coefficient", friction_coefficient, "Coulomb's coefficient mu. Units: none.", Double(0., 10.));
+    add_enum_parameter(prm, "Rotation", rotation, "Sense of rotation about the z axis: the disc slides along +e_theta or -e_theta.");
+    prm.add_parameter("Rotation speed", rotation_speed, "Angular speed of the disc. Units: rad/s.", Double(0.));
+    prm.add_parameter("Load per side", load_per_side, "Normal force with which the pins of one side press. Units: N.", Double(0.));
+    add_enum_parameter(prm, "Radial dissipation", radial_dissipation,
+                       "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
+                       "published, c_b = R_n0 / w_0 (as the paper prints it). R_n0: equal shares of the load. c_b in N s/m.");
+    prm.leave_subsection();
+  }
+
+  void OperationParameters::check() const
+  {
+    if (radial_dissipation == RadialDissipation::none)
+      return;
+    if (!(rotation_speed > 0.))
+      throw ParameterError("radial dissipation divides by the sliding speed, which is zero", "parameter Operation/Rotation speed",
+                           "give a positive speed, or set Operation/Radial dissipation = none");
+    if (!(load_per_side > 0.))
+      throw ParameterError("radial dissipation needs a contact force, but the load is zero", "parameter Operation/Load per side",
+                           "give a positive load, or set Operation/Radial dissipation = none");
+  }
+} // namespace Squeal

@@ -1,0 +1,207 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/parameters.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// One `set` or `subsection` line of a parameter file.
+    struct Entry
+    {
+      std::string path; ///< "Section/Name"; a section ends in "/"
+      std::string where;
+    };
+
+    /// Collapses runs of blanks, as ParameterHandler does.
+    std::string normalize(const std::string &text)
+    {
+      std::istringstream stream(text);
+      std::string        word, result;
+      while (stream >> word)
+        result += (result.empty() ? "" : " ") + word;
+      return result;
+    }
+
+    /// Names that a parameter file sets or enters; values are left to ParameterHandler.
+    std::vector<Entry> scan_names(std::istream &stream, const std::string &file)
+    {
+      std::vector<Entry>       entries;
+      std::vector<std::string> sections;
+      const auto path = [&](const std::string &name) {
+        std::string result;
+        for (const std::string &section : sections)
+          result += section + "/";
+        return result + name;
+      };
+
+      std::string line;
+      for (unsigned int number = 1; std::getline(stream, line); ++number)
+        {
+          const std::string text  = normalize(line.substr(0, line.find('#')));
+          const std::string where = "file " + file + ", line " + std::to_string(number);
+          const std::string key   = text.substr(0, text.find(' '));
+          const std::string rest  = text.size() > key.size() ? text.substr(key.size() + 1) : "";
+          if (key == "subsection")
+            {
+              sections.push_back(rest);
+              entries.push_back({path(""), where});
+            }
+          else if (key == "end" && !sections.empty())
+            sections.pop_back();
+          else if (key == "set")
+            entries.push_back({path(normalize(rest.substr(0, rest.find('=')))), where});
+        }
+      return entries;
+    }
+
+    /// Levenshtein distance without regard to case.
+    unsigned int edit_distance(const std::string &a, const std::string &b)
+    {
+      std::vector<unsigned int> row(b.size() + 1);
+      std::iota(row.begin(), row.end(), 0);
+      for (unsigned int i = 0; i < a.size(); ++i)
+        {
+          unsigned int diagonal = row[0];
+          row[0]                = i + 1;
+          for (unsigned int j = 0; j < b.size(); ++j)
+            {
+              const unsigned int substitution = diagonal + (std::tolower(a[i]) != std::tolower(b[j]));
+              diagonal                        = row[j + 1];
+              row[j + 1]                      = std::min({row[j] + 1, row[j + 1] + 1, substitution});
+            }
+        }
+      return row[b.size()];
+    }
+
+    /// Refuses a name that was not declared.
+    void check_name(const Entry &entry, const std::vector<std::string> &known)
+    {
+      if (std::find(known.begin(), known.end(), entry.path) != known.end())
+        return;
+      // Full paths are compared, and bare names too, so that the right name in the wrong section is found.
+      const auto base_name = [](const std::string &path) { return path.substr(path.rfind('/') + 1); };
+      const bool is_section = entry.path.back() == '/';
+      std::string  nearest;
+      unsigned int smallest = -1;
+      for (const std::string &candidate : known)
+        if ((candidate.back() == '/') == is_section)
+          {
+            unsigned int distance = edit_distance(entry.path, candidate);
+            if (!is_section)
+              distance = std::min(distance, edit_distance(base_name(entry.path), base_name(candidate)) + 1);
+            if (distance < smallest)
+              {
+                smallest = distance;
+                nearest  = candidate;
+              }
+          }
+      throw ParameterError(std::string("unknown ") + (is_section ? "section `" : "parameter `") + entry.path + "`", entry.where,
+                           "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all");
+    }
+
+    void add_parameters(dealii::ParameterHandler &prm, Parameters &parameters)
+    {
+      add_enum_parameter(prm, "Study", parameters.study, "The question that the run answers.");
+      parameters.geometry.add_parameters(prm);
+      parameters.materials.add_parameters(prm);
+      parameters.discretization.add_parameters(prm);
+      parameters.operation.add_parameters(prm);
+      parameters.solvers.add_parameters(prm);
+      parameters.output.add_parameters(prm);
+    }
+
+    std::vector<std::string> known_names(const dealii::ParameterHandler &prm)
+    {
+      std::stringstream text;
+      prm.print_parameters(text, dealii::ParameterHandler::ShortPRM);
+      std::vector<std::string> names;
+      for (const Entry &entry : scan_names(text, ""))
+        names.push_back(entry.path);
+      return names;
+    }
+
+    /// What deal.II says of a refused value, without its banner.
+    std::string short_message(const dealii::ExceptionBase &exception)
+    {
+      std::ostringstream text;
+      exception.print_info(text);
+      return normalize(text.str());
+    }
+
+    void apply_override(dealii::ParameterHandler &prm, const std::vector<std::string> &known, const std::string &text)
+    {
+      const auto        equal = text.find('=');
+      const std::string where = "--set \"" + text + "\"";
+      if (equal == std::string::npos)
+        throw ParameterError("an override has no `=`", where, "write --set \"Section/Name=value\"");
+      const std::string path = normalize(text.substr(0, equal));
+      check_name({path, where}, known);
+      auto parts = dealii::Utilities::split_string_list(path, '/');
+      for (unsigned int i = 0; i + 1 < parts.size(); ++i)
+        prm.enter_subsection(parts[i]);
+      try
+        {
+          prm.set(parts.back(), dealii::Utilities::trim(text.substr(equal + 1)));
+        }
+      catch (const dealii::ExceptionBase &exception)
+        {
+          throw ParameterError(short_message(exception), where, "give a value of the kind that --print-parameters describes");
+        }
+      for (unsigned int i = 0; i + 1 < parts.size(); ++i)
+        prm.leave_subsection();
+    }
+  } // namespace
+
+  Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
+  {
+    Parameters               parameters;
+    dealii::ParameterHandler prm;
+    add_parameters(prm, parameters);
+    const std::vector<std::string> known = known_names(prm);
+
+    std::ifstream stream(file);
+    if (!stream)
+      throw FileError("the parameter file cannot be read", "file " + file, "check its name and permissions");
+    for (const Entry &entry : scan_names(stream, file))
+      check_name(entry, known);
+    try
+      {
+        prm.parse_input(file);
+      }
+    catch (const dealii::ExceptionBase &exception)
+      {
+        throw ParameterError(short_message(exception), "file " + file, "squeal --print-parameters lists every parameter with its kind");
+      }
+    for (const std::string &text : overrides)
+      apply_override(prm, known, text);
+
+    parameters.check();
+    return parameters;
+  }
+
+  void Parameters::print(std::ostream &stream, const bool with_documentation) const
+  {
+    Parameters               copy = *this;
+    dealii::ParameterHandler prm;
+    add_parameters(prm, copy);
+    const auto style = with_documentation ? dealii::ParameterHandler::PRM : dealii::ParameterHandler::ShortPRM;
+    prm.print_parameters(stream, static_cast<dealii::ParameterHandler::OutputStyle>(style | dealii::ParameterHandler::KeepDeclarationOrder));
+  }
+
+  void Parameters::check() const
+  {
+    geometry.check();
+    materials.check();
+    discretization.check();
+    operation.check();
+    solvers.check();
+  }
+} // namespace Squeal
