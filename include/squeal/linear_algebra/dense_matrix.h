@@ -106,6 +106,12 @@ namespace Squeal
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A);
 
   /**
+   * Eigenvalues of A x = λ B x, ascending, A symmetric and B symmetric positive
+   * definite: A is replaced by the B-orthonormal eigenvectors.
+   */
+  std::vector<double> symmetric_eigenvalues(DenseMatrix &A, DenseMatrix B);
+
+  /**
    * Eigenvalues of a real square matrix with right and, where asked, left
    * eigenvectors (LAPACK's dgeev: left vectors satisfy yᴴ A = λ yᴴ).
    */

@@ -7,6 +7,8 @@
 #include <Epetra_MultiVector.h>
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace Squeal
 {
@@ -18,7 +20,7 @@ namespace Squeal
   /// XᵀY, k_X × k_Y, the same on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
-  /// Y = alpha X S + beta Y.
+  /// Y = alpha X S + beta Y; X and Y must not share memory.
   void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);
 
   /// X S.
@@ -30,7 +32,7 @@ namespace Squeal
   /// Aᵀ X for a sparse matrix.
   MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
 
-  /// Columns [first, first + n) of X as a view; X must outlive it.
+  /// Columns [first, first + n) of X, n ≥ 1, as a view; X must outlive it. (A copy of a view is a deep copy.)
   MultiVector view(const MultiVector &X, int first, int n);
 
   /// [X Y ...]: the columns of all, copied.
@@ -44,10 +46,22 @@ namespace Squeal
 
   /**
    * Orthonormalises the columns of @p X in the inner product of the symmetric
-   * positive definite @p M against the M-orthonormal columns of @p Q and among
-   * each other (twice), and drops directions whose norm falls below
-   * @p tolerance times the largest one: a scaled, rank-revealing factorisation
-   * (eigenvalues of the scaled Gram matrix). Returns the kept directions.
+   * positive definite @p M against the M-orthonormal columns of @p Q (may be
+   * null) and among each other, to about 1e-14.
+   *
+   * The columns are first scaled to unit M-norm. What remains of them outside
+   * of Q is resolved into orthogonal directions (the principal axes of the
+   * scaled columns, largest first); those whose M-norm is below @p tolerance
+   * times the largest M-norm of a direction in X before the projection are
+   * dropped. The axes are computed in passes of five orders of magnitude each,
+   * since a Gram matrix squares the condition; tolerances down to 1e-13 make
+   * sense.
+   *
+   * Returns the kept directions, or nothing if none is left (an Epetra
+   * multivector has at least one column).
    */
+  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance);
+
+  /// The same where at least one direction must be left; throws SolverError otherwise.
   MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance);
 } // namespace Squeal

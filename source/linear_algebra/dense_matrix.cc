@@ -1,0 +1,291 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/dense_matrix.h>
+
+#include <cblas.h>
+#include <lapacke.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// LAPACK wants leading dimensions of at least one, also for empty matrices.
+    template <typename Number>
+    int leading_dimension(const DenseMatrixOf<Number> &A)
+    {
+      return std::max(1, A.n_rows());
+    }
+
+    void require(const bool condition, const char *operation)
+    {
+      if (!condition)
+        throw SolverError("the shapes of two dense matrices do not fit together",
+                          operation,
+                          "this is a mistake in the program: please report it");
+    }
+
+    void check_lapack(const lapack_int info, const char *routine)
+    {
+      if (info != 0)
+        throw SolverError(std::string(routine) + " failed with info = " + std::to_string(info),
+                          "a small dense eigenvalue problem",
+                          "check that the reduced matrices are finite");
+    }
+  } // namespace
+
+
+
+  DenseMatrix multiply(const DenseMatrix &A, const DenseMatrix &B, const bool transpose_A, const bool transpose_B, const double alpha)
+  {
+    const int m = transpose_A ? A.n_columns() : A.n_rows();
+    const int k = transpose_A ? A.n_rows() : A.n_columns();
+    const int n = transpose_B ? B.n_rows() : B.n_columns();
+    require(k == (transpose_B ? B.n_columns() : B.n_rows()), "product of two dense matrices");
+
+    DenseMatrix C(m, n);
+    if (m > 0 && n > 0 && k > 0)
+      cblas_dgemm(CblasColMajor,
+                  transpose_A ? CblasTrans : CblasNoTrans,
+                  transpose_B ? CblasTrans : CblasNoTrans,
+                  m,
+                  n,
+                  k,
+                  alpha,
+                  A.column(),
+                  leading_dimension(A),
+                  B.column(),
+                  leading_dimension(B),
+                  0.,
+                  C.column(),
+                  leading_dimension(C));
+    return C;
+  }
+
+
+
+  ComplexDenseMatrix multiply(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, const bool conjugate_transpose_A)
+  {
+    const int m = conjugate_transpose_A ? A.n_columns() : A.n_rows();
+    const int k = conjugate_transpose_A ? A.n_rows() : A.n_columns();
+    const int n = B.n_columns();
+    require(k == B.n_rows(), "product of two dense matrices");
+
+    ComplexDenseMatrix         C(m, n);
+    const std::complex<double> one = 1., zero = 0.;
+    if (m > 0 && n > 0 && k > 0)
+      cblas_zgemm(CblasColMajor,
+                  conjugate_transpose_A ? CblasConjTrans : CblasNoTrans,
+                  CblasNoTrans,
+                  m,
+                  n,
+                  k,
+                  &one,
+                  A.column(),
+                  leading_dimension(A),
+                  B.column(),
+                  leading_dimension(B),
+                  &zero,
+                  C.column(),
+                  leading_dimension(C));
+    return C;
+  }
+
+
+
+  DenseMatrix add(const DenseMatrix &A, const DenseMatrix &B, const double factor)
+  {
+    require(A.n_rows() == B.n_rows() && A.n_columns() == B.n_columns(), "sum of two dense matrices");
+    DenseMatrix C = A;
+    for (int j = 0; j < C.n_columns(); ++j)
+      for (int i = 0; i < C.n_rows(); ++i)
+        C(i, j) += factor * B(i, j);
+    return C;
+  }
+
+
+
+  DenseMatrix transpose(const DenseMatrix &A)
+  {
+    DenseMatrix B(A.n_columns(), A.n_rows());
+    for (int j = 0; j < A.n_columns(); ++j)
+      for (int i = 0; i < A.n_rows(); ++i)
+        B(j, i) = A(i, j);
+    return B;
+  }
+
+
+
+  DenseMatrix identity(const int n)
+  {
+    DenseMatrix I(n, n);
+    for (int i = 0; i < n; ++i)
+      I(i, i) = 1.;
+    return I;
+  }
+
+
+
+  DenseMatrix columns(const DenseMatrix &A, const int first, const int n)
+  {
+    require(first >= 0 && n >= 0 && first + n <= A.n_columns(), "columns of a dense matrix");
+    DenseMatrix B(A.n_rows(), n);
+    std::copy(A.column(first), A.column(first + n), B.column());
+    return B;
+  }
+
+
+
+  double max_norm(const DenseMatrix &A)
+  {
+    double largest = 0.;
+    for (int j = 0; j < A.n_columns(); ++j)
+      for (int i = 0; i < A.n_rows(); ++i)
+        {
+          const double entry = std::abs(A(i, j));
+          // A comparison with NaN is false: let NaN through instead of hiding it.
+          if (!(entry <= largest))
+            largest = entry;
+        }
+    return largest;
+  }
+
+
+
+  DenseLU::DenseLU(DenseMatrix A, const char *what)
+    : factors(std::move(A))
+    , pivots(factors.n_rows())
+  {
+    const int n = factors.n_rows();
+    require(n == factors.n_columns(), "LU factors of a dense matrix");
+    if (n == 0)
+      {
+        rcond = 1.;
+        return;
+      }
+
+    double norm = 0.;
+    for (int j = 0; j < n; ++j)
+      {
+        double sum = 0.;
+        for (int i = 0; i < n; ++i)
+          sum += std::abs(factors(i, j));
+        if (!(sum <= norm))
+          norm = sum;
+      }
+
+    const lapack_int info = LAPACKE_dgetrf_work(LAPACK_COL_MAJOR, n, n, factors.column(), n, pivots.data());
+    if (info == 0)
+      {
+        std::vector<double>     work(4 * static_cast<std::size_t>(n));
+        std::vector<lapack_int> iwork(n);
+        LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, factors.column(), n, norm, &rcond, work.data(), iwork.data());
+      }
+    // Written so that a NaN counts as singular, too.
+    if (info != 0 || !(rcond > 1e-16) || !std::isfinite(norm))
+      throw SolverError("a dense matrix of size " + std::to_string(n) +
+                          " is singular to working precision",
+                        what,
+                        "check for linearly dependent vectors or a parameter value at which the problem degenerates");
+  }
+
+
+
+  void DenseLU::solve(DenseMatrix &B, const bool transpose) const
+  {
+    const int n = factors.n_rows();
+    require(n == B.n_rows(), "solution with dense LU factors");
+    if (n == 0 || B.n_columns() == 0)
+      return;
+    LAPACKE_dgetrs_work(
+      LAPACK_COL_MAJOR, transpose ? 'T' : 'N', n, B.n_columns(), factors.column(), n, pivots.data(), B.column(), n);
+  }
+
+
+
+  double DenseLU::reciprocal_condition() const
+  {
+    return rcond;
+  }
+
+
+
+  std::vector<double> symmetric_eigenvalues(DenseMatrix &A)
+  {
+    const int n = A.n_rows();
+    require(n == A.n_columns(), "eigenvalues of a symmetric dense matrix");
+    std::vector<double> values(n);
+    if (n > 0)
+      check_lapack(LAPACKE_dsyevd(LAPACK_COL_MAJOR, 'V', 'U', n, A.column(), n, values.data()), "LAPACK's dsyevd");
+    return values;
+  }
+
+
+
+  std::vector<double> symmetric_eigenvalues(DenseMatrix &A, DenseMatrix B)
+  {
+    const int n = A.n_rows();
+    require(n == A.n_columns() && n == B.n_rows() && n == B.n_columns(), "eigenvalues of a symmetric dense pair");
+    std::vector<double> values(n);
+    if (n > 0)
+      check_lapack(LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'U', n, A.column(), n, B.column(), n, values.data()),
+                   "LAPACK's dsygvd");
+    return values;
+  }
+
+
+
+  DenseEigenpairs eigenpairs(DenseMatrix A, const bool left_vectors)
+  {
+    const int n = A.n_rows();
+    require(n == A.n_columns(), "eigenvalues of a dense matrix");
+
+    DenseEigenpairs pairs;
+    pairs.values.resize(n);
+    pairs.right = ComplexDenseMatrix(n, n);
+    if (left_vectors)
+      pairs.left = ComplexDenseMatrix(n, n);
+    if (n == 0)
+      return pairs;
+
+    std::vector<double> real(n), imaginary(n);
+    DenseMatrix         right(n, n), left(left_vectors ? n : 0, left_vectors ? n : 0);
+    check_lapack(LAPACKE_dgeev(LAPACK_COL_MAJOR,
+                               left_vectors ? 'V' : 'N',
+                               'V',
+                               n,
+                               A.column(),
+                               n,
+                               real.data(),
+                               imaginary.data(),
+                               left_vectors ? left.column() : nullptr,
+                               n,
+                               right.column(),
+                               n),
+                 "LAPACK's dgeev");
+
+    // LAPACK stores the vector of a conjugate pair as two real columns, real part first.
+    const auto unpack = [&](const DenseMatrix &packed, const int j, ComplexDenseMatrix &vectors) {
+      if (imaginary[j] == 0.)
+        for (int i = 0; i < n; ++i)
+          vectors(i, j) = packed(i, j);
+      else
+        for (int i = 0; i < n; ++i)
+          {
+            vectors(i, j)     = {packed(i, j), packed(i, j + 1)};
+            vectors(i, j + 1) = std::conj(vectors(i, j));
+          }
+    };
+    for (int j = 0; j < n; j += (imaginary[j] == 0. ? 1 : 2))
+      {
+        unpack(right, j, pairs.right);
+        if (left_vectors)
+          unpack(left, j, pairs.left);
+      }
+    for (int j = 0; j < n; ++j)
+      pairs.values[j] = {real[j], imaginary[j]};
+    return pairs;
+  }
+} // namespace Squeal
