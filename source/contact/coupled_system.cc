@@ -1,4 +1,5 @@
 #include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <Epetra_Vector.h>

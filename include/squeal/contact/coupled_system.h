@@ -4,6 +4,7 @@
 #include <squeal/contact/contact_operators.h>
 
 #include <complex>
+#include <complex>
 #include <vector>
 
 namespace Squeal
