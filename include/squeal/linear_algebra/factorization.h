@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/factorization_library.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <memory>
@@ -31,31 +32,29 @@ namespace Squeal
     virtual double n_factor_entries() const = 0;
   };
 
-  /// Libraries that factorise; automatic: CHOLMOD or UMFPACK on one process, MUMPS on several.
-  enum class FactorizationLibrary
-  {
-    automatic,
-    cholmod, ///< symmetric positive definite, one process
-    umfpack, ///< general, one process
-    mumps    ///< any matrix, any number of processes
-  };
-
   /**
    * Cholesky (CHOLMOD) or LDLᵀ (MUMPS) factors of a symmetric positive definite
-   * matrix. Throws SolverError naming @p what if it is not positive definite
-   * or the library cannot be used here.
+   * matrix, of which only one triangle is read. Throws SolverError naming
+   * @p what if the matrix is not positive definite to working precision (a
+   * pivot that is negative, or rounding error of its diagonal entry) or if the
+   * library cannot be used here.
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix  &A,
                                                              FactorizationLibrary library,
                                                              const std::string   &what);
 
-  /// LU factors of a nonsymmetric matrix. Throws SolverError naming @p what if it is singular.
+  /**
+   * LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws
+   * SolverError naming @p what if it is singular to working precision or the
+   * library cannot be used here.
+   */
   std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
   /**
    * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of
    * inertia: negative pivots of LDLᵀ with 2 × 2 pivoting (MUMPS).
-   * @p n_null receives the number of pivots that vanish to working precision.
+   * @p n_null receives the number of pivots that vanish to working precision;
+   * if it is null, such pivots throw SolverError naming @p what.
    */
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null = nullptr);
 } // namespace Squeal

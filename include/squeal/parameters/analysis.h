@@ -2,6 +2,7 @@
 
 #include <squeal/base/enum_table.h>
 #include <squeal/base/factorization_library.h>
+#include <squeal/base/real_solver.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -31,19 +32,6 @@ namespace Squeal
 
     /// Throws ParameterError.
     void check() const;
-  };
-
-  /// Libraries for symmetric modes.
-  enum class RealSolver
-  {
-    anasazi, ///< block Krylov-Schur
-    arpack   ///< implicitly restarted Lanczos, the paper's method
-  };
-
-  template <>
-  struct EnumTable<RealSolver>
-  {
-    static constexpr std::array<EnumName<RealSolver>, 2> names = {{{RealSolver::anasazi, "Anasazi"}, {RealSolver::arpack, "ARPACK"}}};
   };
 
   /// Ways to the complex modes.

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <squeal/linear_algebra/factorization.h>
+
+#include <memory>
+#include <string>
+
+namespace Squeal
+{
+  // One function per library; only factorization.cc chooses between them.
+
+  /// Supernodal LLᵀ; one process.
+  std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what);
+
+  /// Unsymmetric multifrontal LU; one process.
+  std::unique_ptr<Factorization> umfpack_factorization(const SparseMatrix &A, const std::string &what);
+
+  /// MUMPS's LDLᵀ without numerical pivoting (positive definite) or LU (general).
+  std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, bool positive_definite, const std::string &what);
+
+  /// Throws the error for a matrix that is not positive definite.
+  [[noreturn]] void throw_not_positive_definite(const std::string &library, const std::string &what);
+
+  /// Throws the error for a matrix that is singular.
+  [[noreturn]] void throw_singular(const std::string &library, const std::string &what);
+
+  /// Throws the error for any other failure of a library.
+  [[noreturn]] void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what);
+
+  /// Pivots below this fraction of the diagonal entry they come from are rounding errors.
+  constexpr double relative_pivot_tolerance = 1e-12;
+} // namespace Squeal
