@@ -4,6 +4,8 @@
 #include <squeal/reduction/reduced_model.h>
 #include <squeal/stability/residual_iteration.h>
 
+#include <Epetra_Vector.h>
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
