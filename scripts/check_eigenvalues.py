@@ -143,7 +143,7 @@ def main():
         if slepc_toar.available():
             solvers["SLEPc"] = slepc_toar.solve_band
         elif arguments.solver == "slepc":
-            sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py")
+            sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
         else:
             print("SLEPc is not installed; SciPy alone is asked.")
 
