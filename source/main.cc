@@ -8,9 +8,11 @@
 #include <getopt.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <thread>
 
 namespace
 {
@@ -114,6 +116,20 @@ Decides whether a disc rubbed by friction pins squeals.
           run_stability_study(parameters, options, MPI_COMM_WORLD, progress, screen);
       }
   }
+  /// Prints the one message of a failed run; returns the exit status.
+  int report(const std::string &message, const bool is_root)
+  {
+    int n_processes;
+    MPI_Comm_size(MPI_COMM_WORLD, &n_processes);
+    // Most errors are met by all processes alike, and one of them speaks. The others wait before they take the
+    // rest down with them, in case they failed alone.
+    if (!is_root)
+      std::this_thread::sleep_for(std::chrono::seconds(3));
+    std::cerr << std::flush << "\nerror: " << message << std::endl;
+    if (n_processes > 1)
+      MPI_Abort(MPI_COMM_WORLD, 1);
+    return 1;
+  }
 } // namespace
 
 int main(int argc, char **argv)
@@ -136,9 +152,13 @@ int main(int argc, char **argv)
     }
   catch (const std::exception &error)
     {
-      // Every process checks the same input and fails alike; one of them says so.
-      if (is_root)
-        std::cerr << std::flush << "\nerror: " << error.what() << std::endl;
-      return 1;
+      return report(error.what(), is_root);
+    }
+  catch (const int code)
+    {
+      // Epetra throws its error codes.
+      return report("Trilinos failed with code " + std::to_string(code) +
+                      "\n  where:  distributed vectors and matrices\n  change: this is a defect of the program; please report it",
+                    is_root);
     }
 }

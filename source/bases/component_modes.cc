@@ -1,9 +1,11 @@
+#include <squeal/base/assignment.h>
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <Epetra_Vector.h>
 
+#include <algorithm>
 #include <map>
 
 namespace Squeal
@@ -77,15 +79,20 @@ namespace Squeal
               shares[j][reference->labels[i]] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
         }
 
+    // A label is given to no more modes than there are component modes of it
+    std::vector<std::string> names;
+    for (const ComponentModes *reference : references)
+      names.insert(names.end(), reference->labels.begin(), reference->labels.end());
+    const std::size_t n_names = names.size();
+    names.resize(std::max<std::size_t>(n_names, n_modes), "unnamed");
+    const auto share = [&](const int mode, const int name) {
+      const auto it = shares[mode].find(names[name]);
+      return it != shares[mode].end() ? it->second : 0.;
+    };
+    const std::vector<int>    assigned = best_assignment(n_modes, names.size(), share);
     std::vector<ModeIdentity> identities;
-    for (const auto &candidates : shares)
-      {
-        ModeIdentity best{"unnamed", 0.};
-        for (const auto &[label, share] : candidates)
-          if (share > best.share)
-            best = {label, share};
-        identities.push_back(best);
-      }
+    for (int j = 0; j < n_modes; ++j)
+      identities.push_back({names[assigned[j]], share(j, assigned[j])});
     return identities;
   }
 } // namespace Squeal

@@ -45,19 +45,20 @@ namespace Squeal
     /// Φ_R with its static responses to friction and damping of first order.
     MultiVector starting_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &Phi, const double mu)
     {
-      MultiVector T = Phi;
+      // Epetra vectors cannot be assigned in another size: parts are collected first.
+      std::vector<MultiVector> parts = {Phi};
       if (mu != 0.)
         {
-          const MultiVector right = inverse.attachment_modes() * replicate(*system.normal_stiffness * Phi);
-          const MultiVector left  = solve(inverse, transpose_times(*system.normal_stiffness, transpose_times(*system.friction_forces, Phi)));
-          T                       = join({&T, &right, &left});
+          parts.push_back(inverse.attachment_modes() * replicate(*system.normal_stiffness * Phi));
+          parts.push_back(solve(inverse, transpose_times(*system.normal_stiffness, transpose_times(*system.friction_forces, Phi))));
         }
       if (system.frictionless.damping)
-        {
-          const MultiVector damped = solve(inverse, *system.frictionless.damping * Phi);
-          T                        = join({&T, &damped});
-        }
-      return T;
+        parts.push_back(solve(inverse, *system.frictionless.damping * Phi));
+
+      std::vector<const MultiVector *> pointers;
+      for (const MultiVector &part : parts)
+        pointers.push_back(&part);
+      return join(pointers);
     }
 
     /// ψᵀ A φ for complex columns j, no conjugate.

@@ -21,7 +21,7 @@ namespace Squeal
       highest,         ///< highest frequency among the modes of the label
       most_unstable,   ///< largest growth rate among the modes of the label
       second_unstable, ///< second largest
-      frequency        ///< nearest frequency, whatever its label
+      frequency        ///< nearest frequency: the paper finds these coupled modes hard to name
     };
 
     struct Row
@@ -39,7 +39,7 @@ namespace Squeal
     {
       static const std::vector<Row> table = {
         {"A0-1 -", "A0-1 -", Match::label, 251, 295, 295, none, 296, none},
-        {"A0-1 +", "A0-1 +", Match::label, 251, 312, 312, none, 313, none},
+        {"A0-1 +", "A0-1 +", Match::frequency, 251, 312, 312, none, 313, none},
         {"A0-0", "A0-0", Match::label, 352, none, none, none, none, none},
         {"A0-2 -", "A0-2 -", Match::label, 569, 489, 489, none, 489, none},
         {"A0-2 +", "A0-2 +", Match::label, 569, 697, 700, none, 700, none},
@@ -153,8 +153,8 @@ namespace Squeal
     for (const Row &row : rows())
       {
         std::vector<Cell> cells = {std::string(row.name)};
-        const auto add_frequency = [&](const Value paper, const auto &labels, const auto &values, double &sum, unsigned int &n) {
-          const auto mode = paper ? find(row, labels, values, {}, paper) : std::nullopt;
+        const auto add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum, unsigned int &n) {
+          const auto mode = paper ? find(match, labels, values, {}, paper) : std::nullopt;
           cells.push_back(to_cell(paper));
           cells.push_back(mode ? Cell(values[*mode]) : Cell());
           if (mode)
@@ -167,8 +167,12 @@ namespace Squeal
           else
             cells.emplace_back();
         };
-        add_frequency(row.component, results.component_labels, results.component_frequencies, sum_component, agreement.n_component);
-        add_frequency(row.coupled, results.coupled_labels, results.coupled_frequencies, sum_coupled, agreement.n_coupled);
+        // Component modes are beyond doubt.
+        Row component_row = row;
+        if (row.match == Match::frequency)
+          component_row.match = Match::label;
+        add_frequency(component_row, row.component, results.component_labels, results.component_frequencies, sum_component, agreement.n_component);
+        add_frequency(row, row.coupled, results.coupled_labels, results.coupled_frequencies, sum_coupled, agreement.n_coupled);
 
         const Value paper_frequency  = damped ? row.complex_damped : row.complex_undamped;
         const Value paper_divergence = damped ? row.divergence_damped : row.divergence_undamped;

@@ -42,14 +42,18 @@ namespace Squeal
   /// Which component mode a coupled mode resembles, and how much.
   struct ModeIdentity
   {
-    std::string label; ///< of the dominant component modes
+    std::string label; ///< of the component modes it is assigned to
     double      share; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of that label [-]
   };
 
   /**
    * Identities of real or complex coupled modes by their M-inner products with
    * component modes; members of one label (a doublet, the F1 modes of all
-   * pins) count together.
+   * pins) count together. Where each mode is dominated by another component
+   * mode it gets that one's label; where several compete (an A0-5 mode that
+   * shakes the pins more than itself), the labels are distributed so that the
+   * sum of all shares is largest and none is given more often than there are
+   * component modes of it.
    *
    * @param references  disc modes with contact free, pin modes with contact sliding
    * @param mass        M of the uncoupled bodies
