@@ -402,22 +402,29 @@ namespace Squeal
     std::vector<double> real(m), imaginary(m);
     lapack_int          q = 0;
     double              condition = 0., separation = 0.;
+    std::vector<double> work(std::max(m, 1));
+    lapack_int          integer_work = 0;
     // A positive result means that two values too close to be exchanged stay
-    // where they are: the Schur form is valid all the same.
-    LAPACKE_dtrsen(LAPACK_COL_MAJOR,
-                   'N',
-                   'V',
-                   selected.data(),
-                   m,
-                   T.column(),
-                   m,
-                   Z.column(),
-                   m,
-                   real.data(),
-                   imaginary.data(),
-                   &q,
-                   &condition,
-                   &separation);
+    // where they are: the Schur form is valid all the same. LAPACKE's driver
+    // without "_work" hands over no integer work space here, and crashes.
+    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR,
+                        'N',
+                        'V',
+                        selected.data(),
+                        m,
+                        T.column(),
+                        m,
+                        Z.column(),
+                        m,
+                        real.data(),
+                        imaginary.data(),
+                        &q,
+                        &condition,
+                        &separation,
+                        work.data(),
+                        m,
+                        &integer_work,
+                        1);
     if (q > 0 && q < m && T(q, q - 1) != 0.)
       ++q;
     replicate(map->Comm(), T);
@@ -437,7 +444,7 @@ namespace Squeal
       for (int j = 0; j < q + b; ++j)
         std::copy_n(states.column(j) + part * r, r, parts.column(part * (q + b) + j));
     DenseMatrix       P = parts;
-    const DenseMatrix R = pivoted_qr(P, 1.);
+    const DenseMatrix R = pivoted_qr(P, negligible);
     replicate(map->Comm(), P);
     const int r_new = P.n_columns();
 

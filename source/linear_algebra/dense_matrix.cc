@@ -1,7 +1,8 @@
+#include "blas.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/dense_matrix.h>
 
-#include <cblas.h>
 #include <lapacke.h>
 
 #include <algorithm>
@@ -47,20 +48,19 @@ namespace Squeal
 
     DenseMatrix C(m, n);
     if (m > 0 && n > 0 && k > 0)
-      cblas_dgemm(CblasColMajor,
-                  transpose_A ? CblasTrans : CblasNoTrans,
-                  transpose_B ? CblasTrans : CblasNoTrans,
-                  m,
-                  n,
-                  k,
-                  alpha,
-                  A.column(),
-                  leading_dimension(A),
-                  B.column(),
-                  leading_dimension(B),
-                  0.,
-                  C.column(),
-                  leading_dimension(C));
+      gemm(transpose_A,
+           transpose_B,
+           m,
+           n,
+           k,
+           alpha,
+           A.column(),
+           leading_dimension(A),
+           B.column(),
+           leading_dimension(B),
+           0.,
+           C.column(),
+           leading_dimension(C));
     return C;
   }
 
@@ -73,23 +73,18 @@ namespace Squeal
     const int n = B.n_columns();
     require(k == B.n_rows(), "product of two dense matrices");
 
-    ComplexDenseMatrix         C(m, n);
-    const std::complex<double> one = 1., zero = 0.;
+    ComplexDenseMatrix C(m, n);
     if (m > 0 && n > 0 && k > 0)
-      cblas_zgemm(CblasColMajor,
-                  conjugate_transpose_A ? CblasConjTrans : CblasNoTrans,
-                  CblasNoTrans,
-                  m,
-                  n,
-                  k,
-                  &one,
-                  A.column(),
-                  leading_dimension(A),
-                  B.column(),
-                  leading_dimension(B),
-                  &zero,
-                  C.column(),
-                  leading_dimension(C));
+      gemm(conjugate_transpose_A,
+           m,
+           n,
+           k,
+           A.column(),
+           leading_dimension(A),
+           B.column(),
+           leading_dimension(B),
+           C.column(),
+           leading_dimension(C));
     return C;
   }
 

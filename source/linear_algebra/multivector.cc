@@ -1,8 +1,9 @@
+#include "blas.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <Epetra_Comm.h>
-#include <cblas.h>
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +66,8 @@ namespace Squeal
     {
       DenseMatrix S = columns(V, first, n);
       for (int j = 0; j < n; ++j)
-        cblas_dscal(S.n_rows(), scale(first + j), S.column(j), 1);
+        for (int i = 0; i < S.n_rows(); ++i)
+          S(i, j) *= scale(first + j);
       return S;
     }
   } // namespace
@@ -80,20 +82,7 @@ namespace Squeal
     if (X.MyLength() > 0)
       {
         const LocalValues x(X), y(Y);
-        cblas_dgemm(CblasColMajor,
-                    CblasTrans,
-                    CblasNoTrans,
-                    m,
-                    n,
-                    X.MyLength(),
-                    1.,
-                    x.values,
-                    x.stride,
-                    y.values,
-                    y.stride,
-                    0.,
-                    local.column(),
-                    m);
+        gemm(true, false, m, n, X.MyLength(), 1., x.values, x.stride, y.values, y.stride, 0., local.column(), m);
       }
     if (X.Comm().NumProc() == 1)
       return local;
@@ -120,20 +109,19 @@ namespace Squeal
         return;
       }
     const LocalValues x(X);
-    cblas_dgemm(CblasColMajor,
-                CblasNoTrans,
-                CblasNoTrans,
-                Y.MyLength(),
-                Y.NumVectors(),
-                X.NumVectors(),
-                alpha,
-                x.values,
-                x.stride,
-                S.column(),
-                S.n_rows(),
-                beta,
-                Y.Values(),
-                Y.Stride());
+    gemm(false,
+         false,
+         Y.MyLength(),
+         Y.NumVectors(),
+         X.NumVectors(),
+         alpha,
+         x.values,
+         x.stride,
+         S.column(),
+         S.n_rows(),
+         beta,
+         Y.Values(),
+         Y.Stride());
   }
 
 

@@ -1,6 +1,8 @@
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/stability/complex_modes.h>
 
+#include <Epetra_Vector.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>

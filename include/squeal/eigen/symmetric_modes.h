@@ -1,0 +1,85 @@
+#pragma once
+
+#include <squeal/base/factorization_library.h>
+#include <squeal/base/real_solver.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// How the modes of K φ = ω² M φ are computed.
+  struct SymmetricModesOptions
+  {
+    RealSolver solver = RealSolver::anasazi;
+
+    /// Largest residual of a mode [-]; see SymmetricModes::residuals.
+    double tolerance = 1e-10;
+
+    /// Vectors per step of the block solver (Anasazi); 0: chosen.
+    int block_size = 0;
+
+    /**
+     * s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, where
+     * that is not positive definite, s = largest eigenvalue / 100. Giving a
+     * shift spares the vain attempt for bodies that can move rigidly.
+     */
+    double shift = 0.;
+
+    FactorizationLibrary library = FactorizationLibrary::automatic;
+
+    /// Seed of the random start vectors; results do not depend on it but for rounding.
+    unsigned int seed = 1;
+
+    /// Whose modes these are, for error messages.
+    std::string what = "a symmetric eigenvalue problem";
+  };
+
+  /// Modes of K φ = ω² M φ, lowest first.
+  struct SymmetricModes
+  {
+    /// ω² [rad²/s²], ascending; exactly zero for rigid-body modes.
+    std::vector<double> eigenvalues;
+
+    /// Φ with ΦᵀMΦ = I, one column per eigenvalue; null if there is none.
+    std::shared_ptr<MultiVector> vectors;
+
+    /// ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]; for rigid-body modes ‖Kφ‖ / (largest eigenvalue · ‖Mφ‖).
+    std::vector<double> residuals;
+
+    /// Eigenvalues below 1e-9 of the largest wanted one: those of rigid-body motions.
+    int n_rigid_body = 0;
+
+    /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found.
+    int n_counted = 0;
+  };
+
+  /**
+   * All modes with 0 ≤ ω² ≤ @p largest_eigenvalue [rad²/s²] of K φ = ω² M φ,
+   * K symmetric positive semidefinite, M symmetric positive definite.
+   *
+   * The inertia of K - limit M tells how many there are. They are computed by
+   * shift-invert (K + s M)⁻¹ M, block Krylov-Schur (Anasazi) or implicitly
+   * restarted Lanczos (ARPACK), then by a Rayleigh-Ritz procedure in the space
+   * found. Where members of multiple eigenvalues are missing, the solver is
+   * started again, orthogonally to what was found.
+   *
+   * Throws SolverError if fewer modes are found than exist, or if the residual
+   * of one exceeds both the tolerance and what rounding in K φ allows,
+   * 10 ε ‖K‖ ‖φ‖ / ‖Kφ‖. An eigenvalue that equals the limit to rounding is
+   * included.
+   */
+  SymmetricModes symmetric_modes(const SparseMatrix          &K,
+                                 const SparseMatrix          &M,
+                                 double                       largest_eigenvalue,
+                                 const SymmetricModesOptions &options = {});
+
+  /**
+   * Number of eigenvalues ω² ≤ @p largest_eigenvalue of K φ = ω² M φ by the
+   * inertia of K - limit M: exact, multiplicities and rigid-body modes
+   * included, without computing any mode. Throws SolverError naming @p what.
+   */
+  int count_modes(const SparseMatrix &K, const SparseMatrix &M, double largest_eigenvalue, const std::string &what);
+} // namespace Squeal

@@ -1,0 +1,128 @@
+#include "shift_invert.h"
+
+#include <squeal/base/exceptions.h>
+
+#include <AnasaziBasicEigenproblem.hpp>
+#include <AnasaziBlockKrylovSchurSolMgr.hpp>
+#include <AnasaziEpetraAdapter.hpp>
+#include <Epetra_Comm.h>
+#include <Epetra_Operator.h>
+
+#include <algorithm>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Our operator as Anasazi sees it.
+    class EpetraShiftInvert : public Epetra_Operator
+    {
+    public:
+      explicit EpetraShiftInvert(const ShiftInvert &A)
+        : A(A)
+      {}
+
+      int Apply(const Epetra_MultiVector &X, Epetra_MultiVector &Y) const override
+      {
+        A.apply(X, Y);
+        return 0;
+      }
+
+      int ApplyInverse(const Epetra_MultiVector &, Epetra_MultiVector &) const override
+      {
+        return -1;
+      }
+      int SetUseTranspose(bool) override
+      {
+        return -1;
+      }
+      double NormInf() const override
+      {
+        return -1.;
+      }
+      bool HasNormInf() const override
+      {
+        return false;
+      }
+      bool UseTranspose() const override
+      {
+        return false;
+      }
+      const char *Label() const override
+      {
+        return "(K + s M)^-1 M";
+      }
+      const Epetra_Comm &Comm() const override
+      {
+        return A.mass().Comm();
+      }
+      const Epetra_Map &OperatorDomainMap() const override
+      {
+        return A.mass().DomainMap();
+      }
+      const Epetra_Map &OperatorRangeMap() const override
+      {
+        return A.mass().RangeMap();
+      }
+
+    private:
+      const ShiftInvert &A;
+    };
+  } // namespace
+
+
+
+  std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request)
+  {
+    using Vectors  = Epetra_MultiVector;
+    using Operator = Epetra_Operator;
+    using Problem  = Anasazi::BasicEigenproblem<double, Vectors, Operator>;
+
+    const int n          = A.mass().NumGlobalRows();
+    const int block_size = std::min(request.block_size, n);
+
+    Teuchos::RCP<Vectors> start = Teuchos::rcp(new Vectors(random_vectors(A.mass().DomainMap(), block_size, request.seed)));
+    A.project(*start);
+
+    const Teuchos::RCP<Problem> problem = Teuchos::rcp(new Problem(
+      Teuchos::RCP<Operator>(Teuchos::rcp(new EpetraShiftInvert(A))), start));
+    // Anasazi takes the mass matrix non-const but only applies it.
+    problem->setM(Teuchos::rcp(const_cast<SparseMatrix *>(&A.mass()), false));
+    problem->setHermitian(true);
+    problem->setNEV(request.n_wanted);
+    if (!problem->setProblem())
+      throw SolverError("Anasazi refused the eigenvalue problem", request.what, "try ARPACK as solver of the real modes");
+
+    // Room for convergence without a restart: the memory is small beside the
+    // time that a restart would lose.
+    const int n_blocks =
+      std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10), (n - 1) / block_size);
+
+    Teuchos::ParameterList parameters;
+    parameters.set("Verbosity", static_cast<int>(Anasazi::Errors));
+    parameters.set("Which", "LM");
+    parameters.set("Block Size", block_size);
+    parameters.set("Num Blocks", n_blocks);
+    parameters.set("Maximum Restarts", 50);
+    // Blocks between two looks at convergence, each a dense Schur form of all blocks so far.
+    parameters.set("Step Size", 4);
+    parameters.set("Convergence Tolerance", request.tolerance);
+    parameters.set("Relative Convergence Tolerance", true);
+    parameters.set("Orthogonalization", "DGKS");
+    try
+      {
+        Anasazi::BlockKrylovSchurSolMgr<double, Vectors, Operator> solver(problem, parameters);
+        // Whether all converged is seen by counting what was found.
+        solver.solve();
+      }
+    catch (const std::exception &error)
+      {
+        throw SolverError(std::string("Anasazi failed: ") + error.what(), request.what, "try ARPACK as solver of the real modes");
+      }
+
+    const auto &solution = problem->getSolution();
+    if (solution.numVecs == 0)
+      return {};
+    return MultiVector(Copy, *solution.Evecs, 0, solution.numVecs);
+  }
+} // namespace Squeal

@@ -1,0 +1,140 @@
+#include "shift_invert.h"
+
+#include <squeal/base/exceptions.h>
+
+#include <Epetra_MpiComm.h>
+#include <mpi.h>
+
+#include <algorithm>
+
+// PARPACK's reverse communication; the trailing arguments are the lengths of the strings.
+extern "C"
+{
+  void pdsaupd_(const int  *comm,
+                int        *ido,
+                const char *bmat,
+                const int  *n,
+                const char *which,
+                const int  *nev,
+                double     *tol,
+                double     *resid,
+                const int  *ncv,
+                double     *v,
+                const int  *ldv,
+                int        *iparam,
+                int        *ipntr,
+                double     *workd,
+                double     *workl,
+                const int  *lworkl,
+                int        *info,
+                std::size_t,
+                std::size_t);
+  void pdseupd_(const int    *comm,
+                const int    *rvec,
+                const char   *howmny,
+                int          *select,
+                double       *d,
+                double       *z,
+                const int    *ldz,
+                const double *sigma,
+                const char   *bmat,
+                const int    *n,
+                const char   *which,
+                const int    *nev,
+                double       *tol,
+                double       *resid,
+                const int    *ncv,
+                double       *v,
+                const int    *ldv,
+                int          *iparam,
+                int          *ipntr,
+                double       *workd,
+                double       *workl,
+                const int    *lworkl,
+                int          *info,
+                std::size_t,
+                std::size_t,
+                std::size_t);
+}
+
+namespace Squeal
+{
+  namespace
+  {
+    [[noreturn]] void throw_arpack(const char *routine, const int info, const std::string &what)
+    {
+      throw SolverError("ARPACK's " + std::string(routine) + " failed with info = " + std::to_string(info),
+                        what,
+                        "try Anasazi as solver of the real modes");
+    }
+  } // namespace
+
+
+
+  std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request)
+  {
+    const Epetra_Map &map     = A.mass().DomainMap();
+    const auto       *mpi     = dynamic_cast<const Epetra_MpiComm *>(&map.Comm());
+    const int         comm    = MPI_Comm_c2f(mpi != nullptr ? mpi->Comm() : MPI_COMM_SELF);
+    const int         n_local = map.NumMyElements();
+
+    // ARPACK refuses processes without rows: those get one whose entries stay zero.
+    const int n   = std::max(1, n_local);
+    const int nev = request.n_wanted;
+    const int ncv = std::min(map.NumGlobalElements(), std::max(2 * nev + 20, nev + 40));
+
+    std::vector<double> resid(n), v(static_cast<std::size_t>(n) * ncv), workd(3 * static_cast<std::size_t>(n));
+    const int           lworkl = ncv * (ncv + 8);
+    std::vector<double> workl(lworkl);
+    int                 iparam[11] = {}, ipntr[14] = {};
+    iparam[0] = 1;    // exact shifts
+    iparam[2] = 1000; // restarts
+    iparam[6] = 3;    // shift-invert
+
+    MultiVector start = random_vectors(map, 1, request.seed);
+    A.project(start);
+    std::copy(start[0], start[0] + n_local, resid.begin());
+
+    const auto vector = [&](double *values) { return MultiVector(View, map, values, n, 1); };
+    double     tol    = request.tolerance;
+    int        ido = 0, info = 1;
+    while (true)
+      {
+        pdsaupd_(&comm, &ido, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 2);
+        if (ido == 99)
+          break;
+        MultiVector x = vector(workd.data() + ipntr[0] - 1), y = vector(workd.data() + ipntr[1] - 1);
+        if (n_local == 0)
+          workd[ipntr[1] - 1] = 0.;
+        switch (ido)
+          {
+            case -1:
+              A.apply(x, y);
+              break;
+            case 1:
+              A.apply_to_image(vector(workd.data() + ipntr[2] - 1), y);
+              break;
+            case 2:
+              A.mass().Multiply(false, x, y);
+              break;
+            default:
+              throw_arpack("pdsaupd (unknown request)", ido, request.what);
+          }
+      }
+    // 1: not all converged within the restarts; those that did are returned.
+    if (info < 0 || info > 1)
+      throw_arpack("pdsaupd", info, request.what);
+    if (iparam[4] == 0)
+      return {};
+
+    const int           want_vectors = 1;
+    const double        sigma        = 0.; // only moves the eigenvalues, which are not used
+    std::vector<int>    select(ncv);
+    std::vector<double> values(nev);
+    pdseupd_(&comm, &want_vectors, "A", select.data(), values.data(), v.data(), &n, &sigma, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 1, 2);
+    if (info != 0)
+      throw_arpack("pdseupd", info, request.what);
+    const int n_converged = iparam[4];
+    return MultiVector(Copy, map, v.data(), n, n_converged);
+  }
+} // namespace Squeal

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace Squeal
+{
+  /**
+   * (K + s M)⁻¹ M on the M-orthogonal complement of given modes: its largest
+   * eigenvalues 1 / (ω² + s) belong to the lowest other modes. Self-adjoint in
+   * the inner product of M.
+   */
+  class ShiftInvert
+  {
+  public:
+    /// @p deflated, M-orthonormal, may be null; all must outlive this object.
+    ShiftInvert(const Factorization &factors, const SparseMatrix &M, const MultiVector *deflated);
+
+    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ M X.
+    void apply(const MultiVector &X, MultiVector &Y) const;
+
+    /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B where B = M X is at hand.
+    void apply_to_image(const MultiVector &B, MultiVector &Y) const;
+
+    /// X ← (I - ΦΦᵀM) X.
+    void project(MultiVector &X) const;
+
+    const SparseMatrix &mass() const;
+
+  private:
+    const Factorization &factors;
+    const SparseMatrix  &M;
+    const MultiVector   *deflated;
+  };
+
+  /// What is asked of a Krylov solver.
+  struct KrylovRequest
+  {
+    int          n_wanted;
+    double       tolerance; ///< relative residual of the inverted problem
+    int          block_size;
+    unsigned int seed;
+    std::string  what;
+  };
+
+  /// Approximate eigenvectors of the largest eigenvalues by Anasazi: up to n_wanted, nothing if none converged.
+  std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
+
+  /// The same by ARPACK.
+  std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request);
+
+  /// A limit and the number of eigenvalues of K φ = ω² M φ below it.
+  struct ModeCount
+  {
+    int    n_modes;
+    double limit; ///< at or, where an eigenvalue lies on it, slightly above what was asked for
+  };
+  ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
+} // namespace Squeal

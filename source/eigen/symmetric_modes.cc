@@ -1,0 +1,282 @@
+#include "shift_invert.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
+    constexpr double rigid_body_threshold = 1e-9;
+
+    /// Systems up to this size are solved densely.
+    constexpr int largest_dense_system = 300;
+
+    /// Rayleigh-Ritz approximations in a space, ascending.
+    struct RitzPairs
+    {
+      std::vector<double>        values;
+      std::optional<MultiVector> vectors;
+    };
+
+    RitzPairs rayleigh_ritz(const SparseMatrix &K, const SparseMatrix &M, const MultiVector &V)
+    {
+      DenseMatrix S = gram(V, K * V);
+      RitzPairs   pairs;
+      pairs.values = symmetric_eigenvalues(S, gram(V, M * V));
+      pairs.vectors.emplace(V * S);
+      return pairs;
+    }
+
+    /// Solution of one problem, step by step.
+    class Solver
+    {
+    public:
+      Solver(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
+        : K(K)
+        , M(M)
+        , options(options)
+        , count(count_below(K, M, limit, options.what))
+      {}
+
+      SymmetricModes modes()
+      {
+        SymmetricModes modes;
+        if (count.n_modes > 0)
+          {
+            RitzPairs pairs = find_all();
+            const Residuals result = refine(pairs);
+            modes                  = accept(pairs, result);
+          }
+        modes.n_counted = count.n_modes;
+        return modes;
+      }
+
+    private:
+      const Factorization &factors()
+      {
+        if (factorization)
+          return *factorization;
+        if (options.shift == 0.)
+          try
+            {
+              factorization = factorize_positive_definite(K, options.library, options.what);
+              return *factorization;
+            }
+          catch (const SolverError &)
+            {
+              // The body can move rigidly, so it seems: a shift helps. If the
+              // reason was another one, the next attempt says so.
+            }
+        const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
+        factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what);
+        return *factorization;
+      }
+
+      /// A space that contains approximations of all wanted modes.
+      RitzPairs find_all()
+      {
+        const int n = K.NumGlobalRows();
+        if (n <= largest_dense_system || 4 * count.n_modes + 50 > n)
+          return dense();
+
+        RitzPairs pairs;
+        int       n_found = 0;
+        // Members of multiple eigenvalues may be missing at first; every start
+        // finds at least one more, in general all.
+        for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
+          {
+            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, pairs.vectors);
+            if (fresh)
+              {
+                const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &*fresh}) : *fresh;
+                RitzPairs         all   = rayleigh_ritz(K, M, space);
+                const int n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
+                if (n_all > n_found)
+                  {
+                    // Vectors above the limit must not be deflated: they may be far from modes.
+                    pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
+                    pairs.vectors.emplace(view(*all.vectors, 0, n_all));
+                    n_found = n_all;
+                    continue;
+                  }
+              }
+            if (lift_limit())
+              continue;
+            fail_incomplete(n_found);
+          }
+        return pairs;
+      }
+
+      RitzPairs dense()
+      {
+        DenseMatrix A = to_dense(K);
+        RitzPairs   pairs;
+        pairs.values     = symmetric_eigenvalues(A, to_dense(M));
+        const int n_kept = std::min<int>(std::max(1, count.n_modes), pairs.values.size());
+        pairs.values.resize(n_kept);
+        pairs.vectors.emplace(K.DomainMap(), n_kept);
+        const int first_row = LocalRows(K).first_row;
+        for (int j = 0; j < n_kept; ++j)
+          for (int i = 0; i < pairs.vectors->MyLength(); ++i)
+            (*pairs.vectors)[j][i] = A(first_row + i, j);
+        return pairs;
+      }
+
+      std::optional<MultiVector>
+      krylov(const int n_wanted, const unsigned int attempt, const std::optional<MultiVector> &deflated)
+      {
+        const ShiftInvert A(factors(), M, deflated ? &*deflated : nullptr);
+        KrylovRequest     request;
+        request.n_wanted   = n_wanted;
+        request.tolerance  = 0.1 * options.tolerance;
+        request.block_size = options.block_size > 0 ? options.block_size : 8;
+        request.seed       = options.seed + 7919 * attempt;
+        request.what       = options.what;
+        return options.solver == RealSolver::anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
+      }
+
+      /**
+       * Where a mode lies on the limit to rounding, count and search may see it
+       * on different sides: counts again a little higher. Whether it did.
+       */
+      bool lift_limit()
+      {
+        if (lifted)
+          return false;
+        lifted                = true;
+        const ModeCount below = count_below(K, M, count.limit * (1. - 1e-8), options.what);
+        const ModeCount above = count_below(K, M, count.limit * (1. + 1e-8), options.what);
+        if (below.n_modes == above.n_modes)
+          return false;
+        count = above;
+        return true;
+      }
+
+      /// Residuals of Ritz pairs, and how they compare with what is accepted.
+      struct Residuals
+      {
+        std::vector<double> values;        ///< as SymmetricModes defines them
+        double              excess = 0.;   ///< largest ratio of a residual to what is accepted
+        int                 worst  = 0;    ///< the mode where it occurs
+      };
+
+      Residuals residuals(const RitzPairs &pairs) const
+      {
+        const int           n_modes = pairs.values.size();
+        const MultiVector   KV = K * *pairs.vectors, MV = M * *pairs.vectors;
+        MultiVector         R(KV);
+        for (int j = 0; j < n_modes; ++j)
+          if (!is_rigid(pairs.values[j]))
+            for (int i = 0; i < R.MyLength(); ++i)
+              R[j][i] -= pairs.values[j] * MV[j][i];
+
+        const std::vector<double> norm_R = column_norms(R), norm_KV = column_norms(KV), norm_MV = column_norms(MV),
+                                  norm_V = column_norms(*pairs.vectors);
+        const double norm_K              = K.NormInf();
+
+        Residuals residuals;
+        for (int j = 0; j < n_modes; ++j)
+          {
+            const double scale    = is_rigid(pairs.values[j]) ? count.limit * norm_MV[j] : norm_KV[j];
+            const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
+            residuals.values.push_back(norm_R[j] / scale);
+            const double excess = residuals.values[j] / std::max(options.tolerance, rounding);
+            // Written so that NaN is the worst.
+            if (!(excess <= residuals.excess))
+              {
+                residuals.excess = excess;
+                residuals.worst  = j;
+              }
+          }
+        return residuals;
+      }
+
+      /// Inverse iteration, block-wise, until the residuals are accepted.
+      Residuals refine(RitzPairs &pairs)
+      {
+        Residuals result = residuals(pairs);
+        for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
+          {
+            MultiVector       W(pairs.vectors->Map(), pairs.vectors->NumVectors());
+            const ShiftInvert A(factors(), M, nullptr);
+            A.apply(*pairs.vectors, W);
+            RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
+            pairs.values = std::move(refined.values);
+            pairs.vectors.emplace(*refined.vectors);
+            result = residuals(pairs);
+          }
+        return result;
+      }
+
+      SymmetricModes accept(const RitzPairs &pairs, const Residuals &result) const
+      {
+        const auto fail = [&](const std::string &message) {
+          throw SolverError(message, options.what, "choose the other solver of the real modes, or a larger tolerance");
+        };
+        if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
+          fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
+        if (pairs.values.front() < -rigid_body_threshold * count.limit)
+          fail("the stiffness is not positive semidefinite: there is an eigenvalue of " + std::to_string(pairs.values.front()) +
+               " rad²/s²");
+        if (!(result.excess <= 1.))
+          {
+            std::ostringstream message;
+            message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of "
+                    << result.values[result.worst] << ", " << result.excess << " times what is accepted";
+            fail(message.str());
+          }
+
+        SymmetricModes modes;
+        modes.residuals   = result.values;
+        modes.eigenvalues = pairs.values;
+        for (double &value : modes.eigenvalues)
+          if (is_rigid(value))
+            {
+              value = 0.;
+              ++modes.n_rigid_body;
+            }
+        modes.vectors = std::make_shared<MultiVector>(*pairs.vectors);
+        return modes;
+      }
+
+      [[noreturn]] void fail_incomplete(const int n_found) const
+      {
+        throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
+                            std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
+                          options.what,
+                          "choose the other solver of the real modes, or move the end of the band away from a cluster of modes");
+      }
+
+      bool is_rigid(const double value) const
+      {
+        return value < rigid_body_threshold * count.limit;
+      }
+
+      const SparseMatrix            &K, &M;
+      const SymmetricModesOptions    options;
+      ModeCount                      count;
+      bool                           lifted = false;
+      std::unique_ptr<Factorization> factorization;
+    };
+  } // namespace
+
+
+
+  SymmetricModes
+  symmetric_modes(const SparseMatrix &K, const SparseMatrix &M, const double largest_eigenvalue, const SymmetricModesOptions &options)
+  {
+    if (!(largest_eigenvalue > 0.))
+      throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²",
+                        options.what,
+                        "give a positive end of the band");
+    return Solver(K, M, largest_eigenvalue, options).modes();
+  }
+} // namespace Squeal

@@ -1,0 +1,160 @@
+#include "matrices.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  class Factorizations : public ::testing::TestWithParam<Distribution>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Distributions,
+                           Factorizations,
+                           ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
+
+  bool one_process()
+  {
+    return Epetra_MpiComm(MPI_COMM_WORLD).NumProc() == 1;
+  }
+
+  std::vector<FactorizationLibrary> usable_libraries(const bool positive_definite)
+  {
+    std::vector<FactorizationLibrary> libraries{FactorizationLibrary::automatic, FactorizationLibrary::mumps};
+    if (one_process())
+      {
+        libraries.push_back(FactorizationLibrary::umfpack);
+        if (positive_definite)
+          libraries.push_back(FactorizationLibrary::cholmod);
+      }
+    return libraries;
+  }
+
+  /// Largest relative residual of A X = B, or Aᵀ X = B.
+  double residual(const SparseMatrix &A, const MultiVector &X, const MultiVector &B, const bool transposed)
+  {
+    MultiVector R = transposed ? transpose_times(A, X) : A * X;
+    R.Update(-1., B, 1.);
+    double largest = 0.;
+    for (int j = 0; j < B.NumVectors(); ++j)
+      largest = std::max(largest, column_norms(R)[j] / column_norms(B)[j]);
+    return largest;
+  }
+} // namespace
+
+
+
+TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
+{
+  const auto A = laplacian(6, 2, GetParam());
+  // More right-hand sides than any library takes at once.
+  const MultiVector B = random_vectors(A->RowMap(), 70);
+  for (const FactorizationLibrary library : usable_libraries(true))
+    {
+      const auto  factors = factorize_positive_definite(*A, library, "test");
+      MultiVector X(B.Map(), B.NumVectors());
+      factors->apply(B, X);
+      EXPECT_LT(residual(*A, X, B, false), 1e-13) << to_string(library);
+      X.PutScalar(0.);
+      factors->apply_transpose(B, X);
+      EXPECT_LT(residual(*A, X, B, false), 1e-13) << to_string(library);
+      EXPECT_GT(factors->n_factor_entries(), A->NumGlobalNonzeros() / 2.);
+      EXPECT_TRUE(factors->map().SameAs(A->RowMap()));
+
+      // Fewer columns afterwards.
+      MultiVector x(B.Map(), 1);
+      factors->apply(view(B, 69, 1), x);
+      EXPECT_LT(residual(*A, x, view(B, 69, 1), false), 1e-13) << to_string(library);
+    }
+}
+
+
+
+TEST_P(Factorizations, GeneralSystemsAreSolvedBothWays)
+{
+  const auto        L = laplacian(6, 1, GetParam());
+  const auto        P = sparse(L->RowMap(), L->RowMap(), [](const int i) { return Row{{(5 * i + 2) % 216, 0.7}, {i, 0.1 * (i % 3)}}; });
+  const auto        A = add(1., *L, 1., *P);
+  const MultiVector B = random_vectors(A->RowMap(), 5);
+  ASSERT_GT(symmetry_defect(*A), 0.1);
+  for (const FactorizationLibrary library : usable_libraries(false))
+    {
+      const auto  factors = factorize_general(*A, library, "test");
+      MultiVector X(B.Map(), B.NumVectors());
+      factors->apply(B, X);
+      EXPECT_LT(residual(*A, X, B, false), 1e-12) << to_string(library);
+      factors->apply_transpose(B, X);
+      EXPECT_LT(residual(*A, X, B, true), 1e-12) << to_string(library);
+    }
+}
+
+
+
+TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
+{
+  const auto L          = laplacian(5, 1, GetParam());
+  const auto indefinite = add(1., *L, -1., *diagonal(L->RowMap(), [](int) { return 1.; }));
+  const auto body       = plate({{4, 3, 2}}, 0.01, 0., GetParam());
+  for (const FactorizationLibrary library : usable_libraries(true))
+    {
+      EXPECT_THROW(factorize_positive_definite(*indefinite, library, "test"), SolverError) << to_string(library);
+      // A free body: six rigid-body modes.
+      EXPECT_THROW(factorize_positive_definite(*body.stiffness, library, "test"), SolverError) << to_string(library);
+    }
+  for (const FactorizationLibrary library : usable_libraries(false))
+    {
+      const auto singular = diagonal(L->RowMap(), [](const int i) { return i == 3 ? 0. : 1.; });
+      EXPECT_THROW(factorize_general(*singular, library, "test"), SolverError) << to_string(library);
+    }
+}
+
+
+
+TEST_P(Factorizations, LibrariesThatDoNotFitAreNamed)
+{
+  const auto A = laplacian(4, 1, GetParam());
+  try
+    {
+      factorize_general(*A, FactorizationLibrary::cholmod, "the pencil");
+      FAIL();
+    }
+  catch (const SolverError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("CHOLMOD"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find(one_process() ? "positive definite" : "CHOLMOD"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("the pencil"), std::string::npos);
+    }
+  if (one_process())
+    return;
+  for (const auto library : {FactorizationLibrary::cholmod, FactorizationLibrary::umfpack})
+    EXPECT_THROW(factorize_positive_definite(*A, library, "test"), SolverError);
+}
+
+
+
+TEST_P(Factorizations, InertiaCountsEigenvalues)
+{
+  const int  m      = 6;
+  const auto L      = laplacian(m, 2, GetParam());
+  const auto values = laplacian_eigenvalues(m, 2);
+  for (const double limit : {0.1, 1., 3.3, 6.01, 11.9})
+    {
+      const auto shifted  = add(1., *L, -limit, *diagonal(L->RowMap(), [](int) { return 1.; }));
+      const int  expected = std::lower_bound(values.begin(), values.end(), limit) - values.begin();
+      int        n_null   = -1;
+      EXPECT_EQ(count_negative_eigenvalues(*shifted, "test", &n_null), expected) << limit;
+      EXPECT_EQ(n_null, 0);
+    }
+
+  const auto D      = diagonal(L->RowMap(), [](const int i) { return i % 5 == 0 ? 0. : (i % 3 == 0 ? -1. : 2.); });
+  int        n_null = 0, expected_null = 0, expected = 0;
+  for (int i = 0; i < D->NumGlobalRows(); ++i)
+    (i % 5 == 0 ? expected_null : expected) += i % 5 == 0 || i % 3 == 0;
+  EXPECT_EQ(count_negative_eigenvalues(*D, "test", &n_null), expected);
+  EXPECT_EQ(n_null, expected_null);
+  EXPECT_THROW(count_negative_eigenvalues(*D, "test"), SolverError);
+}

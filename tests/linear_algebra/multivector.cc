@@ -1,0 +1,157 @@
+#include "matrices.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  class MultiVectors : public ::testing::TestWithParam<Distribution>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Distributions,
+                           MultiVectors,
+                           ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
+
+  /// A symmetric positive definite tridiagonal matrix that is no multiple of the identity.
+  std::shared_ptr<SparseMatrix> inner_product(const Epetra_Map &map)
+  {
+    const int n = map.NumGlobalElements();
+    return sparse(map, map, [n](const int i) {
+      Row row{{i, 4. + i % 7}};
+      if (i > 0)
+        row[i - 1] = 1.;
+      if (i < n - 1)
+        row[i + 1] = 1.;
+      return row;
+    });
+  }
+} // namespace
+
+
+
+TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
+{
+  const int         n = 50;
+  const MultiVector X = random_vectors(rows(n, GetParam()), 3, 7), Y = random_vectors(rows(n, Distribution::even), 3, 7);
+  // Sums over all processes with weights that tell rows apart.
+  const auto moment = [n](const MultiVector &Z, const int j) {
+    double local = 0., sum = 0.;
+    for (int i = 0; i < Z.MyLength(); ++i)
+      local += Z[j][i] * (1 + Z.Map().GID(i) % n);
+    Z.Comm().SumAll(&local, &sum, 1);
+    return sum;
+  };
+  for (int j = 0; j < 3; ++j)
+    {
+      EXPECT_NEAR(moment(X, j), moment(Y, j), 1e-11);
+      EXPECT_GT(column_norms(X)[j], 2.);
+      EXPECT_LT(column_norms(X)[j], 6.);
+    }
+  EXPECT_LT(std::abs(gram(X, X)(0, 1)), 0.5 * gram(X, X)(0, 0));
+  EXPECT_GT(max_norm(add(gram(X, X), gram(random_vectors(rows(n, GetParam()), 3, 8), X), -1.)), 1.);
+}
+
+
+
+TEST_P(MultiVectors, LinearCombinationsAgreeWithGramMatrices)
+{
+  const Epetra_Map  map = rows(40, GetParam());
+  const MultiVector X = random_vectors(map, 4, 1), Y = random_vectors(map, 3, 2);
+  const DenseMatrix G = gram(X, Y);
+  EXPECT_EQ(G.n_rows(), 4);
+  EXPECT_EQ(G.n_columns(), 3);
+  EXPECT_LT(max_norm(add(gram(X, X * G), multiply(gram(X, X), G), -1.)), 1e-12);
+
+  MultiVector Z = Y;
+  multiply_add(2., X, G, -1., Z);
+  EXPECT_LT(max_norm(add(gram(X, Z), add(multiply(gram(X, X), G, false, false, 2.), G, -1.), -1.)), 1e-12);
+
+  const MultiVector J = join({&X, &Y});
+  EXPECT_EQ(J.NumVectors(), 7);
+  EXPECT_LT(max_norm(add(gram(view(J, 0, 4), view(J, 4, 3)), G, -1.)), 1e-14);
+}
+
+
+
+TEST_P(MultiVectors, MatrixProductsAreAdjoint)
+{
+  const Epetra_Map  map = rows(40, GetParam()), columns = rows(25, GetParam());
+  const auto        A = sparse(map, columns, [](const int i) { return Row{{i % 25, 1. + i}, {(3 * i + 1) % 25, -0.5}}; });
+  const MultiVector X = random_vectors(columns, 3, 1), Y = random_vectors(map, 2, 2);
+  EXPECT_LT(max_norm(add(gram(Y, *A * X), gram(transpose_times(*A, Y), X), -1.)), 1e-12);
+}
+
+
+
+TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
+{
+  const Epetra_Map map = rows(60, GetParam());
+  const auto       M   = inner_product(map);
+
+  const MultiVector Q = orthonormalize(*M, nullptr, random_vectors(map, 5, 1), 1e-8);
+  ASSERT_EQ(Q.NumVectors(), 5);
+  EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
+
+  // Three new directions of very different size, one of Q, one zero, one repeated.
+  const MultiVector fresh = random_vectors(map, 3, 2);
+  MultiVector       X(map, 6);
+  X(0)->Update(1e6, *fresh(0), 0.);
+  X(1)->Update(1e-6, *fresh(1), 0.);
+  X(2)->Update(1., *Q(3), 0.);
+  X(4)->Update(3., *fresh(0), 0.);
+  X(5)->Update(1., *fresh(2), 0.);
+  const MultiVector W = orthonormalize(*M, &Q, X, 1e-10);
+  ASSERT_EQ(W.NumVectors(), 3);
+  EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
+  EXPECT_LT(max_norm(gram(Q, *M * W)), 1e-13);
+
+  // The span is kept: nothing of X is left outside of Q and W.
+  const MultiVector basis = join({&Q, &W});
+  EXPECT_FALSE(orthonormalize_if_any(*M, &basis, X, 1e-10).has_value());
+  EXPECT_THROW(orthonormalize(*M, &basis, X, 1e-10), SolverError);
+}
+
+
+
+TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
+{
+  const Epetra_Map map = rows(60, GetParam());
+  const auto       M   = inner_product(map);
+
+  // Directions at angles of 1e-2, 1e-4, ..., 1e-12: beyond what one Gram matrix can tell apart.
+  const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
+  MultiVector       X(map, 7);
+  for (int j = 0; j < 7; ++j)
+    {
+      X(j)->Update(1., *fresh(0), 0.);
+      if (j > 0)
+        X(j)->Update(std::pow(10., -2 * j), *fresh(j), 1.);
+    }
+
+  for (const int exponent : {3, 5, 7, 9, 11})
+    {
+      const MultiVector W = orthonormalize(*M, nullptr, X, std::pow(10., -exponent));
+      EXPECT_EQ(W.NumVectors(), 1 + exponent / 2) << "tolerance 1e-" << exponent;
+      EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
+    }
+
+  // The kept directions are accurate: fresh(4) sticks out by 1e-8 only and is still found to 1e-6.
+  const MultiVector W         = orthonormalize(*M, nullptr, X, 1e-13);
+  const DenseMatrix component = gram(W, *M * view(fresh, 4, 1));
+  EXPECT_NEAR(multiply(component, component, true)(0, 0), 1., 1e-10);
+}
+
+
+
+TEST_P(MultiVectors, OrthonormalizeRefusesUndefinedValues)
+{
+  const Epetra_Map map = rows(60, GetParam());
+  MultiVector      X   = random_vectors(map, 2);
+  if (X.MyLength() > 0)
+    X[1][0] = std::nan("");
+  EXPECT_THROW(orthonormalize(*inner_product(map), nullptr, X, 1e-10), SolverError);
+}

@@ -1,0 +1,125 @@
+#include "matrices.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  class Sparse : public ::testing::TestWithParam<Distribution>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Distributions,
+                           Sparse,
+                           ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
+
+  /// 30 × 20, three entries a row.
+  std::shared_ptr<SparseMatrix> rectangular(const Distribution distribution)
+  {
+    return sparse(rows(30, distribution), rows(20, distribution), [](const int i) {
+      Row row;
+      row[i % 20] += 1.;
+      row[(7 * i + 3) % 20] += 0.25 * i;
+      row[(i * i) % 20] -= 2.;
+      return row;
+    });
+  }
+} // namespace
+
+
+
+TEST_P(Sparse, ProductsAgreeWithDenseOnes)
+{
+  const auto        A = laplacian(3, 1, GetParam());
+  const auto        B = sparse(rows(27, GetParam()), rows(20, GetParam()), [](const int i) { return Row{{i % 20, 1. + i}, {19, -1.}}; });
+  const auto        C = rectangular(GetParam());
+  const DenseMatrix a = to_dense(*A), b = to_dense(*B), c = to_dense(*C);
+
+  EXPECT_LT(max_norm(add(to_dense(*multiply(*A, *B)), multiply(a, b), -1.)), 1e-12);
+  EXPECT_LT(max_norm(add(to_dense(*multiply(*B, *A, true, false)), multiply(b, a, true), -1.)), 1e-12);
+  EXPECT_LT(max_norm(add(to_dense(*multiply(*B, *C, false, true)), multiply(b, c, false, true), -1.)), 1e-12);
+  EXPECT_LT(max_norm(add(to_dense(*multiply(*B, *A, true, true)), multiply(b, a, true, true), -1.)), 1e-12);
+
+  const auto T = congruence(*A, *B);
+  EXPECT_TRUE(T->RowMap().SameAs(B->DomainMap()));
+  EXPECT_TRUE(T->DomainMap().SameAs(B->DomainMap()));
+  EXPECT_LT(max_norm(add(to_dense(*T), multiply(b, multiply(a, b), true), -1.)), 1e-10);
+  EXPECT_LT(symmetry_defect(*T), 1e-15);
+
+  // The products can be applied to vectors.
+  const MultiVector X = random_vectors(B->DomainMap(), 2);
+  EXPECT_LT(max_norm(add(gram(X, *T * X), gram(*B * X, *A * (*B * X)), -1.)), 1e-9);
+}
+
+
+
+TEST_P(Sparse, SumsOfDifferentPatterns)
+{
+  const auto A = laplacian(3, 1, GetParam());
+  const auto D = diagonal(A->RowMap(), [](const int i) { return 1. + i; });
+  const auto P = sparse(A->RowMap(), A->RowMap(), [](const int i) { return Row{{(5 * i + 2) % 27, 1.}}; });
+  for (const auto &B : {D, P, A})
+    {
+      EXPECT_LT(max_norm(add(to_dense(*add(2., *A, -3., *B)), add(multiply(to_dense(*A), identity(27), false, false, 2.), to_dense(*B), -3.), -1.)), 1e-13);
+      EXPECT_LT(max_norm(add(to_dense(*add(2., *B, -3., *A)), add(multiply(to_dense(*B), identity(27), false, false, 2.), to_dense(*A), -3.), -1.)), 1e-13);
+    }
+  EXPECT_DOUBLE_EQ(max_norm(*D), 27.);
+  EXPECT_DOUBLE_EQ(symmetry_defect(*P), 1.);
+  EXPECT_EQ(symmetry_defect(*A), 0.);
+}
+
+
+
+TEST_P(Sparse, MatrixMarketFilesReturnTheSameNumbers)
+{
+  const auto A = rectangular(GetParam());
+  A->Scale(1. / 3.);
+  const auto        S    = laplacian(3, 1, GetParam());
+  const std::string file = (std::filesystem::temp_directory_path() / "squeal_sparse_test.mtx").string();
+  for (const auto &[matrix, symmetry] : {std::make_pair(A, MatrixMarketSymmetry::general), std::make_pair(S, MatrixMarketSymmetry::symmetric)})
+    {
+      write_matrix_market(*matrix, file, symmetry);
+      const DenseMatrix expected = to_dense(*matrix);
+      DenseMatrix       read(expected.n_rows(), expected.n_columns());
+      std::ifstream     stream(file);
+      std::string       header;
+      std::getline(stream, header);
+      EXPECT_EQ(header, symmetry == MatrixMarketSymmetry::general ? "%%MatrixMarket matrix coordinate real general" : "%%MatrixMarket matrix coordinate real symmetric");
+      int n_rows, n_columns, n_entries, i, j;
+      stream >> n_rows >> n_columns >> n_entries;
+      EXPECT_EQ(n_rows, expected.n_rows());
+      EXPECT_EQ(n_columns, expected.n_columns());
+      double value;
+      int    n_read = 0;
+      for (; stream >> i >> j >> value; ++n_read)
+        {
+          read(i - 1, j - 1) = value;
+          if (symmetry == MatrixMarketSymmetry::symmetric)
+            read(j - 1, i - 1) = value;
+        }
+      EXPECT_EQ(n_read, n_entries);
+      EXPECT_EQ(max_norm(add(read, expected, -1.)), 0.);
+      EXPECT_FALSE(std::filesystem::exists(file + ".part"));
+      A->Comm().Barrier();
+    }
+  if (A->Comm().MyPID() == 0)
+    std::filesystem::remove(file);
+  EXPECT_THROW(write_matrix_market(*A, "/nonexistent/directory/A.mtx"), FileError);
+}
+
+
+
+TEST(BlasThreads, AreSet)
+{
+  // 0: another BLAS than OpenBLAS, which cannot be asked.
+  const int reported = set_blas_threads(1);
+  EXPECT_TRUE(reported == 0 || reported == 1);
+}
