@@ -31,6 +31,43 @@ Mesh.Algorithm            = 6;
 Mesh.SubdivisionAlgorithm = 1;
 Mesh.MeshSizeMax          = size;
 
+// Pins. A top and a bottom pin that overlap share a hole in the plan, nearest
+// first. Where they are not exactly opposite, the hole is halfway, and physical
+// points say where each of the two is; the mesh of the disc is sheared between
+// them.
+n_top     = #top_pin_radii();
+n_pins    = n_top + #bottom_pin_radii();
+tolerance = 1e-6 * pin_diameter;
+For pin In {1 : n_pins}
+  If(pin <= n_top)
+    radius~{pin} = top_pin_radii(pin - 1);
+    angle~{pin}  = top_pin_angles(pin - 1) * Pi / 180;
+  Else
+    radius~{pin} = bottom_pin_radii(pin - n_top - 1);
+    angle~{pin}  = bottom_pin_angles(pin - n_top - 1) * Pi / 180;
+  EndIf
+  x~{pin} = radius~{pin} * Cos(angle~{pin});
+  y~{pin} = radius~{pin} * Sin(angle~{pin});
+  twin~{pin} = 0;
+EndFor
+For pair In {1 : n_top}
+  nearest = pin_diameter;
+  For top In {1 : n_top}
+    For bottom In {n_top + 1 : n_pins}
+      distance = Hypot(x~{top} - x~{bottom}, y~{top} - y~{bottom});
+      If(!twin~{top} && !twin~{bottom} && distance < nearest - tolerance)
+        nearest = distance;
+        first   = top;
+        second  = bottom;
+      EndIf
+    EndFor
+  EndFor
+  If(nearest < pin_diameter)
+    twin~{first}  = second;
+    twin~{second} = first;
+  EndIf
+EndFor
+
 // Bore and rim
 centre = newp; Point(centre) = {0, 0, 0};
 For ring In {0 : 1}
@@ -47,60 +84,61 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Pins: a circle that a top and a bottom pin have in common is made once.
-n_top    = #top_pin_radii();
-n_bottom = #bottom_pin_radii();
-n_pins   = n_top + n_bottom;
-holes()  = {};
+// Holes: three arcs around each, made with the first pin of a pair
+holes() = {};
 For pin In {1 : n_pins}
-  If(pin <= n_top)
-    pin_r = top_pin_radii(pin - 1);
-    pin_a = top_pin_angles(pin - 1) * Pi / 180;
-  Else
-    pin_r = bottom_pin_radii(pin - n_top - 1);
-    pin_a = bottom_pin_angles(pin - n_top - 1) * Pi / 180;
+  other  = twin~{pin};
+  halved = 0;
+  hole_x~{pin} = x~{pin};
+  hole_y~{pin} = y~{pin};
+  If(other)
+    If(Hypot(x~{pin} - x~{other}, y~{pin} - y~{other}) > tolerance)
+      halved = 1;
+      mean_x = (x~{pin} + x~{other}) / 2;
+      mean_y = (y~{pin} + y~{other}) / 2;
+      scale  = (radius~{pin} + radius~{other}) / 2 / Hypot(mean_x, mean_y);
+      hole_x~{pin} = scale * mean_x;
+      hole_y~{pin} = scale * mean_y;
+    EndIf
   EndIf
-  x~{pin} = pin_r * Cos(pin_a);
-  y~{pin} = pin_r * Sin(pin_a);
 
-  twin = 0;
-  If(pin > n_top)
-    For other In {1 : n_top}
-      If(Hypot(x~{pin} - x~{other}, y~{pin} - y~{other}) < 1e-6 * pin_diameter)
-        twin = other;
+  If(other && other < pin)
+    pin_curves~{pin}() = pin_curves~{other}();
+  Else
+    For before In {1 : pin - 1}
+      If(Hypot(hole_x~{pin} - hole_x~{before}, hole_y~{pin} - hole_y~{before}) < pin_diameter)
+        Error("Top and bottom pins overlap in such a way that no one-to-one pairing of them leaves room in the plan. Move the pins of one side, or draw a plan of your own");
       EndIf
     EndFor
-  EndIf
-
-  If(twin > 0)
-    pin_curves~{pin}() = pin_curves~{twin}();
-  Else
     p = newp;
-    Point(p) = {x~{pin}, y~{pin}, 0};
+    Point(p) = {hole_x~{pin}, hole_y~{pin}, 0};
     For i In {0 : 2}
-      a = pin_a + 2 * Pi * i / 3;
-      Point(p + 1 + i) = {x~{pin} + pin_diameter / 2 * Cos(a), y~{pin} + pin_diameter / 2 * Sin(a), 0, size};
+      a = Atan2(hole_y~{pin}, hole_x~{pin}) + 2 * Pi * i / 3;
+      Point(p + 1 + i) = {hole_x~{pin} + pin_diameter / 2 * Cos(a), hole_y~{pin} + pin_diameter / 2 * Sin(a), 0, size};
     EndFor
     c = newc;
     For i In {0 : 2}
       Circle(c + i) = {p + 1 + i, p, p + 1 + (i + 1) % 3};
     EndFor
-    pin_curves~{pin}() = {c : c + 2};
     Transfinite Curve{c : c + 2} = k + 1;
+    pin_curves~{pin}() = {c : c + 2};
     l = newll; Curve Loop(l) = {c : c + 2};
     holes() += l;
+  EndIf
+
+  If(pin <= n_top)
+    name = Sprintf("pin_top_%g", pin);
+  Else
+    name = Sprintf("pin_bottom_%g", pin - n_top);
+  EndIf
+  Physical Curve(Str(name)) = {pin_curves~{pin}()};
+  If(halved)
+    p = newp; Point(p) = {x~{pin}, y~{pin}, 0};
+    Physical Point(Str(name)) = {p};
   EndIf
 EndFor
 
 s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
-
 Physical Surface("disc")    = {s};
 Physical Curve("disc_bore") = {ring_curves_0()};
 Physical Curve("disc_rim")  = {ring_curves_1()};
-For pin In {1 : n_pins}
-  If(pin <= n_top)
-    Physical Curve(Sprintf("pin_top_%g", pin)) = {pin_curves~{pin}()};
-  Else
-    Physical Curve(Sprintf("pin_bottom_%g", pin - n_top)) = {pin_curves~{pin}()};
-  EndIf
-EndFor

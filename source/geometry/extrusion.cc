@@ -1,4 +1,5 @@
 #include <squeal/geometry/extrusion.h>
+#include <squeal/geometry/plan_smoothing.h>
 
 namespace Squeal
 {
@@ -8,8 +9,13 @@ namespace Squeal
     class Stack
     {
     public:
-      /// @p heights ascend
+      /**
+       * @p heights ascend; the points go linearly from those of the lower end to
+       * those of the upper end.
+       */
       Stack(const Plan                      &plan,
+            const std::vector<Plan::Point>  &lower,
+            const std::vector<Plan::Point>  &upper,
             const std::vector<unsigned int> &faces,
             const std::vector<double>       &heights,
             const unsigned int               volume,
@@ -26,12 +32,16 @@ namespace Squeal
           for (const unsigned int node : plan.faces[face])
             used[node] = true;
         for (unsigned int layer = 0; layer <= n_layers; ++layer)
-          for (std::size_t node = 0; node < used.size(); ++node)
-            if (used[node])
-              {
-                nodes[layer][node] = mesh.points.size();
-                mesh.points.push_back({{plan.points[node][0], plan.points[node][1], heights[layer]}});
-              }
+          {
+            const double t = double(layer) / n_layers;
+            for (std::size_t node = 0; node < used.size(); ++node)
+              if (used[node])
+                {
+                  nodes[layer][node] = mesh.points.size();
+                  mesh.points.push_back({{(1. - t) * lower[node][0] + t * upper[node][0],
+                                          (1. - t) * lower[node][1] + t * upper[node][1], heights[layer]}});
+                }
+          }
 
         // Hexahedra; the faces of the plan are counter-clockwise seen from above
         for (unsigned int layer = 0; layer < n_layers; ++layer)
@@ -124,7 +134,9 @@ namespace Squeal
     std::vector<unsigned int> all_faces(plan.faces.size());
     for (std::size_t i = 0; i < all_faces.size(); ++i)
       all_faces[i] = i;
-    Stack disc(plan, all_faces, heights(-z_top, z_top, parameters.disc_layers), 0, mesh);
+    const std::vector<Plan::Point> top    = points_on_side(plan, Plan::Side::top);
+    const std::vector<Plan::Point> bottom = points_on_side(plan, Plan::Side::bottom);
+    Stack disc(plan, bottom, top, all_faces, heights(-z_top, z_top, parameters.disc_layers), 0, mesh);
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == Plan::Side::top)
         disc.name_top(pin.faces, disc_contact);
@@ -145,14 +157,14 @@ namespace Squeal
 
         if (pin.side == Plan::Side::top)
           {
-            Stack stack(plan, pin.faces, heights(z_top, z_end, parameters.pin_layers), p + 1, mesh);
+            Stack stack(plan, top, top, pin.faces, heights(z_top, z_end, parameters.pin_layers), p + 1, mesh);
             stack.name_bottom(pin.faces, pin_contact);
             stack.name_top(pin.faces, pin_clamp);
             stack.name_side(boundary_edges(faces), pin_side);
           }
         else
           {
-            Stack stack(plan, pin.faces, heights(-z_end, -z_top, parameters.pin_layers), p + 1, mesh);
+            Stack stack(plan, bottom, bottom, pin.faces, heights(-z_end, -z_top, parameters.pin_layers), p + 1, mesh);
             stack.name_top(pin.faces, pin_contact);
             stack.name_bottom(pin.faces, pin_clamp);
             stack.name_side(boundary_edges(faces), pin_side);

@@ -21,11 +21,19 @@ namespace Squeal
       return log;
     }
 
-    std::string last_lines(const std::vector<std::string> &log)
+    bool is_error(const std::string &line)
+    {
+      return line.rfind("Error", 0) == 0;
+    }
+
+    /// The end of the log, from the first error if that is further up.
+    std::string relevant_lines(const std::vector<std::string> &log)
     {
       std::string       quoted;
-      const std::size_t first = log.size() > n_quoted_log_lines ? log.size() - n_quoted_log_lines : 0;
-      for (std::size_t i = first; i < log.size(); ++i)
+      const std::size_t end   = log.size() > n_quoted_log_lines ? log.size() - n_quoted_log_lines : 0;
+      const std::size_t error = std::find_if(log.begin(), log.end(), is_error) - log.begin();
+      const std::size_t first = std::min(end, error);
+      for (std::size_t i = first; i < std::min(log.size(), first + n_quoted_log_lines); ++i)
         quoted += "\n    | " + log[i];
       return quoted.empty() ? "\n    | (Gmsh's log is empty)" : quoted;
     }
@@ -47,6 +55,80 @@ namespace Squeal
         }
       block = std::move(sorted);
     }
+
+    GmshMesh collect_mesh()
+    {
+      GmshMesh mesh;
+
+      // Nodes, numbered in the order of their tags
+      std::vector<std::size_t> tags;
+      std::vector<double>      coordinates, parametric;
+      gmsh::model::mesh::getNodes(tags, coordinates, parametric);
+      std::vector<std::size_t> order(tags.size());
+      std::iota(order.begin(), order.end(), 0);
+      std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tags[a] < tags[b]; });
+      std::unordered_map<std::size_t, unsigned int> index;
+      for (const std::size_t i : order)
+        if (index.emplace(tags[i], mesh.points.size()).second)
+          mesh.points.push_back({{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}});
+
+      // Elements, by physical group and type
+      gmsh::vectorpair groups;
+      gmsh::model::getPhysicalGroups(groups);
+      std::sort(groups.begin(), groups.end());
+      for (const auto &[dimension, group_tag] : groups)
+        {
+          GmshMesh::Group group;
+          group.dimension = dimension;
+          gmsh::model::getPhysicalName(dimension, group_tag, group.name);
+
+          std::map<int, GmshMesh::Block> blocks;
+          std::vector<int>               entities;
+          gmsh::model::getEntitiesForPhysicalGroup(dimension, group_tag, entities);
+          for (const int entity : entities)
+            {
+              std::vector<int>                      types;
+              std::vector<std::vector<std::size_t>> element_tags, element_nodes;
+              gmsh::model::mesh::getElements(types, element_tags, element_nodes, dimension, entity);
+              for (std::size_t t = 0; t < types.size(); ++t)
+                {
+                  GmshMesh::Block    &block = blocks[types[t]];
+                  int                 element_dimension, element_order, n_nodes, n_primary_nodes;
+                  std::vector<double> local_coordinates;
+                  gmsh::model::mesh::getElementProperties(types[t], block.type, element_dimension, element_order,
+                                                          n_nodes, local_coordinates, n_primary_nodes);
+                  block.nodes_per_element = n_nodes;
+                  block.tags.insert(block.tags.end(), element_tags[t].begin(), element_tags[t].end());
+                  for (const std::size_t node : element_nodes[t])
+                    block.nodes.push_back(index.at(node));
+                }
+            }
+          for (auto &[type, block] : blocks)
+            {
+              sort_by_tag(block);
+              group.blocks.push_back(std::move(block));
+            }
+          mesh.groups.push_back(std::move(group));
+        }
+
+      // Volume elements that no physical group would carry over
+      mesh.n_unnamed_volume_elements = 0;
+      gmsh::vectorpair volumes;
+      gmsh::model::getEntities(volumes, 3);
+      for (const auto &[dimension, volume] : volumes)
+        {
+          std::vector<int> physical_tags;
+          gmsh::model::getPhysicalGroupsForEntity(dimension, volume, physical_tags);
+          if (!physical_tags.empty())
+            continue;
+          std::vector<int>                      types;
+          std::vector<std::vector<std::size_t>> element_tags, element_nodes;
+          gmsh::model::mesh::getElements(types, element_tags, element_nodes, dimension, volume);
+          for (const auto &tags_of_type : element_tags)
+            mesh.n_unnamed_volume_elements += tags_of_type.size();
+        }
+      return mesh;
+    }
   } // namespace
 
   GmshSession::GmshSession()
@@ -54,6 +136,9 @@ namespace Squeal
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::option::setNumber("General.NumThreads", 1);
+    // An exception could not leave the parallel region in which Gmsh meshes
+    // surfaces and would end the program; errors are found in the log instead.
+    gmsh::option::setNumber("General.AbortOnError", 0);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.RandomFactor", 1e-9);
     gmsh::logger::start();
@@ -88,9 +173,9 @@ namespace Squeal
     // necessarily succeeded.
     const std::vector<std::string> log = gmsh_log();
     for (const std::string &line : log)
-      failed = failed || line.rfind("Error", 0) == 0;
+      failed = failed || is_error(line);
     if (failed)
-      throw MeshError("Gmsh failed while " + step + ". The end of its log:" + last_lines(log), shown,
+      throw MeshError("Gmsh failed while " + step + ". Its log:" + relevant_lines(log), shown,
                       "correct the geometry; opening it in Gmsh shows the place");
   }
 
@@ -136,74 +221,7 @@ namespace Squeal
   GmshMesh GmshSession::mesh() const
   {
     GmshMesh mesh;
-
-    // Nodes, numbered in the order of their tags
-    std::vector<std::size_t> tags;
-    std::vector<double>      coordinates, parametric;
-    gmsh::model::mesh::getNodes(tags, coordinates, parametric);
-    std::vector<std::size_t> order(tags.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return tags[a] < tags[b]; });
-    std::unordered_map<std::size_t, unsigned int> index;
-    for (const std::size_t i : order)
-      if (index.emplace(tags[i], mesh.points.size()).second)
-        mesh.points.push_back({{coordinates[3 * i], coordinates[3 * i + 1], coordinates[3 * i + 2]}});
-
-    // Elements, by physical group and type
-    gmsh::vectorpair groups;
-    gmsh::model::getPhysicalGroups(groups);
-    std::sort(groups.begin(), groups.end());
-    for (const auto &[dimension, group_tag] : groups)
-      {
-        GmshMesh::Group group;
-        group.dimension = dimension;
-        gmsh::model::getPhysicalName(dimension, group_tag, group.name);
-
-        std::map<int, GmshMesh::Block> blocks;
-        std::vector<int>               entities;
-        gmsh::model::getEntitiesForPhysicalGroup(dimension, group_tag, entities);
-        for (const int entity : entities)
-          {
-            std::vector<int>                      types;
-            std::vector<std::vector<std::size_t>> element_tags, element_nodes;
-            gmsh::model::mesh::getElements(types, element_tags, element_nodes, dimension, entity);
-            for (std::size_t t = 0; t < types.size(); ++t)
-              {
-                GmshMesh::Block    &block = blocks[types[t]];
-                int                 element_dimension, element_order, n_nodes, n_primary_nodes;
-                std::vector<double> local_coordinates;
-                gmsh::model::mesh::getElementProperties(types[t], block.type, element_dimension, element_order,
-                                                        n_nodes, local_coordinates, n_primary_nodes);
-                block.nodes_per_element = n_nodes;
-                block.tags.insert(block.tags.end(), element_tags[t].begin(), element_tags[t].end());
-                for (const std::size_t node : element_nodes[t])
-                  block.nodes.push_back(index.at(node));
-              }
-          }
-        for (auto &[type, block] : blocks)
-          {
-            sort_by_tag(block);
-            group.blocks.push_back(std::move(block));
-          }
-        mesh.groups.push_back(std::move(group));
-      }
-
-    // Volume elements that no physical group would carry over
-    mesh.n_unnamed_volume_elements = 0;
-    gmsh::vectorpair volumes;
-    gmsh::model::getEntities(volumes, 3);
-    for (const auto &[dimension, volume] : volumes)
-      {
-        std::vector<int> physical_tags;
-        gmsh::model::getPhysicalGroupsForEntity(dimension, volume, physical_tags);
-        if (!physical_tags.empty())
-          continue;
-        std::vector<int>                      types;
-        std::vector<std::vector<std::size_t>> element_tags, element_nodes;
-        gmsh::model::mesh::getElements(types, element_tags, element_nodes, dimension, volume);
-        for (const auto &tags_of_type : element_tags)
-          mesh.n_unnamed_volume_elements += tags_of_type.size();
-      }
+    run("handing over the mesh", [&] { mesh = collect_mesh(); });
     return mesh;
   }
 

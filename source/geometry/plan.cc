@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <tuple>
 
 namespace Squeal
 {
@@ -46,6 +47,15 @@ namespace Squeal
           sum += a[0] * b[1] - a[1] * b[0];
         }
       return sum;
+    }
+
+    Plan::Point mean(const std::vector<unsigned int> &nodes, const std::vector<Plan::Point> &points)
+    {
+      Plan::Point sum = {{0., 0.}};
+      for (const unsigned int node : nodes)
+        for (unsigned int d = 0; d < 2; ++d)
+          sum[d] += points[node][d];
+      return {{sum[0] / nodes.size(), sum[1] / nodes.size()}};
     }
 
     void check_joined(const Plan &plan, const std::string &where)
@@ -126,11 +136,7 @@ namespace Squeal
     const auto at = [&](const unsigned int i) { return loop[i % loop.size()]; };
 
     // Centre and spokes
-    Plan::Point centre = {{0., 0.}};
-    for (const unsigned int node : loop)
-      for (unsigned int d = 0; d < 2; ++d)
-        centre[d] += points[node][d] / loop.size();
-
+    const Plan::Point                        centre      = mean(loop, points);
     const unsigned int                       centre_node = add_point(centre);
     std::array<std::vector<unsigned int>, 3> spokes;
     for (unsigned int s = 0; s < 3; ++s)
@@ -221,11 +227,8 @@ namespace Squeal
         std::reverse(loop.begin(), loop.end());
 
       // The first spoke points away from the axis of the disc.
-      Plan::Point centre = {{0., 0.}};
-      for (const unsigned int node : loop)
-        for (unsigned int d = 0; d < 2; ++d)
-          centre[d] += points[node][d] / loop.size();
-      const double radius = std::hypot(centre[0], centre[1]);
+      const Plan::Point centre = mean(loop, points);
+      const double      radius = std::hypot(centre[0], centre[1]);
       if (radius > 0.)
         {
           const auto outward = [&](const unsigned int node) {
@@ -295,7 +298,7 @@ namespace Squeal
             }
           std::sort(faces.begin(), faces.end());
           if (!is_disc)
-            plan.pins.push_back({group.name, side_of(group.name), faces});
+            plan.pins.push_back({group.name, side_of(group.name), faces, {{0., 0.}}});
         }
     if (!disc_found)
       throw MeshError("The plan has no physical surface 'disc'", where,
@@ -329,6 +332,18 @@ namespace Squeal
           (is_pin(group.name) ? pin_curves : plan.curves).push_back(curve);
         }
 
+    // Points: centres of pins
+    std::map<std::string, Plan::Point> centres;
+    for (const GmshMesh::Group &group : mesh.groups)
+      if (group.dimension == 0)
+        {
+          if (group.blocks.size() != 1 || group.blocks[0].tags.size() != 1)
+            throw MeshError("Physical point '" + group.name + "' is not one point", where,
+                            "name one point, the centre of the pin of this name");
+          const std::array<double, 3> &point = mesh.points[group.blocks[0].nodes[0]];
+          centres[group.name]                = {{point[0], point[1]}};
+        }
+
     // Pins around holes: a hole is filled once, for one or two pins
     std::set<Plan::Edge> outline;
     for (const Plan::Edge &edge : boundary_edges(plan.faces))
@@ -352,8 +367,25 @@ namespace Squeal
               faces.push_back(plan.faces.size());
               plan.faces.push_back(face);
             }
-        plan.pins.push_back({curve.name, side_of(curve.name), faces});
+        const auto place = centres.find(curve.name);
+        Plan::Point displacement = {{0., 0.}};
+        if (place != centres.end())
+          {
+            const Plan::Point centre = mean(closed_loop(curve.edges, plan.points, curve.name, where), plan.points);
+            displacement             = {{place->second[0] - centre[0], place->second[1] - centre[1]}};
+            centres.erase(place);
+          }
+        plan.pins.push_back({curve.name, side_of(curve.name), faces, displacement});
       }
+
+    if (!centres.empty())
+      throw MeshError("Physical point '" + centres.begin()->first + "' is not the centre of any pin", where,
+                      "give it the name of a physical curve around a pin, or remove its name");
+
+    // Top before bottom, pin_top_2 before pin_top_10
+    std::sort(plan.pins.begin(), plan.pins.end(), [](const Plan::Pin &a, const Plan::Pin &b) {
+      return std::make_tuple(a.side, a.name.size(), a.name) < std::make_tuple(b.side, b.name.size(), b.name);
+    });
 
     // Whether all of it fits together
     if (plan.pins.empty())

@@ -11,7 +11,8 @@ namespace Squeal
   /**
    * Disc and pins seen along the axis: quadrilaterals that cover the annulus,
    * those under each pin, and the named parts of the annulus' boundary. A face
-   * may lie under a top and a bottom pin.
+   * may lie under a top and a bottom pin, also where the two are not exactly
+   * opposite: then both are displaced from their common place in the plan.
    */
   struct Plan
   {
@@ -30,6 +31,7 @@ namespace Squeal
       std::string               name; ///< "pin_top..." or "pin_bottom..."
       Side                      side;
       std::vector<unsigned int> faces; ///< indices into Plan::faces, ascending
+      Point                     displacement; ///< from the place in the plan to that on the disc [m]
     };
 
     struct Curve
@@ -51,6 +53,8 @@ namespace Squeal
    * - surfaces `pin_top*`, `pin_bottom*`: the faces under that pin;
    * - curves `pin_top*`, `pin_bottom*`: a closed curve around a hole of the
    *   surfaces, which is filled by fill_with_o_grid();
+   * - points `pin_top*`, `pin_bottom*`: where the centre of the pin of that
+   *   name is on its side of the disc, if it is not the centre of its curve;
    * - other curves: parts of the annulus' boundary.
    *
    * Throws MeshError, naming @p where, for other names and for a plan that

@@ -18,4 +18,11 @@ namespace Squeal
    * it, the elements between them would be flat or inverted without this.
    */
   void smooth(Plan &plan);
+
+  /**
+   * Points of the plan as they are on one face of the disc: the pins of that
+   * side at their places, the boundary of the annulus where it was, and the
+   * rest displaced evenly in between and smoothed.
+   */
+  std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
 } // namespace Squeal
