@@ -6,25 +6,49 @@
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
 #include <AnasaziEpetraAdapter.hpp>
 #include <Epetra_Comm.h>
+#include <Epetra_Map.h>
 #include <Epetra_Operator.h>
 
 #include <algorithm>
+#include <functional>
+#include <vector>
 
 namespace Squeal
 {
   namespace
   {
-    /// Our operator as Anasazi sees it.
-    class EpetraShiftInvert : public Epetra_Operator
+    /**
+     * The rows as Anasazi sees them: processes without rows get one whose
+     * entries our operators keep at zero. Anasazi's vectors corrupt the memory
+     * where a process has none.
+     */
+    Epetra_Map padded(const Epetra_Map &map)
+    {
+      std::vector<int> elements(map.MyGlobalElements(), map.MyGlobalElements() + map.NumMyElements());
+      if (elements.empty())
+        elements.push_back(map.MaxAllGID() + 1 + map.Comm().MyPID());
+      return Epetra_Map(-1, elements.size(), elements.data(), map.IndexBase(), map.Comm());
+    }
+
+    /// A linear map on vectors of @p map as Anasazi sees it.
+    class PaddedOperator : public Epetra_Operator
     {
     public:
-      explicit EpetraShiftInvert(const ShiftInvert &A)
-        : A(A)
+      using Action = std::function<void(const MultiVector &, MultiVector &)>;
+
+      PaddedOperator(const Epetra_Map &map, const Epetra_Map &padded_map, const Action &action)
+        : map(map)
+        , padded_map(padded_map)
+        , action(action)
       {}
 
       int Apply(const Epetra_MultiVector &X, Epetra_MultiVector &Y) const override
       {
-        A.apply(X, Y);
+        if (map.NumMyElements() == 0)
+          Y.PutScalar(0.);
+        const MultiVector x(View, map, X.Pointers(), X.NumVectors());
+        MultiVector       y(View, map, Y.Pointers(), Y.NumVectors());
+        action(x, y);
         return 0;
       }
 
@@ -50,23 +74,24 @@ namespace Squeal
       }
       const char *Label() const override
       {
-        return "(K + s M)^-1 M";
+        return "operator of a symmetric eigenvalue problem";
       }
       const Epetra_Comm &Comm() const override
       {
-        return A.mass().Comm();
+        return padded_map.Comm();
       }
       const Epetra_Map &OperatorDomainMap() const override
       {
-        return A.mass().DomainMap();
+        return padded_map;
       }
       const Epetra_Map &OperatorRangeMap() const override
       {
-        return A.mass().RangeMap();
+        return padded_map;
       }
 
     private:
-      const ShiftInvert &A;
+      const Epetra_Map map, padded_map;
+      const Action     action;
     };
   } // namespace
 
@@ -81,13 +106,21 @@ namespace Squeal
     const int n          = A.mass().NumGlobalRows();
     const int block_size = std::min(request.block_size, n);
 
-    Teuchos::RCP<Vectors> start = Teuchos::rcp(new Vectors(random_vectors(A.mass().DomainMap(), block_size, request.seed)));
-    A.project(*start);
+    const Epetra_Map &map        = A.mass().DomainMap();
+    const Epetra_Map  padded_map = padded(map);
+    const auto        wrapped    = [&](const PaddedOperator::Action &action) {
+      return Teuchos::RCP<Operator>(Teuchos::rcp(new PaddedOperator(map, padded_map, action)));
+    };
 
-    const Teuchos::RCP<Problem> problem = Teuchos::rcp(new Problem(
-      Teuchos::RCP<Operator>(Teuchos::rcp(new EpetraShiftInvert(A))), start));
-    // Anasazi takes the mass matrix non-const but only applies it.
-    problem->setM(Teuchos::rcp(const_cast<SparseMatrix *>(&A.mass()), false));
+    MultiVector start = random_vectors(map, block_size, request.seed);
+    A.project(start);
+    const Teuchos::RCP<Vectors> padded_start = Teuchos::rcp(new Vectors(padded_map, block_size));
+    for (int j = 0; j < block_size; ++j)
+      std::copy(start[j], start[j] + start.MyLength(), (*padded_start)[j]);
+
+    const Teuchos::RCP<Problem> problem = Teuchos::rcp(
+      new Problem(wrapped([&](const MultiVector &X, MultiVector &Y) { A.apply(X, Y); }), padded_start));
+    problem->setM(wrapped([&](const MultiVector &X, MultiVector &Y) { A.mass().Multiply(false, X, Y); }));
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
     if (!problem->setProblem())
@@ -123,6 +156,6 @@ namespace Squeal
     const auto &solution = problem->getSolution();
     if (solution.numVecs == 0)
       return {};
-    return MultiVector(Copy, *solution.Evecs, 0, solution.numVecs);
+    return MultiVector(Copy, map, solution.Evecs->Pointers(), solution.numVecs);
   }
 } // namespace Squeal

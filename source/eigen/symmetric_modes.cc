@@ -4,6 +4,8 @@
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/linear_algebra/sparse.h>
 
+#include <Epetra_Comm.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,6 +33,7 @@ namespace Squeal
       DenseMatrix S = gram(V, K * V);
       RitzPairs   pairs;
       pairs.values = symmetric_eigenvalues(S, gram(V, M * V));
+      agree(V.Comm(), S, pairs.values);
       pairs.vectors.emplace(V * S);
       return pairs;
     }
@@ -120,6 +123,7 @@ namespace Squeal
         DenseMatrix A = to_dense(K);
         RitzPairs   pairs;
         pairs.values     = symmetric_eigenvalues(A, to_dense(M));
+        agree(K.Comm(), A, pairs.values);
         const int n_kept = std::min<int>(std::max(1, count.n_modes), pairs.values.size());
         pairs.values.resize(n_kept);
         pairs.vectors.emplace(K.DomainMap(), n_kept);

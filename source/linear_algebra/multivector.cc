@@ -60,6 +60,14 @@ namespace Squeal
       multiply_add(-1., Q, gram(Q, M * X), 1., X);
     }
 
+    /// Eigenvalues of a symmetric matrix, which is replaced by its eigenvectors, the same on all processes.
+    std::vector<double> common_eigenvalues(const Epetra_Comm &comm, DenseMatrix &A)
+    {
+      std::vector<double> values = symmetric_eigenvalues(A);
+      agree(comm, A, values);
+      return values;
+    }
+
     /// Columns [first, first + n) of @p V, column j multiplied by @p scale(j).
     template <typename Scale>
     DenseMatrix scaled_columns(const DenseMatrix &V, const int first, const int n, const Scale &scale)
@@ -91,6 +99,16 @@ namespace Squeal
     // Decisions are taken on these numbers: the last bit must agree everywhere.
     X.Comm().Broadcast(sum.column(), m * n, 0);
     return sum;
+  }
+
+
+
+  void agree(const Epetra_Comm &comm, DenseMatrix &A, std::vector<double> &values)
+  {
+    if (comm.NumProc() == 1)
+      return;
+    comm.Broadcast(A.column(), A.n_rows() * A.n_columns(), 0);
+    comm.Broadcast(values.data(), values.size(), 0);
   }
 
 
@@ -255,7 +273,7 @@ namespace Squeal
             unit(i, j) = scale[i] * scale[j] * G(nonzero[i], nonzero[j]);
         }
       remaining.emplace(X * S);
-      largest   = symmetric_eigenvalues(unit).back();
+      largest   = common_eigenvalues(X.Comm(), unit).back();
     }
     const double smallest = tolerance * tolerance * largest;
 
@@ -266,7 +284,7 @@ namespace Squeal
     while (remaining)
       {
         DenseMatrix               V      = gram(*remaining, M * *remaining);
-        const std::vector<double> values = symmetric_eigenvalues(V);
+        const std::vector<double> values = common_eigenvalues(X.Comm(), V);
         const int                 k      = values.size();
 
         const double threshold = std::max(resolved * values.back(), smallest);
@@ -280,7 +298,7 @@ namespace Squeal
             project(W);
             // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
             DenseMatrix               U       = gram(W, M * W);
-            const std::vector<double> squares = symmetric_eigenvalues(U);
+            const std::vector<double> squares = common_eigenvalues(X.Comm(), U);
             W = W * multiply(scaled_columns(U, 0, U.n_columns(), [&](const int j) { return 1. / std::sqrt(squares[j]); }),
                              U,
                              false,

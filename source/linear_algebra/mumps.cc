@@ -130,6 +130,10 @@ namespace Squeal
 
         std::vector<int>    row, column;
         std::vector<double> value;
+        // MUMPS must not see null pointers on processes without rows.
+        row.reserve(1);
+        column.reserve(1);
+        value.reserve(1);
         for (int i = 0; i < n_local_rows; ++i)
           for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
             if (!one_triangle || rows.column[k] <= rows.first_row + i)

@@ -20,6 +20,13 @@ namespace Squeal
   /// XᵀY, k_X × k_Y, the same on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
+  /**
+   * Replaces small dense results by those of process 0. Rounding of the same
+   * LAPACK call may differ between processes, with the alignment of memory for
+   * instance; eigenvectors of a multiple eigenvalue then differ altogether.
+   */
+  void agree(const Epetra_Comm &comm, DenseMatrix &A, std::vector<double> &values);
+
   /// Y = alpha X S + beta Y; X and Y must not share memory.
   void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);
 
