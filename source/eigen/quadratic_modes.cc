@@ -340,7 +340,8 @@ namespace Squeal
       {
         const int b         = std::max(krylov.block_size(), 1);
         const int n_missing = state.n_inside - state.n_converged;
-        int       n_more    = std::max(2 * b, n_missing / 2);
+        // Between one and a half and two and a half vectors for each missing value is what it takes in the end.
+        int       n_more    = std::max(3 * b, 3 * n_missing / 2);
         if (krylov.dimension() + n_more > largest_basis())
           {
             // Half of the room beyond the wanted vectors keeps what is on its way.
