@@ -265,6 +265,10 @@ namespace Squeal
         X                         = add(X, multiply(V, removed), -1.);
         coefficients              = add(coefficients, multiply(removed, R));
         R                         = multiply(pivoted_qr(X, round == 0 ? smallest : meaningless), R);
+        double largest            = max_norm(removed);
+        replicate(map->Comm(), &largest, 1);
+        if (round > 0 && largest < 1e-8)
+          break;
       }
     G = beside(V, X);
     return above(coefficients, R);
@@ -459,6 +463,23 @@ namespace Squeal
     for (int part = 0; part < degree; ++part)
       for (int j = 0; j < m + b; ++j)
         std::copy_n(R.column(part * (m + b) + j), r, G.column(j) + part * r);
+  }
+
+  CompactKrylov CompactKrylov::deflated(const RitzPairs &ritz, const int n_locked) const
+  {
+    CompactKrylov result(*map, degree, r);
+    MultiVector   target = view(*result.U, 0, r);
+    target.Update(1., basis(), 0.);
+    result.r = r;
+    result.m = m;
+    result.b = b;
+    result.G = G;
+    result.H = H;
+    result.restart(ritz, n_locked);
+    result.b = 0;
+    result.G = columns(result.G, 0, result.m);
+    result.H = rows(result.H, 0, result.m);
+    return result;
   }
 
   MultiVector CompactKrylov::ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const

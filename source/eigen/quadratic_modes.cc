@@ -23,8 +23,10 @@ namespace Squeal
     constexpr double real_fraction = 1e-7;
     /// Values beyond the radius that have to converge, so that none inside can still be on its way.
     constexpr int n_beyond = 2;
-    /// Block steps that fresh directions take part in before the values found are taken as complete.
+    /// Block steps of fresh directions, with the values found deflated, before these are taken as complete.
     constexpr int n_proving_steps = 8;
+    /// The same if fewer modes were found than expected.
+    constexpr int n_searching_steps = 16;
 
     /**
      * S and its eigenvalues: the only place where λ becomes θ and ν. In units
@@ -305,25 +307,19 @@ namespace Squeal
         , tolerance(0.3 * options.tolerance)
       {}
 
-      /// Expands the space to @p n_basis states, with fresh directions once half of the wanted number is reached.
+      /// Expands the space to @p n_basis states.
       void grow(const int n_basis)
       {
         while (krylov.dimension() < n_basis && !exhausted)
           {
             if (krylov.dimension() == 0)
               inject(options.block_size);
-            else if (steps_since_fresh < 0 && 2 * krylov.dimension() >= n_wanted)
-              {
-                inject(options.n_fresh_directions);
-                steps_since_fresh = 0;
-              }
             if (krylov.block_size() == 0)
               {
                 exhausted = inject(options.block_size) == 0;
                 continue;
               }
-            krylov.expand([this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); });
-            steps_since_fresh += steps_since_fresh >= 0 ? 1 : 0;
+            krylov.expand(shift_invert());
             n_basis_largest = std::max(n_basis_largest, krylov.n_vectors());
           }
       }
@@ -344,9 +340,8 @@ namespace Squeal
       {
         const int b         = std::max(krylov.block_size(), 1);
         const int n_missing = state.n_inside - state.n_converged;
-        int       n_more    = std::max(2 * b, n_missing / 2);
-        if (state.complete)
-          n_more = std::max(1, n_proving_steps - steps_since_fresh) * b;
+        // Between one and a half and two and a half vectors for each missing value is what it takes in the end.
+        int       n_more    = std::max(3 * b, 3 * n_missing / 2);
         if (krylov.dimension() + n_more > largest_basis())
           {
             // Half of the room beyond the wanted vectors keeps what is on its way.
@@ -359,9 +354,34 @@ namespace Squeal
         return krylov.dimension() + n_more;
       }
 
-      bool proven() const
+      /**
+       * Looks for eigenvalues inside the radius that the block had no
+       * component of, such as members of a cluster beyond the block size: a
+       * short process from fresh directions, with everything inside deflated.
+       * If it finds any, fresh directions join the search and the result is
+       * false.
+       */
+      bool proven()
       {
-        return exhausted || options.n_fresh_directions == 0 || steps_since_fresh >= n_proving_steps;
+        const int n_fresh = options.n_fresh_directions;
+        if (exhausted || n_fresh == 0)
+          return true;
+        CompactKrylov proof = krylov.deflated(ritz, state.n_inside);
+        proof.inject(fresh_vectors(n_fresh));
+        const bool fewer = transformation.degree * options.expected > state.n_inside;
+        for (int step = 0; step < (fewer ? n_searching_steps : n_proving_steps) && proof.block_size() > 0; ++step)
+          proof.expand(shift_invert());
+        const RitzPairs more  = proof.ritz_pairs();
+        const auto      count = std::count_if(more.values.begin(), more.values.end(), [this](const Complex &nu) {
+          return transformation.inside(nu);
+        });
+        if (count <= state.n_inside)
+          return true;
+        if (options.report)
+          options.report("fresh directions show " + std::to_string(count - state.n_inside) + " eigenvalues or more that were missing");
+        n_wanted += static_cast<int>(count) - state.n_inside;
+        inject(n_fresh);
+        return false;
       }
 
       int width() const
@@ -381,16 +401,24 @@ namespace Squeal
       double                       tolerance; ///< on the estimate of the residual
       RitzPairs                    ritz;
       Convergence                  state;
-      bool                         exhausted         = false; ///< the basis spans all states
-      int                          steps_since_fresh = -1;    ///< -1: no fresh directions yet
+      bool                         exhausted = false; ///< the basis spans all states
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
+      CompactKrylov::Operator shift_invert() const
+      {
+        return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
+      }
+
+      /// Different ones at every call.
+      MultiVector fresh_vectors(const int n)
+      {
+        return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);
+      }
+
       int inject(const int n_directions)
       {
-        if (n_directions == 0)
-          return 0;
-        return krylov.inject(random_vectors(transformation.pencil.mass->map(), n_directions, options.seed + 7919 * n_injections++));
+        return krylov.inject(fresh_vectors(n_directions));
       }
 
       int n_injections = 0;
@@ -408,13 +436,18 @@ namespace Squeal
       {
         search.grow(std::min(size, search.largest_basis()));
         search.assess();
-        if (search.state.complete && search.proven())
+        if (search.state.complete)
           {
             QuadraticModes modes = extract(pencil, search.transformation, search.krylov, search.ritz, options);
             const double   worst =
               modes.residuals.empty() ? 0. : *std::max_element(modes.residuals.begin(), modes.residuals.end());
             if (worst <= options.tolerance)
               {
+                if (!search.proven())
+                  {
+                    size = search.krylov.dimension() + n_proving_steps * search.width();
+                    continue;
+                  }
                 modes.n_solves   = search.transformation.n_solves;
                 modes.n_restarts = search.n_restarts;
                 modes.n_basis    = search.n_basis_largest;

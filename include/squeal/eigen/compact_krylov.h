@@ -84,6 +84,13 @@ namespace Squeal
     void restart(const RitzPairs &ritz, int n_kept);
 
     /**
+     * A process of its own that starts from the Schur vectors of the first
+     * @p n_locked Ritz values, which have converged, and an empty active
+     * block: what is injected there looks for what is missing.
+     */
+    CompactKrylov deflated(const RitzPairs &ritz, int n_locked) const;
+
+    /**
      * Upper parts of S x, n × k, for the Ritz vectors x in the columns
      * @p positions of the eigenvectors. One more application of S, free of
      * cost because S V is known, damps what S maps to little.

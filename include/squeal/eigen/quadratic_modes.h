@@ -31,7 +31,7 @@ namespace Squeal
     double tolerance  = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
     int    block_size = 4;    ///< vectors per block solve
 
-    /// Random vectors added to the block halfway: eigenvalues with more members than the block are completed by them.
+    /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
     int n_fresh_directions = 4;
 
     int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: from the number of modes
@@ -75,10 +75,14 @@ namespace Squeal
    * the end of the band. Without damping, ν = 1/(λ² - s²) and
    * ν u = -Q(s)⁻¹ M u on vectors of length n: λ → -λ holds exactly.
    *
-   * The iteration ends when all Ritz values inside the radius have converged,
-   * some have beyond it, and fresh random directions have been part of the
-   * block for a while without adding a value. The residuals are then computed
-   * from the pencil; if one misses the tolerance, the iteration goes on.
+   * The iteration ends when all Ritz values inside the radius have converged
+   * and some have beyond it. The residuals are then computed from the pencil;
+   * if one misses the tolerance, the iteration goes on. A short second process
+   * from fresh directions, with the values found deflated, then looks for
+   * missing ones; if it sees any, these directions join the block and the
+   * iteration goes on. It sees what lies well inside the radius: a missing
+   * member of a cluster at the very end of the band may escape, for which the
+   * block size should be at least the number of members.
    *
    * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
    *
