@@ -122,6 +122,6 @@ def run_parameter(directory, name, given=None):
 
 
 def in_band(eigenvalues, band):
-    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones, zero but for rounding, do not count."""
+    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones and rigid-body modes do not count."""
     frequencies = eigenvalues.imag / (2 * math.pi)
-    return (frequencies > 1e-8 * band) & (frequencies <= band)
+    return (frequencies > 1e-5 * band) & (frequencies <= band)

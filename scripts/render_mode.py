@@ -131,24 +131,27 @@ def colour_field(grid, field):
 
     The size of a mode is arbitrary, so displacements are drawn as shares of the largest amplitude.
     """
-    values = values_of(grid, field)
-    largest = np.sqrt(np.sum(values_of(grid, "displacement_real") ** 2 + values_of(grid, "displacement_imag") ** 2, axis=1)).max()
-    if field == "phase":
-        return np.degrees(values), "phase [degree]", (-180, 180), TWILIGHT
+    mode = values_of(grid, "displacement_real") + 1j * values_of(grid, "displacement_imag")
+    amplitude = np.linalg.norm(mode, axis=1)
+    largest = amplitude.max() or 1.0
     if field == "amplitude":
-        return values / (largest or 1), "amplitude, share of the largest", (0, 1), VIRIDIS
-    if values.ndim == 1:
+        return amplitude / largest, "amplitude, share of the largest", (0, 1), VIRIDIS
+    if field not in ("displacement_real", "displacement_imag", "phase"):
+        values = values_of(grid, field)
+        values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
         return values, field.replace("_", " "), nice_range(values), VIRIDIS if values.min() >= 0 else RED_BLUE
-    # Of a displacement the component that moves most tells the shape, with its sign.
+    # The component that moves most, with its sign or phase, tells the shape.
     points = vtk_to_numpy(grid.GetPoints().GetData())
     azimuth = np.arctan2(points[:, 1], points[:, 0])
-    components = {"axial": values[:, 2],
-                  "radial": values[:, 0] * np.cos(azimuth) + values[:, 1] * np.sin(azimuth),
-                  "circumferential": values[:, 1] * np.cos(azimuth) - values[:, 0] * np.sin(azimuth)}
-    name = max(components, key=lambda key: np.sum(components[key] ** 2))
-    part = {"displacement_real": "real part", "displacement_imag": "imaginary part"}.get(field, field)
-    values = components[name] / (largest or 1)
-    return values, f"{name} displacement, {part}, share of the largest amplitude", nice_range(np.append(values, -values)), RED_BLUE
+    components = {"axial": mode[:, 2],
+                  "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
+                  "circumferential": mode[:, 1] * np.cos(azimuth) - mode[:, 0] * np.sin(azimuth)}
+    name = max(components, key=lambda key: np.sum(abs(components[key]) ** 2))
+    if field == "phase":
+        return np.degrees(np.angle(components[name])), f"phase of the {name} displacement [degree]", (-180, 180), TWILIGHT
+    values, part = (components[name].real, "real") if field == "displacement_real" else (components[name].imag, "imaginary")
+    values = values / largest
+    return values, f"{name} displacement, {part} part, share of the largest", nice_range(np.append(values, -values)), RED_BLUE
 
 
 def nice_range(values):

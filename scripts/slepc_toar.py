@@ -29,12 +29,12 @@ def available():
 
 
 class Toar:
-    """One solution: the eigenvalues nearest zero, their vectors, and the times it took.
+    """One solution: the eigenvalues nearest a real shift, their vectors, and the times it took.
 
     A basis of one and a half times the eigenvalues wanted was faster than SLEPc's default of twice as many.
     """
 
-    def __init__(self, problem, n_eigenvalues, tolerance=1e-12, basis=None):
+    def __init__(self, problem, n_eigenvalues, shift=0.0, tolerance=1e-12, basis=None):
         from petsc4py import PETSc
         from slepc4py import SLEPc
 
@@ -53,7 +53,7 @@ class Toar:
         solver.setProblemType(SLEPc.PEP.ProblemType.GENERAL)
         solver.setType(SLEPc.PEP.Type.TOAR)
         solver.setWhichEigenpairs(SLEPc.PEP.Which.TARGET_MAGNITUDE)
-        solver.setTarget(0.0)
+        solver.setTarget(shift)
         solver.setScale(SLEPc.PEP.Scale.SCALAR)
         solver.setDimensions(n_eigenvalues, min(basis or 3 * n_eigenvalues // 2 + 1, 2 * problem.size))
         solver.setTolerances(tol=tolerance, max_it=1000)
@@ -86,14 +86,14 @@ class Toar:
             operator.destroy()
 
 
-def solve_band(problem, band, n_modes):
+def solve_band(problem, band, n_modes, shift=0.0):
     """All eigenvalues of the band (and their vectors): asks for more until the largest one lies beyond it."""
     n_eigenvalues = 2 * n_modes + 4
     while True:
-        solution = Toar(problem, min(n_eigenvalues, 2 * problem.size))
+        solution = Toar(problem, min(n_eigenvalues, 2 * problem.size), shift)
         if solution.eigenvalues.size == 0:
             raise RuntimeError("SLEPc found no eigenvalue.")
-        if abs(solution.eigenvalues).max() > 2 * math.pi * band or n_eigenvalues >= 2 * problem.size:
+        if abs(solution.eigenvalues - shift).max() > 2 * math.pi * band + abs(shift) or n_eigenvalues >= 2 * problem.size:
             break
         n_eigenvalues = n_eigenvalues * 3 // 2
     listed = exported_matrices.in_band(solution.eigenvalues, band)
@@ -128,7 +128,7 @@ def main():
 
     walls = []
     for run in range(arguments.runs):
-        solution = Toar(problem, 2 * arguments.modes + 4, arguments.tolerance, arguments.basis)
+        solution = Toar(problem, 2 * arguments.modes + 4, tolerance=arguments.tolerance, basis=arguments.basis)
         listed = exported_matrices.in_band(solution.eigenvalues, band)
         errors = problem.backward_errors(solution.eigenvalues[listed], solution.vectors[:, listed])
         reach = abs(solution.eigenvalues).max() / (2 * math.pi)
