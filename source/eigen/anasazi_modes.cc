@@ -104,16 +104,16 @@ namespace Squeal
     parameters.set("Block Size", block_size);
     parameters.set("Num Blocks", n_blocks);
     parameters.set("Maximum Restarts", 50);
-    parameters.set("Step Size", getenv("ASTEP") ? atoi(getenv("ASTEP")) : 3);
+    // Blocks between two looks at convergence, each a dense Schur form of all blocks so far.
+    parameters.set("Step Size", 4);
     parameters.set("Convergence Tolerance", request.tolerance);
     parameters.set("Relative Convergence Tolerance", true);
-    parameters.set("Orthogonalization", getenv("AORTHO") ? getenv("AORTHO") : "SVQB");
+    parameters.set("Orthogonalization", "DGKS");
     try
       {
         Anasazi::BlockKrylovSchurSolMgr<double, Vectors, Operator> solver(problem, parameters);
         // Whether all converged is seen by counting what was found.
         solver.solve();
-        if (getenv("AVERB")) printf("iterations %d of blocks %d\n", solver.getNumIters(), n_blocks);
       }
     catch (const std::exception &error)
       {

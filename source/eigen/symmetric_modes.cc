@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 namespace Squeal
 {
@@ -51,8 +52,8 @@ namespace Squeal
         if (count.n_modes > 0)
           {
             RitzPairs pairs = find_all();
-            refine(pairs);
-            modes = accept(pairs);
+            const Residuals result = refine(pairs);
+            modes                  = accept(pairs, result);
           }
         modes.n_counted = count.n_modes;
         return modes;
@@ -107,12 +108,9 @@ namespace Squeal
                     continue;
                   }
               }
-            if (lift_limit(pairs))
+            if (lift_limit())
               continue;
-            throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) +
-                                " exist below " + std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
-                              options.what,
-                              "choose the other solver of the real modes, or move the end of the band away from a cluster of modes");
+            fail_incomplete(n_found);
           }
         return pairs;
       }
@@ -149,7 +147,7 @@ namespace Squeal
        * Where a mode lies on the limit to rounding, count and search may see it
        * on different sides: counts again a little higher. Whether it did.
        */
-      bool lift_limit(const RitzPairs &)
+      bool lift_limit()
       {
         if (lifted)
           return false;
@@ -162,78 +160,82 @@ namespace Squeal
         return true;
       }
 
-      /// Steps of inverse iteration until rounding or the tolerance is reached.
-      void refine(RitzPairs &pairs)
+      /// Residuals of Ritz pairs, and how they compare with what is accepted.
+      struct Residuals
       {
-        for (int step = 0; step < 3; ++step)
-          {
-            const std::vector<double> excess = residual_excess(pairs);
-            if (*std::max_element(excess.begin(), excess.end()) <= 1.)
-              return;
-            MultiVector       W(pairs.vectors->Map(), pairs.vectors->NumVectors());
-            const ShiftInvert A(factors(), M, nullptr);
-            A.apply(*pairs.vectors, W);
-            pairs = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
-          }
-      }
+        std::vector<double> values;        ///< as SymmetricModes defines them
+        double              excess = 0.;   ///< largest ratio of a residual to what is accepted
+        int                 worst  = 0;    ///< the mode where it occurs
+      };
 
-      /// Residuals as SymmetricModes defines them; @p rounding receives what is unavoidable.
-      std::vector<double> residuals(const RitzPairs &pairs, std::vector<double> &rounding) const
+      Residuals residuals(const RitzPairs &pairs) const
       {
-        const int         n_modes = pairs.values.size();
-        const MultiVector KV = K * *pairs.vectors, MV = M * *pairs.vectors;
-        DenseMatrix       values(n_modes, n_modes);
+        const int           n_modes = pairs.values.size();
+        const MultiVector   KV = K * *pairs.vectors, MV = M * *pairs.vectors;
+        MultiVector         R(KV);
         for (int j = 0; j < n_modes; ++j)
-          values(j, j) = is_rigid(pairs.values[j]) ? 0. : pairs.values[j];
-        MultiVector R(KV);
-        multiply_add(-1., MV, values, 1., R);
+          if (!is_rigid(pairs.values[j]))
+            for (int i = 0; i < R.MyLength(); ++i)
+              R[j][i] -= pairs.values[j] * MV[j][i];
 
-        const std::vector<double> norm_R = column_norms(R), norm_K = column_norms(KV), norm_M = column_norms(MV),
-                                  norm = column_norms(*pairs.vectors);
-        const double eps    = std::numeric_limits<double>::epsilon();
-        const double norm_inf = K.NormInf();
+        const std::vector<double> norm_R = column_norms(R), norm_KV = column_norms(KV), norm_MV = column_norms(MV),
+                                  norm_V = column_norms(*pairs.vectors);
+        const double norm_K              = K.NormInf();
 
-        std::vector<double> residuals(n_modes);
-        rounding.resize(n_modes);
+        Residuals residuals;
         for (int j = 0; j < n_modes; ++j)
           {
-            const double scale = is_rigid(pairs.values[j]) ? count.limit * norm_M[j] : norm_K[j];
-            residuals[j]       = norm_R[j] / scale;
-            rounding[j]        = 10. * eps * norm_inf * norm[j] / scale;
+            const double scale    = is_rigid(pairs.values[j]) ? count.limit * norm_MV[j] : norm_KV[j];
+            const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
+            residuals.values.push_back(norm_R[j] / scale);
+            const double excess = residuals.values[j] / std::max(options.tolerance, rounding);
+            // Written so that NaN is the worst.
+            if (!(excess <= residuals.excess))
+              {
+                residuals.excess = excess;
+                residuals.worst  = j;
+              }
           }
         return residuals;
       }
 
-      /// Residuals divided by what is accepted.
-      std::vector<double> residual_excess(const RitzPairs &pairs) const
+      /// Inverse iteration, block-wise, until the residuals are accepted.
+      Residuals refine(RitzPairs &pairs)
       {
-        std::vector<double> rounding, excess = residuals(pairs, rounding);
-        for (std::size_t j = 0; j < excess.size(); ++j)
-          excess[j] /= std::max(options.tolerance, rounding[j]);
-        return excess;
+        Residuals result = residuals(pairs);
+        for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
+          {
+            MultiVector       W(pairs.vectors->Map(), pairs.vectors->NumVectors());
+            const ShiftInvert A(factors(), M, nullptr);
+            A.apply(*pairs.vectors, W);
+            RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
+            pairs.values = std::move(refined.values);
+            pairs.vectors.emplace(*refined.vectors);
+            result = residuals(pairs);
+          }
+        return result;
       }
 
-      SymmetricModes accept(const RitzPairs &pairs) const
+      SymmetricModes accept(const RitzPairs &pairs, const Residuals &result) const
       {
         const auto fail = [&](const std::string &message) {
           throw SolverError(message, options.what, "choose the other solver of the real modes, or a larger tolerance");
         };
         if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
-          fail(std::to_string(pairs.values.size()) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
-               std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz");
+          fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
         if (pairs.values.front() < -rigid_body_threshold * count.limit)
           fail("the stiffness is not positive semidefinite: there is an eigenvalue of " + std::to_string(pairs.values.front()) +
                " rad²/s²");
+        if (!(result.excess <= 1.))
+          {
+            std::ostringstream message;
+            message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of "
+                    << result.values[result.worst] << ", " << result.excess << " times what is accepted";
+            fail(message.str());
+          }
 
-        SymmetricModes      modes;
-        std::vector<double> rounding;
-        modes.residuals                  = residuals(pairs, rounding);
-        const std::vector<double> excess = residual_excess(pairs);
-        for (std::size_t j = 0; j < excess.size(); ++j)
-          if (!(excess[j] <= 1.))
-            fail("mode " + std::to_string(j + 1) + " of " + std::to_string(count.n_modes) + " has a relative residual of " +
-                 std::to_string(modes.residuals[j] * 1e12) + "e-12, more than the tolerance");
-
+        SymmetricModes modes;
+        modes.residuals   = result.values;
         modes.eigenvalues = pairs.values;
         for (double &value : modes.eigenvalues)
           if (is_rigid(value))
@@ -243,6 +245,14 @@ namespace Squeal
             }
         modes.vectors = std::make_shared<MultiVector>(*pairs.vectors);
         return modes;
+      }
+
+      [[noreturn]] void fail_incomplete(const int n_found) const
+      {
+        throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
+                            std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
+                          options.what,
+                          "choose the other solver of the real modes, or move the end of the band away from a cluster of modes");
       }
 
       bool is_rigid(const double value) const

@@ -171,7 +171,7 @@ namespace Squeal
   {
     const SparseMatrix &M = *system.frictionless.mass;
     ReducedModel        reduced(system);
-    reduced.extend(*orthonormalize(M, nullptr, starting_vectors(system, inverse, real_modes, mu), dependence_tolerance));
+    reduced.extend(orthonormalize(M, nullptr, starting_vectors(system, inverse, real_modes, mu), dependence_tolerance));
 
     for (int step = 0;; ++step)
       {
@@ -199,7 +199,7 @@ namespace Squeal
 
         const MultiVector candidates =
           compress(M, reduced.basis(), inaccurate_residuals(estimate, pairs, options.tolerance));
-        const auto fresh = orthonormalize(M, &reduced.basis(), candidates, dependence_tolerance);
+        const auto fresh = orthonormalize_if_any(M, &reduced.basis(), candidates, dependence_tolerance);
         if (!fresh || step == options.maximum_steps || reduced.size() + fresh->NumVectors() > options.maximum_basis)
           {
             std::ostringstream what;

@@ -1,0 +1,228 @@
+#include "matrices.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <gtest/gtest.h>
+
+#include <tuple>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  using Case = std::tuple<RealSolver, Distribution>;
+
+  class SymmetricModesBy : public ::testing::TestWithParam<Case>
+  {
+  protected:
+    SymmetricModesBy()
+    {
+      options.solver = std::get<0>(GetParam());
+      options.what   = "test";
+    }
+    Distribution distribution() const
+    {
+      return std::get<1>(GetParam());
+    }
+    SymmetricModesOptions options;
+  };
+  INSTANTIATE_TEST_SUITE_P(Solvers,
+                           SymmetricModesBy,
+                           ::testing::Combine(::testing::Values(RealSolver::anasazi, RealSolver::arpack),
+                                              ::testing::Values(Distribution::even, Distribution::first_process_empty)));
+
+  /// What every result must satisfy.
+  void check_modes(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModes &modes)
+  {
+    const int n_modes = modes.eigenvalues.size();
+    EXPECT_EQ(modes.n_counted, n_modes);
+    ASSERT_EQ(modes.residuals.size(), modes.eigenvalues.size());
+    EXPECT_TRUE(std::is_sorted(modes.eigenvalues.begin(), modes.eigenvalues.end()));
+    EXPECT_LE(modes.eigenvalues.back(), limit * (1 + 1e-7));
+    EXPECT_EQ(std::count(modes.eigenvalues.begin(), modes.eigenvalues.end(), 0.), modes.n_rigid_body);
+    ASSERT_EQ(modes.vectors->NumVectors(), n_modes);
+    EXPECT_LT(orthonormality_defect(M, *modes.vectors), 1e-12);
+
+    // Residuals anew, by Epetra's own operations.
+    for (int j = 0; j < n_modes; ++j)
+      {
+        const MultiVector x  = view(*modes.vectors, j, 1);
+        const MultiVector Kx = K * x, Mx = M * x;
+        MultiVector       r(Kx);
+        r.Update(-modes.eigenvalues[j], Mx, 1.);
+        const double scale = modes.eigenvalues[j] == 0. ? limit * column_norms(Mx)[0] : column_norms(Kx)[0];
+        EXPECT_LT(column_norms(r)[0], 1e-9 * scale) << "mode " << j;
+        EXPECT_NEAR(column_norms(r)[0] / scale, modes.residuals[j], 1e-12 + 0.1 * modes.residuals[j]);
+      }
+  }
+
+  void expect_values(const std::vector<double> &found, const std::vector<double> &expected, const double tolerance)
+  {
+    ASSERT_LE(found.size(), expected.size());
+    for (std::size_t j = 0; j < found.size(); ++j)
+      EXPECT_NEAR(found[j] / expected[j], 1., tolerance) << "mode " << j;
+  }
+} // namespace
+
+
+
+TEST_P(SymmetricModesBy, LaplacianOnACube)
+{
+  // Threefold and sixfold eigenvalues by symmetry, of known value.
+  const int    m     = 9;
+  const auto   K     = laplacian(m, 1, distribution());
+  const auto   M     = diagonal(K->RowMap(), [](int) { return 2.; });
+  const double limit = 0.95;
+  auto         exact = laplacian_eigenvalues(m, 1);
+  for (double &value : exact)
+    value /= 2.;
+
+  const SymmetricModes modes = symmetric_modes(*K, *M, limit, options);
+  EXPECT_EQ(modes.n_counted, std::lower_bound(exact.begin(), exact.end(), limit) - exact.begin());
+  EXPECT_GT(modes.n_counted, 20);
+  EXPECT_EQ(modes.n_rigid_body, 0);
+  check_modes(*K, *M, limit, modes);
+  expect_values(modes.eigenvalues, exact, 1e-12);
+}
+
+
+
+TEST_P(SymmetricModesBy, TwelvefoldAndTwentyfourfoldEigenvalues)
+{
+  // Twelve equal bodies with a simple mode, then threefold ones: 12- and
+  // 36-fold exactly, more than the block size; 24 more of a second kind.
+  const int          m = 5, n_copies = 12;
+  const auto         K     = laplacian(m, n_copies, distribution());
+  const auto         M     = diagonal(K->RowMap(), [](int) { return 1.; });
+  const double       limit = 1.7;
+  const auto         exact = laplacian_eigenvalues(m, n_copies);
+  const SymmetricModes modes = symmetric_modes(*K, *M, limit, options);
+  EXPECT_EQ(modes.n_counted, 12 + 36);
+  check_modes(*K, *M, limit, modes);
+  expect_values(modes.eigenvalues, exact, 1e-12);
+}
+
+
+
+TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
+{
+  const Body   body       = plate({{12, 8, 2}}, 0.02, 0., distribution());
+  const double limit      = std::pow(2. * M_PI * 20e3, 2);
+  const auto   modes      = symmetric_modes(*body.stiffness, *body.mass, limit, options);
+  EXPECT_EQ(modes.n_rigid_body, 6);
+  EXPECT_GT(modes.n_counted, 10);
+  EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
+  check_modes(*body.stiffness, *body.mass, limit, modes);
+
+  // The same with a shift of the caller's choice.
+  options.shift         = 0.2 * limit;
+  const auto by_shift   = symmetric_modes(*body.stiffness, *body.mass, limit, options);
+  ASSERT_EQ(by_shift.n_counted, modes.n_counted);
+  for (int j = 6; j < modes.n_counted; ++j)
+    EXPECT_NEAR(by_shift.eigenvalues[j] / modes.eigenvalues[j], 1., 1e-9);
+  // A translation is a combination of the rigid-body modes.
+  MultiVector translation(body.mass->RowMap(), 1);
+  for (int i = 0; i < translation.MyLength(); ++i)
+    translation[0][i] = body.mass->GRID(i) % 3 == 1;
+  const MultiVector rigid       = view(*modes.vectors, 0, 6);
+  const DenseMatrix coefficient = gram(rigid, *body.mass * translation);
+  EXPECT_NEAR(multiply(coefficient, coefficient, true)(0, 0) / gram(translation, *body.mass * translation)(0, 0), 1., 1e-10);
+}
+
+
+
+TEST_P(SymmetricModesBy, SmallSystemsAndBandsWithoutModes)
+{
+  for (const int m : {1, 2, 3})
+    {
+      const auto   K     = laplacian(m, 2, distribution());
+      const auto   M     = diagonal(K->RowMap(), [](int) { return 0.5; });
+      const double limit = 100.;
+      const auto   modes = symmetric_modes(*K, *M, limit, options);
+      EXPECT_EQ(modes.n_counted, 2 * m * m * m);
+      check_modes(*K, *M, limit, modes);
+
+      const auto none = symmetric_modes(*K, *M, 1e-3, options);
+      EXPECT_EQ(none.n_counted, 0);
+      EXPECT_TRUE(none.eigenvalues.empty());
+      EXPECT_EQ(none.vectors, nullptr);
+    }
+}
+
+
+
+TEST_P(SymmetricModesBy, EigenvalueOnTheLimitIsIncluded)
+{
+  // Above the size of dense solution; λ = 1 twelvefold.
+  const Epetra_Map map = rows(400, distribution());
+  const auto       K   = diagonal(map, [](const int i) { return i < 12 ? 1. : (i < 20 ? 0.1 * i : 5. + i); });
+  const auto       M   = diagonal(map, [](int) { return 1.; });
+  const auto       modes = symmetric_modes(*K, *M, 1., options);
+  EXPECT_EQ(modes.n_counted, 12);
+  EXPECT_NEAR(modes.eigenvalues.front(), 1., 1e-13);
+}
+
+
+
+TEST_P(SymmetricModesBy, IndefiniteStiffnessIsRefused)
+{
+  const auto L = laplacian(8, 1, distribution());
+  const auto M = diagonal(L->RowMap(), [](int) { return 1.; });
+  const auto K = add(1., *L, -1., *M);
+  EXPECT_THROW(symmetric_modes(*K, *M, 2., options), SolverError);
+  options.shift = 2.;
+  EXPECT_THROW(symmetric_modes(*K, *M, 2., options), SolverError);
+  EXPECT_THROW(symmetric_modes(*L, *M, -1., options), SolverError);
+}
+
+
+
+TEST(SymmetricModes, SolversLibrariesAndSeedsAgree)
+{
+  const Body   body  = plate({{14, 8, 2}}, 0.02, 1e10);
+  const double limit = std::pow(2. * M_PI * 15e3, 2);
+
+  std::vector<SymmetricModes> results;
+  for (const RealSolver solver : {RealSolver::anasazi, RealSolver::arpack})
+    for (const FactorizationLibrary library : {FactorizationLibrary::automatic, FactorizationLibrary::mumps})
+      for (const unsigned int seed : {1, 2})
+        {
+          SymmetricModesOptions options;
+          options.solver  = solver;
+          options.library = library;
+          options.seed    = seed;
+          results.push_back(symmetric_modes(*body.stiffness, *body.mass, limit, options));
+          check_modes(*body.stiffness, *body.mass, limit, results.back());
+        }
+  EXPECT_EQ(count_modes(*body.stiffness, *body.mass, limit, "test"), results.front().n_counted);
+  EXPECT_GT(results.front().n_counted, 10);
+  for (const SymmetricModes &modes : results)
+    {
+      ASSERT_EQ(modes.n_counted, results.front().n_counted);
+      expect_values(modes.eigenvalues, results.front().eigenvalues, 1e-10);
+
+      // The same space: all singular values of ΦᵀMΨ are one.
+      DenseMatrix       overlap = gram(*results.front().vectors, *body.mass * *modes.vectors);
+      const DenseMatrix squares = multiply(overlap, overlap, true);
+      EXPECT_LT(max_norm(add(squares, identity(modes.n_counted), -1.)), 1e-8);
+    }
+}
+
+
+
+TEST(SymmetricModes, CountAgreesWithDenseEigenvalues)
+{
+  const Body                body   = plate({{3, 2, 1}}, 0.02, 0.);
+  DenseMatrix               A      = to_dense(*body.stiffness);
+  const std::vector<double> values = symmetric_eigenvalues(A, to_dense(*body.mass));
+  for (int j = 5; j + 1 < static_cast<int>(values.size()); j += 3)
+    {
+      const double limit = 0.5 * (values[j] + values[j + 1]);
+      if (values[j + 1] - values[j] < 1e-6 * values[j + 1])
+        continue;
+      EXPECT_EQ(count_modes(*body.stiffness, *body.mass, limit, "test"), j + 1);
+    }
+}
