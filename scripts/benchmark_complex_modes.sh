@@ -8,7 +8,8 @@
 #   --runs N         repetitions (3)
 #   --core N         the core to run on (0)
 #   --step PATTERN   squeal's time is the number of seconds in the lines that match this extended regular
-#                    expression, added up ("complex modes")
+#                    expression, added up ("Factorisation|Real modes|Complex modes": the real
+#                    modes tell the program how many complex ones there are, or are its basis)
 #   -- COMMAND...    runs squeal and lets it print its steps (default: the run's own parameters again,
 #                    without fields)
 #
@@ -20,7 +21,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
 
-modes=66 runs=3 core=0 step="complex modes" directory=
+modes=66 runs=3 core=0 step="Factorisation|Real modes|Complex modes" directory=
 while (($# > 0)); do
   case $1 in
     --) shift; break ;;

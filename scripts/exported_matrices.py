@@ -22,6 +22,7 @@ import sys
 
 import numpy as np
 import scipy.io
+import scipy.linalg
 import scipy.sparse as sparse
 import scipy.sparse.linalg
 
@@ -121,7 +122,57 @@ def run_parameter(directory, name, given=None):
     return float(values[name])
 
 
+def merge(eigenvalues, vectors, tolerance=1e-8):
+    """Of pairs found in several runs each mode once: which to keep.
+
+    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept when its
+    vector does not depend on those kept before.
+    """
+    kept, left = [], list(np.argsort(eigenvalues.imag, kind="stable"))
+    unit = vectors / np.linalg.norm(vectors, axis=0)
+    while left:
+        cluster = [left[0]]
+        for candidate in left[1:]:
+            if eigenvalues[candidate].imag - eigenvalues[cluster[-1]].imag > tolerance * abs(eigenvalues[candidate]):
+                break
+            cluster.append(candidate)
+        left = left[len(cluster):]
+        # Eigenvalues of equal frequency may still differ in growth rate: -R and R at least.
+        while cluster:
+            equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
+            cluster = [i for i in cluster if i not in equal]
+            _, triangle, order = scipy.linalg.qr(unit[:, equal], mode="economic", pivoting=True)
+            rank = int(np.sum(abs(np.diagonal(triangle)) > 1e-3))
+            kept.extend(equal[i] for i in order[:rank])
+    return np.array(kept, dtype=int)
+
+
+def collect(solve, n_agreeing=2, n_runs=8):
+    """Eigenvalues and vectors of the band from runs with different starting vectors.
+
+    A Krylov method that starts from one vector may miss members of multiple eigenvalues, so runs are repeated, and what
+    they find is merged, until `n_agreeing` runs in a row (the first one counts) bring nothing new. solve(seed) gives a
+    pair or, where it failed, None.
+    """
+    pairs, agreeing = None, 0
+    for seed in range(1, n_runs + 1):
+        found = solve(seed)
+        if found is None:
+            continue
+        n_before = 0 if pairs is None else len(pairs[0])
+        if pairs is not None:
+            found = np.concatenate([pairs[0], found[0]]), np.hstack([pairs[1], found[1]])
+        keep = merge(*found)
+        pairs = found[0][keep], found[1][:, keep]
+        agreeing = agreeing + 1 if len(keep) == n_before else 1
+        if agreeing == n_agreeing:
+            return pairs
+    if pairs is None:
+        raise RuntimeError("The solver failed with every starting vector.")
+    raise RuntimeError("Further starting vectors keep bringing new modes.")
+
+
 def in_band(eigenvalues, band):
-    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones, zero but for rounding, do not count."""
+    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones and rigid-body modes do not count."""
     frequencies = eigenvalues.imag / (2 * math.pi)
-    return (frequencies > 1e-8 * band) & (frequencies <= band)
+    return (frequencies > 1e-5 * band) & (frequencies <= band)

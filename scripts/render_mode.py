@@ -23,9 +23,9 @@ try:
 except ImportError:
     sys.exit("VTK is missing: apt-get install python3-vtk9 (or scripts/setup.sh pictures)")
 
-# Anchors of colour maps that are readable with every kind of colour vision and in grey (the first two):
-# viridis and twilight of Matplotlib, RdBu of ColorBrewer.
-VIRIDIS = ("440154", "472d7b", "3b528b", "2c728e", "21918c", "28ae80", "5ec962", "addc30", "fde725")
+# Anchors of colour maps that are readable with every kind of colour vision: YlGnBu and RdBu of ColorBrewer, whose pale
+# ends leave what is at rest pale, and twilight of Matplotlib, which is cyclic.
+YELLOW_BLUE = ("ffffe5", "edf8b1", "c7e9b4", "7fcdbb", "41b6c4", "1d91c0", "225ea8", "253494", "081d58")
 TWILIGHT = ("e2d9e2", "9ebbc9", "6785be", "5e43a5", "2f1436", "741e4f", "b25652", "d0a28d", "e2d9e2")
 RED_BLUE = ("0a3a70", "2166ac", "4393c3", "92c5de", "d1e5f0", "f7f7f7", "fddbc7", "f4a582", "d6604d", "b2182b", "78061f")
 
@@ -33,7 +33,7 @@ SIZE = (1600, 1000)
 OVERSAMPLING = 2
 INK = (0.13, 0.13, 0.15)
 LARGEST_DISPLACEMENT = 0.08  # of the size of the bodies
-LARGEST_STRETCH = 0.5  # of an element edge
+SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # of the length of an element edge at rest
 VIEW_ANGLE = 24  # degree
 MARGIN = 1.03  # around the bodies
 
@@ -121,9 +121,15 @@ def automatic_scale(grid, displacement):
     edges.UseAllPointsOn()
     edges.Update()
     pairs = vtk_to_numpy(edges.GetOutput().GetLines().GetConnectivityArray()).reshape(-1, 2)
-    lengths = np.linalg.norm(points[pairs[:, 1]] - points[pairs[:, 0]], axis=1)
-    stretches = np.linalg.norm(displacement[pairs[:, 1]] - displacement[pairs[:, 0]], axis=1) / lengths
-    return min(scale, LARGEST_STRETCH / stretches.max()) if stretches.max() > 0 else scale
+    sides = points[pairs[:, 1]] - points[pairs[:, 0]]
+    changes = displacement[pairs[:, 1]] - displacement[pairs[:, 0]]
+    squares = np.sum(sides**2, axis=1)
+    shortening = (-np.sum(changes * sides, axis=1) / squares).max()
+    change = (np.linalg.norm(changes, axis=1) / np.sqrt(squares)).max()
+    for allowed, value in ((1 - SHORTEST_EDGE, shortening), (LARGEST_SHEAR, change)):
+        if value * scale > allowed:
+            scale = allowed / value
+    return scale
 
 
 def colour_field(grid, field):
@@ -131,24 +137,27 @@ def colour_field(grid, field):
 
     The size of a mode is arbitrary, so displacements are drawn as shares of the largest amplitude.
     """
-    values = values_of(grid, field)
-    largest = np.sqrt(np.sum(values_of(grid, "displacement_real") ** 2 + values_of(grid, "displacement_imag") ** 2, axis=1)).max()
-    if field == "phase":
-        return np.degrees(values), "phase [degree]", (-180, 180), TWILIGHT
+    mode = values_of(grid, "displacement_real") + 1j * values_of(grid, "displacement_imag")
+    amplitude = np.linalg.norm(mode, axis=1)
+    largest = amplitude.max() or 1.0
     if field == "amplitude":
-        return values / (largest or 1), "amplitude, share of the largest", (0, 1), VIRIDIS
-    if values.ndim == 1:
-        return values, field.replace("_", " "), nice_range(values), VIRIDIS if values.min() >= 0 else RED_BLUE
-    # Of a displacement the component that moves most tells the shape, with its sign.
+        return amplitude / largest, "amplitude, share of the largest", (0, 1), YELLOW_BLUE
+    if field not in ("displacement_real", "displacement_imag", "phase"):
+        values = values_of(grid, field)
+        values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+        return values, field.replace("_", " "), nice_range(values), YELLOW_BLUE if values.min() >= 0 else RED_BLUE
+    # The component that moves most, with its sign or phase, tells the shape.
     points = vtk_to_numpy(grid.GetPoints().GetData())
     azimuth = np.arctan2(points[:, 1], points[:, 0])
-    components = {"axial": values[:, 2],
-                  "radial": values[:, 0] * np.cos(azimuth) + values[:, 1] * np.sin(azimuth),
-                  "circumferential": values[:, 1] * np.cos(azimuth) - values[:, 0] * np.sin(azimuth)}
-    name = max(components, key=lambda key: np.sum(components[key] ** 2))
-    part = {"displacement_real": "real part", "displacement_imag": "imaginary part"}.get(field, field)
-    values = components[name] / (largest or 1)
-    return values, f"{name} displacement, {part}, share of the largest amplitude", nice_range(np.append(values, -values)), RED_BLUE
+    components = {"axial": mode[:, 2],
+                  "radial": mode[:, 0] * np.cos(azimuth) + mode[:, 1] * np.sin(azimuth),
+                  "circumferential": mode[:, 1] * np.cos(azimuth) - mode[:, 0] * np.sin(azimuth)}
+    name = max(components, key=lambda key: np.sum(abs(components[key]) ** 2))
+    if field == "phase":
+        return np.degrees(np.angle(components[name])), f"phase of the {name} displacement [degree]", (-180, 180), TWILIGHT
+    values, part = (components[name].real, "real") if field == "displacement_real" else (components[name].imag, "imaginary")
+    values = values / largest
+    return values, f"{name} displacement, {part} part, share of the largest", nice_range(np.append(values, -values)), RED_BLUE
 
 
 def nice_range(values):
@@ -289,9 +298,12 @@ def add_renderer(window, viewport, actors, direction, up):
     renderer.ResetCameraClippingRange()
 
     lights = vtk.vtkLightKit()
-    lights.SetKeyLightIntensity(0.85)
-    lights.SetKeyToFillRatio(1.8)
-    lights.SetKeyToBackRatio(4)
+    lights.SetKeyLightIntensity(0.68)
+    lights.SetKeyLightAngle(25, 15)  # elevation, azimuth from the eye
+    lights.SetKeyToHeadRatio(1.6)
+    lights.SetKeyToFillRatio(2.5)
+    for set_warmth in (lights.SetKeyLightWarmth, lights.SetFillLightWarmth, lights.SetHeadLightWarmth, lights.SetBackLightWarmth):
+        set_warmth(0.5)  # neutral: colours are to be read
     lights.AddLightsToRenderer(renderer)
 
 
