@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/version.h>
+#include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/stability_study.h>
 
@@ -134,6 +135,8 @@ Decides whether a disc rubbed by friction pins squeals.
 
 int main(int argc, char **argv)
 {
+  Squeal::use_native_blas_kernels(argv);
+
   std::string command;
   for (int i = 0; i < argc; ++i)
     command += (i > 0 ? " " : "") + std::string(argv[i]);
