@@ -48,7 +48,10 @@ namespace Squeal
           check_type(group, "Hexahedron 8", where);
           volumes.insert(is_disc ? volumes.begin() : volumes.end(), &group);
         }
-      else if (group.dimension == 2)
+
+    // Surfaces
+    for (const GmshMesh::Group &group : mesh.groups)
+      if (group.dimension == 2)
         {
           if (std::find(known_surfaces.begin(), known_surfaces.end(), group.name) == known_surfaces.end() &&
               std::find(additional_surfaces.begin(), additional_surfaces.end(), group.name) ==
