@@ -191,7 +191,7 @@ TEST(GenerateMesh, MeshIsNotWrittenToAMissingDirectory)
 {
   const HexMesh mesh = generate_mesh(one_pin());
   const File    file("mesh.msh");
-  EXPECT_THROW(write_msh(mesh, (file.directory / "missing" / "mesh.msh").string()), Error);
+  EXPECT_THROW(write_msh(mesh, (file.directory / "missing" / "mesh.msh").string()), FileError);
 }
 
 TEST(GenerateMesh, SolidGeometryIsTakenAsItIs)
