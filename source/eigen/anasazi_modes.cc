@@ -6,49 +6,58 @@
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
 #include <AnasaziEpetraAdapter.hpp>
 #include <Epetra_Comm.h>
+#include <Epetra_Import.h>
 #include <Epetra_Map.h>
 #include <Epetra_Operator.h>
 
 #include <algorithm>
 #include <functional>
-#include <vector>
 
 namespace Squeal
 {
   namespace
   {
     /**
-     * The rows as Anasazi sees them: processes without rows get one whose
-     * entries our operators keep at zero. Anasazi's vectors corrupt the memory
-     * where a process has none.
+     * The distribution in which Anasazi works: that of the matrices, or an even
+     * one if a process has no rows. Every process repeats Anasazi's dense work;
+     * with very unequal memory layouts it was seen to round, and so decide,
+     * differently, which ends in a crash.
      */
-    Epetra_Map padded(const Epetra_Map &map)
+    Epetra_Map working_map(const Epetra_Map &map)
     {
-      std::vector<int> elements(map.MyGlobalElements(), map.MyGlobalElements() + map.NumMyElements());
-      if (elements.empty())
-        elements.push_back(map.MaxAllGID() + 1 + map.Comm().MyPID());
-      return Epetra_Map(-1, elements.size(), elements.data(), map.IndexBase(), map.Comm());
+      int n_mine = map.NumMyElements(), fewest = 0;
+      map.Comm().MinAll(&n_mine, &fewest, 1);
+      if (fewest > 0)
+        return map;
+      return Epetra_Map(map.NumGlobalElements(), map.IndexBase(), map.Comm());
     }
 
-    /// A linear map on vectors of @p map as Anasazi sees it.
-    class PaddedOperator : public Epetra_Operator
+    /// A linear map on vectors of @p map as Anasazi sees it, on vectors of @p working_map.
+    class RedistributedOperator : public Epetra_Operator
     {
     public:
       using Action = std::function<void(const MultiVector &, MultiVector &)>;
 
-      PaddedOperator(const Epetra_Map &map, const Epetra_Map &padded_map, const Action &action)
+      RedistributedOperator(const Epetra_Map &map, const Epetra_Map &working_map, const Action &action)
         : map(map)
-        , padded_map(padded_map)
+        , working_map(working_map)
+        , same(map.SameAs(working_map))
+        , to_matrices(map, working_map)
+        , to_anasazi(working_map, map)
         , action(action)
       {}
 
       int Apply(const Epetra_MultiVector &X, Epetra_MultiVector &Y) const override
       {
-        if (map.NumMyElements() == 0)
-          Y.PutScalar(0.);
-        const MultiVector x(View, map, X.Pointers(), X.NumVectors());
-        MultiVector       y(View, map, Y.Pointers(), Y.NumVectors());
-        action(x, y);
+        if (same)
+          action(X, Y);
+        else
+          {
+            MultiVector x(map, X.NumVectors()), y(map, X.NumVectors());
+            x.Import(X, to_matrices, Insert);
+            action(x, y);
+            Y.Import(y, to_anasazi, Insert);
+          }
         return 0;
       }
 
@@ -78,20 +87,22 @@ namespace Squeal
       }
       const Epetra_Comm &Comm() const override
       {
-        return padded_map.Comm();
+        return working_map.Comm();
       }
       const Epetra_Map &OperatorDomainMap() const override
       {
-        return padded_map;
+        return working_map;
       }
       const Epetra_Map &OperatorRangeMap() const override
       {
-        return padded_map;
+        return working_map;
       }
 
     private:
-      const Epetra_Map map, padded_map;
-      const Action     action;
+      const Epetra_Map    map, working_map;
+      const bool          same;
+      const Epetra_Import to_matrices, to_anasazi;
+      const Action        action;
     };
   } // namespace
 
@@ -106,20 +117,19 @@ namespace Squeal
     const int n          = A.mass().NumGlobalRows();
     const int block_size = std::min(request.block_size, n);
 
-    const Epetra_Map &map        = A.mass().DomainMap();
-    const Epetra_Map  padded_map = padded(map);
-    const auto        wrapped    = [&](const PaddedOperator::Action &action) {
-      return Teuchos::RCP<Operator>(Teuchos::rcp(new PaddedOperator(map, padded_map, action)));
+    const Epetra_Map &map         = A.mass().DomainMap();
+    const Epetra_Map  anasazi_map = working_map(map);
+    const auto        wrapped     = [&](const RedistributedOperator::Action &action) {
+      return Teuchos::RCP<Operator>(Teuchos::rcp(new RedistributedOperator(map, anasazi_map, action)));
     };
 
     MultiVector start = random_vectors(map, block_size, request.seed);
     A.project(start);
-    const Teuchos::RCP<Vectors> padded_start = Teuchos::rcp(new Vectors(padded_map, block_size));
-    for (int j = 0; j < block_size; ++j)
-      std::copy(start[j], start[j] + start.MyLength(), (*padded_start)[j]);
+    const Teuchos::RCP<Vectors> start_block = Teuchos::rcp(new Vectors(anasazi_map, block_size));
+    start_block->Import(start, Epetra_Import(anasazi_map, map), Insert);
 
     const Teuchos::RCP<Problem> problem = Teuchos::rcp(
-      new Problem(wrapped([&](const MultiVector &X, MultiVector &Y) { A.apply(X, Y); }), padded_start));
+      new Problem(wrapped([&](const MultiVector &X, MultiVector &Y) { A.apply(X, Y); }), start_block));
     problem->setM(wrapped([&](const MultiVector &X, MultiVector &Y) { A.mass().Multiply(false, X, Y); }));
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
@@ -156,6 +166,9 @@ namespace Squeal
     const auto &solution = problem->getSolution();
     if (solution.numVecs == 0)
       return {};
-    return MultiVector(Copy, map, solution.Evecs->Pointers(), solution.numVecs);
+    const MultiVector found(View, *solution.Evecs, 0, solution.numVecs);
+    MultiVector       vectors(map, solution.numVecs);
+    vectors.Import(found, Epetra_Import(map, anasazi_map), Insert);
+    return vectors;
   }
 } // namespace Squeal
