@@ -30,7 +30,7 @@ namespace Squeal
     unsigned int nodes_per_pin_face   = 19;
     unsigned int pin_layers           = 4;
     unsigned int disc_layers          = 3;
-    double       element_size         = 0.0100; ///< in the plane of the disc [m]
+    double       element_size         = 0.0115; ///< in the plane of the disc [m]
     double       pairing_tolerance    = 1e-6;   ///< distance of the two nodes of a contact pair [m]
 
     void add_parameters(dealii::ParameterHandler &prm);

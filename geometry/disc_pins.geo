@@ -1,0 +1,144 @@
+// Plan of the built-in geometry: an annular disc and round pins on its two
+// faces. Squeal meshes this plan in two dimensions, fills the pins' circles
+// with a structured grid and extrudes disc and pins layer by layer; opened in
+// Gmsh by itself, the file shows the plan with the values below. Squeal sets
+// them from section "Geometry" of its parameter file. Units: m, degree.
+
+DefineConstant[
+  disc_inner_radius  = 0.1505,
+  disc_outer_radius  = 0.3155,
+  pin_diameter       = 0.0520,
+  nodes_per_pin_face = 19,
+  element_size       = 0.0115
+];
+If(!Exists(top_pin_radii))
+  top_pin_radii()  = {0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585};
+  top_pin_angles() = {-18.4, 0, 18.4, -18.4, 0, 18.4};
+EndIf
+If(!Exists(bottom_pin_radii))
+  bottom_pin_radii()  = {0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585};
+  bottom_pin_angles() = {-18.4, 0, 18.4, -18.4, 0, 18.4};
+EndIf
+
+// Three blocks of k x k elements fill a pin: 3 k (k + 1) + 1 nodes, 6 k of them
+// on the circle. Every element is halved after meshing, hence k intervals for
+// each third of a circle and twice the wanted element size.
+k    = Round((Sqrt(12 * nodes_per_pin_face - 3) - 3) / 6);
+size = 2 * element_size;
+
+Mesh.RecombineAll         = 1;
+Mesh.Algorithm            = 6;
+Mesh.SubdivisionAlgorithm = 1;
+Mesh.MeshSizeMax          = size;
+
+// Pins. A top and a bottom pin that overlap share a hole in the plan, nearest
+// first. Where they are not exactly opposite, the hole is halfway, and physical
+// points say where each of the two is; the mesh of the disc is sheared between
+// them.
+n_top     = #top_pin_radii();
+n_pins    = n_top + #bottom_pin_radii();
+tolerance = 1e-6 * pin_diameter;
+For pin In {1 : n_pins}
+  If(pin <= n_top)
+    radius~{pin} = top_pin_radii(pin - 1);
+    angle~{pin}  = top_pin_angles(pin - 1) * Pi / 180;
+  Else
+    radius~{pin} = bottom_pin_radii(pin - n_top - 1);
+    angle~{pin}  = bottom_pin_angles(pin - n_top - 1) * Pi / 180;
+  EndIf
+  x~{pin} = radius~{pin} * Cos(angle~{pin});
+  y~{pin} = radius~{pin} * Sin(angle~{pin});
+  twin~{pin} = 0;
+EndFor
+For pair In {1 : n_top}
+  nearest = pin_diameter;
+  For top In {1 : n_top}
+    For bottom In {n_top + 1 : n_pins}
+      distance = Hypot(x~{top} - x~{bottom}, y~{top} - y~{bottom});
+      If(!twin~{top} && !twin~{bottom} && distance < nearest - tolerance)
+        nearest = distance;
+        first   = top;
+        second  = bottom;
+      EndIf
+    EndFor
+  EndFor
+  If(nearest < pin_diameter)
+    twin~{first}  = second;
+    twin~{second} = first;
+  EndIf
+EndFor
+
+// Bore and rim
+centre = newp; Point(centre) = {0, 0, 0};
+For ring In {0 : 1}
+  r = (ring == 0) ? disc_inner_radius : disc_outer_radius;
+  p = newp;
+  For i In {0 : 2}
+    Point(p + i) = {r * Cos(2 * Pi * i / 3), r * Sin(2 * Pi * i / 3), 0, size};
+  EndFor
+  c = newc;
+  For i In {0 : 2}
+    Circle(c + i) = {p + i, centre, p + (i + 1) % 3};
+  EndFor
+  ring_curves~{ring}() = {c : c + 2};
+  loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
+EndFor
+
+// Holes: three arcs around each, made with the first pin of a pair
+holes() = {};
+For pin In {1 : n_pins}
+  other  = twin~{pin};
+  halved = 0;
+  hole_x~{pin} = x~{pin};
+  hole_y~{pin} = y~{pin};
+  If(other)
+    If(Hypot(x~{pin} - x~{other}, y~{pin} - y~{other}) > tolerance)
+      halved = 1;
+      mean_x = (x~{pin} + x~{other}) / 2;
+      mean_y = (y~{pin} + y~{other}) / 2;
+      scale  = (radius~{pin} + radius~{other}) / 2 / Hypot(mean_x, mean_y);
+      hole_x~{pin} = scale * mean_x;
+      hole_y~{pin} = scale * mean_y;
+    EndIf
+  EndIf
+
+  If(other && other < pin)
+    pin_curves~{pin}() = pin_curves~{other}();
+  Else
+    For before In {1 : pin - 1}
+      If(Hypot(hole_x~{pin} - hole_x~{before}, hole_y~{pin} - hole_y~{before}) < pin_diameter)
+        Error("Top and bottom pins overlap in such a way that no one-to-one pairing of them leaves room in the plan. Move the pins of one side, or draw a plan of your own");
+      EndIf
+    EndFor
+    p = newp;
+    Point(p) = {hole_x~{pin}, hole_y~{pin}, 0};
+    For i In {0 : 2}
+      a = Atan2(hole_y~{pin}, hole_x~{pin}) + 2 * Pi * i / 3;
+      Point(p + 1 + i) = {hole_x~{pin} + pin_diameter / 2 * Cos(a), hole_y~{pin} + pin_diameter / 2 * Sin(a), 0, size};
+    EndFor
+    c = newc;
+    For i In {0 : 2}
+      Circle(c + i) = {p + 1 + i, p, p + 1 + (i + 1) % 3};
+    EndFor
+    Transfinite Curve{c : c + 2} = k + 1;
+    pin_curves~{pin}() = {c : c + 2};
+    l = newll; Curve Loop(l) = {c : c + 2};
+    holes() += l;
+  EndIf
+
+  If(pin <= n_top)
+    name = Sprintf("pin_top_%g", pin);
+  Else
+    name = Sprintf("pin_bottom_%g", pin - n_top);
+  EndIf
+  Physical Curve(Str(name)) = {pin_curves~{pin}()};
+  If(halved)
+    p = newp; Point(p) = {x~{pin}, y~{pin}, 0};
+    Physical Point(Str(name)) = {p};
+  EndIf
+EndFor
+
+s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
+Physical Surface("disc")    = {s};
+Physical Curve("disc_bore") = {ring_curves_0()};
+Physical Curve("disc_rim")  = {ring_curves_1()};

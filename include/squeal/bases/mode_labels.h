@@ -1,0 +1,39 @@
+#pragma once
+
+#include <squeal/contact/contact_interface.h>
+#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/model/model.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Names of disc modes from their Fourier content about the axis (section 4.1
+   * of the paper): A, R or C for dominant axial, radial or circumferential
+   * kinetic energy, then nodal circles m and nodal diameters n: `A0-4`. Of each
+   * displacement component the content of a harmonic n is the energy of its
+   * least-squares projection on { r^k cos nθ, r^k sin nθ }, k = 0 ... 4, weighted
+   * by nodal masses; nodal circles are the sign changes of the radial profile
+   * of the dominant harmonic.
+   *
+   * @param modes        n_free × k displacements
+   * @param nodal_masses n_nodes, lumped [kg]
+   */
+  std::vector<std::string> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes);
+
+  /**
+   * Names of pin modes: F flexural, T torsional, L longitudinal about the axis
+   * through the centre of each pin's contact nodes along its normal, by the
+   * larger energy, numbered in ascending order of frequency: the first two F
+   * modes of every pin are F1. Modes must come in that order.
+   */
+  std::vector<std::string> pin_labels(const Model            &model,
+                                      const ContactInterface &interface,
+                                      const std::vector<double> &nodal_masses,
+                                      const DenseMatrix      &modes);
+
+  /// Suffix ` -` and ` +`, in order of appearance, to labels that occur exactly twice.
+  void mark_doublets(std::vector<std::string> &labels);
+} // namespace Squeal

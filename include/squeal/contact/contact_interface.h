@@ -1,0 +1,48 @@
+#pragma once
+
+#include <squeal/model/model.h>
+#include <squeal/parameters/operation.h>
+
+#include <array>
+#include <vector>
+
+namespace Squeal
+{
+  /// A pair of coincident nodes, one of the disc and one of a pin, with its local frame.
+  struct ContactNode
+  {
+    unsigned int          disc_node, pin_node; ///< numbers among Model::nodes()
+    unsigned int          pin;                 ///< component of the pin node
+    std::array<double, 3> position;            ///< [m]
+    std::array<double, 3> normal;              ///< n: outward unit normal of the disc
+    std::array<double, 3> sliding;             ///< t: direction in which the disc moves relative to the pin
+    std::array<double, 3> radial;              ///< b = n × t
+    double                area;                ///< share of the contact area [m²]
+
+    /// Distance from the disc's axis [m].
+    double axis_distance() const;
+
+    /// Side of the disc: +1 where the normal points along +z, -1 elsewhere.
+    int side() const;
+  };
+
+  /// The contact nodes, the same on every process.
+  using ContactInterface = std::vector<ContactNode>;
+
+  /**
+   * Pairs the nodes of `disc_contact` and `pin_contact`. The normal of a node
+   * is the area average over the disc's contact faces that meet there; t is the
+   * direction of ±e_θ in the tangent plane.
+   *
+   * Throws MeshError if nodes have no partner within @p tolerance [m], if a
+   * node would belong to two pairs, or if a contact node is clamped.
+   */
+  ContactInterface pair_contact_nodes(const Model &model, Rotation rotation, double tolerance);
+
+  /**
+   * Viscous contact damping along b of each contact node [N s/m] if every node
+   * of a side carries the same share R_n0 of the load: μ R_n0 / w_0
+   * (consistent) or R_n0 / w_0 (published), w_0 = Ω r. Zeros for `none`.
+   */
+  std::vector<double> radial_dissipation_of_equal_shares(const ContactInterface &interface, const OperationParameters &operation);
+} // namespace Squeal

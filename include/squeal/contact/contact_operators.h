@@ -1,0 +1,47 @@
+#pragma once
+
+#include <squeal/contact/contact_interface.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <memory>
+
+namespace Squeal
+{
+  /**
+   * Relative displacements of the contact nodes and the kernel of the contact
+   * constraints (section 2.3 of the paper):
+   *
+   *   P_n u = n·(u_D − u_P),  P_t u = t·(u_D − u_P),  P_b u = b·(u_D − u_P)   n_c × n each
+   *   T_c spans ker P_n                                                        n × (n − n_c)
+   *
+   * In T_c one displacement component of each pin node, the one nearest to the
+   * normal, follows from the others, so that T_c selects dofs where the
+   * normal is a coordinate axis.
+   */
+  struct ContactOperators
+  {
+    std::shared_ptr<const SparseMatrix> normal;     ///< P_n
+    std::shared_ptr<const SparseMatrix> tangential; ///< P_t
+    std::shared_ptr<const SparseMatrix> radial;     ///< P_b
+    std::shared_ptr<const SparseMatrix> kernel;     ///< T_c
+  };
+
+  ContactOperators contact_operators(const Model &model, const ContactInterface &interface);
+
+  /// Dofs of some components, with their contact nodes free or sliding on a rigid face.
+  enum class ContactBoundary
+  {
+    free,   ///< no constraint at the contact nodes
+    sliding ///< fixed along n, free in the tangent plane
+  };
+
+  /**
+   * Matrix whose columns span the admissible displacements of the components
+   * for which @p selected says yes, the others being at rest: n × n_components.
+   * It selects the dofs of the components; with `sliding` n·u = 0 holds at their contact nodes.
+   */
+  std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
+                                                 const ContactInterface &interface,
+                                                 const std::vector<bool> &selected,
+                                                 ContactBoundary          boundary);
+} // namespace Squeal

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <squeal/assembly/second_order_system.h>
+#include <squeal/contact/contact_operators.h>
+
+#include <complex>
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * The bodies coupled by contact, with friction as a term of rank n_c that is
+   * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
+   * compression and t the direction of the disc's motion relative to the pin):
+   *
+   *   (λ² (M_c − μ A V_M) + λ C_c + K_c − μ A V_K) φ_c = 0
+   *
+   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + P_bᵀ diag(c_b) P_b) T_c
+   *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_M = ½ P_n M T_c
+   */
+  struct CoupledSystem
+  {
+    SecondOrderSystem                   frictionless;      ///< M_c, C_c (null: no damping), K_c; n × n
+    std::shared_ptr<const SparseMatrix> friction_forces;   ///< A, n × n_c
+    std::shared_ptr<const SparseMatrix> normal_stiffness;  ///< V_K, n_c × n
+    std::shared_ptr<const SparseMatrix> normal_mass;       ///< V_M, n_c × n
+    std::shared_ptr<const SparseMatrix> kernel;            ///< T_c, n_uncoupled × n
+
+    /// Distribution of the coupled dofs.
+    const Epetra_Map &map() const;
+  };
+
+  /**
+   * C_b = P_bᵀ diag(c_b) P_b [N s/m] on the uncoupled dofs; null if all c_b vanish.
+   */
+  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const std::vector<double> &c_b);
+
+  /// Couples the @p system; @p contact_damping may be null.
+  CoupledSystem couple(const SecondOrderSystem                   &system,
+                       const ContactOperators                    &contact,
+                       const std::shared_ptr<const SparseMatrix> &contact_damping);
+
+  /// M_c − μ A V_M, C_c and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
+  SecondOrderSystem with_friction(const CoupledSystem &system, double mu);
+
+  /**
+   * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ² V_M u_c: normal contact
+   * reactions [N] (compression negative) of complex modes, n_c × k each part.
+   * Damping along b has no part in them.
+   */
+  void normal_reactions(const CoupledSystem                     &system,
+                        const std::vector<std::complex<double>> &lambda,
+                        const MultiVector                       &real_part,
+                        const MultiVector                       &imaginary_part,
+                        DenseMatrix                             &reaction_real,
+                        DenseMatrix                             &reaction_imaginary);
+} // namespace Squeal

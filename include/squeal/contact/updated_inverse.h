@@ -1,0 +1,53 @@
+#pragma once
+
+#include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/factorization.h>
+
+#include <memory>
+
+namespace Squeal
+{
+  /**
+   * Inverse of the pencil with friction at a real shift s ≥ 0,
+   *
+   *   Q(s) = S − μ A V,   S = K_c + s C_c + s² M_c,   V = V_K + s² V_M,
+   *
+   * from one Cholesky factor of the frictionless S (the Sherman-Morrison-
+   * Woodbury formula with the coupled tangential attachment modes X = S⁻¹ A):
+   *
+   *   Q(s)⁻¹ = S⁻¹ + μ X (I − μ V X)⁻¹ V S⁻¹
+   *
+   * The factor and X serve every μ; the n_c × n_c matrix is factorised for each.
+   */
+  class UpdatedInverse : public LinearOperator
+  {
+  public:
+    /// Factorises S and computes X; throws SolverError if S is not positive definite.
+    UpdatedInverse(const CoupledSystem &system, double shift, FactorizationLibrary library);
+
+    /// Friction coefficient of the following apply(); throws SolverError if Q(s) is singular there.
+    void set_friction_coefficient(double mu);
+
+    /// Y = Q(s)⁻¹ X.
+    void apply(const MultiVector &X, MultiVector &Y) const override;
+
+    /// Y = S⁻¹ X: the frictionless inverse.
+    void apply_frictionless(const MultiVector &X, MultiVector &Y) const;
+
+    const Epetra_Map &map() const override;
+
+    /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
+    const MultiVector &attachment_modes() const;
+
+    /// Entries of the Cholesky factor; 0 where the library does not tell.
+    double n_factor_entries() const;
+
+  private:
+    std::unique_ptr<Factorization>      factor;
+    std::shared_ptr<const SparseMatrix> V;
+    std::unique_ptr<MultiVector>        X;
+    DenseMatrix                         VX;
+    double                              friction_coefficient = 0.;
+    std::unique_ptr<DenseLU>            correction;
+  };
+} // namespace Squeal

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <complex>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace Squeal
+{
+  /// Eigenpairs of the projected operator of a CompactKrylov, by descending |ν|.
+  struct RitzPairs
+  {
+    std::vector<std::complex<double>> values; ///< ν; of a conjugate pair first the one with Im ν > 0
+    std::vector<double>               errors; ///< ‖S x - ν x‖₂ for ‖x‖₂ = 1
+
+    /// Real Schur form H = Z T Zᵀ, m × m, in LAPACK's order.
+    DenseMatrix schur_form, schur_vectors;
+    /// Eigenvectors of H, m × m in LAPACK's order: real and imaginary part of a conjugate pair in two adjacent columns.
+    DenseMatrix eigenvectors;
+    /// Column of T and of the eigenvectors that belongs to each value (the first one for both members of a pair).
+    std::vector<int> positions;
+  };
+
+  /**
+   * Block Krylov–Schur process in real arithmetic for an operator S on states
+   * x = [x_0; ...; x_{d-1}] of d vectors of length n, whose lower parts only
+   * shift:
+   *
+   *     S [x_0; x_1; ...] = [f(x_0, x_1, ...); x_0; ...; x_{d-2}].
+   *
+   * The linearisation of a polynomial eigenproblem of degree d = 2 has this
+   * form; d = 1 is the ordinary block Krylov–Schur method. The orthonormal
+   * basis of states is stored as V = (I_d ⊗ U) G with one orthonormal basis U,
+   * n × r, for all parts, and small coordinates G, d r × m: the two-level
+   * orthogonal Arnoldi process, with half the memory and a quarter of the
+   * inner products of a basis of full states. It keeps the relation
+   *
+   *     S V = V H + V_a B,
+   *
+   * where V_a, the active block, is what the next step is applied to.
+   *
+   * Sources: D. Lu, Y. Su, Z. Bai, SIAM J. Matrix Anal. Appl. 37 (2016)
+   * 195 (two levels); D. Kressner, J. E. Roman, Numer. Linear Algebra Appl.
+   * 21 (2014) 569 (compact restarts); G. W. Stewart, SIAM J. Matrix Anal.
+   * Appl. 23 (2001) 601 (Krylov–Schur).
+   */
+  class CompactKrylov
+  {
+  public:
+    /// f: receives the d parts of b states side by side, n × d b, and returns their images in @p image, n × b.
+    using Operator = std::function<void(const MultiVector &states, MultiVector &image)>;
+
+    /// An empty process of degree @p degree; @p n_reserved vectors are allocated at once.
+    CompactKrylov(const Epetra_Map &map, int degree, int n_reserved);
+
+    /**
+     * Widens the active block by the states [x; 0; ...] of the columns x of
+     * @p directions, so that eigenvectors which the block has no component of
+     * are found: first block of the process, and members of a multiple
+     * eigenvalue beyond the block size. Returns the number of directions that
+     * are new.
+     */
+    int inject(const MultiVector &directions);
+
+    /// Applies S to the active block, which becomes part of the basis. At most block_size() new active states remain.
+    void expand(const Operator &apply);
+
+    /// m, the number of basis states without the active block.
+    int dimension() const;
+
+    /// Number of active states; 0 if the basis spans an invariant subspace.
+    int block_size() const;
+
+    /// Number of vectors in U.
+    int n_vectors() const;
+
+    /// Eigenpairs of H. Throws SolverError if the QR algorithm fails.
+    RitzPairs ritz_pairs() const;
+
+    /// Reduces the basis to the Schur vectors of the first @p n_kept Ritz values (one more if that would split a pair).
+    void restart(const RitzPairs &ritz, int n_kept);
+
+    /**
+     * A process of its own that starts from the Schur vectors of the first
+     * @p n_locked Ritz values, which have converged, and an empty active
+     * block: what is injected there looks for what is missing.
+     */
+    CompactKrylov deflated(const RitzPairs &ritz, int n_locked) const;
+
+    /**
+     * Upper parts of S x, n × k, for the Ritz vectors x in the columns
+     * @p positions of the eigenvectors. One more application of S, free of
+     * cost because S V is known, damps what S maps to little.
+     */
+    MultiVector ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const;
+
+  private:
+    /// Orthonormalises @p X against U, appends what is new to U, and returns the coordinates of X in the new U, r × b.
+    DenseMatrix absorb(MultiVector &X, const std::vector<double> &magnitudes);
+
+    /// Appends the orthonormalised columns of @p states, d r × b in coordinates, to the active block; returns [VᵀX; R].
+    DenseMatrix append_active(const DenseMatrix &states, int n_basis);
+
+    /// Basis of all parts as a view.
+    MultiVector basis() const;
+
+    /// Makes room for @p n vectors in U.
+    void reserve(int n);
+
+    const Epetra_Map            *map;
+    int                          degree;
+    std::unique_ptr<MultiVector> U;
+    int                          r = 0; ///< vectors in U
+    int                          m = 0; ///< basis states
+    int                          b = 0; ///< active states
+    DenseMatrix                  G;     ///< d r × (m + b)
+    DenseMatrix                  H;     ///< [H; B], (m + b) × m
+  };
+} // namespace Squeal

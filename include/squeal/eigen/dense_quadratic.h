@@ -1,0 +1,40 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_matrix.h>
+
+#include <complex>
+#include <limits>
+#include <vector>
+
+namespace Squeal
+{
+  /// Eigenvalues of a small quadratic pencil with vectors on both sides.
+  struct DenseQuadraticModes
+  {
+    std::vector<std::complex<double>> values; ///< λ, 0 < Im λ ≤ largest_frequency, ascending by Im, then Re
+
+    ComplexDenseMatrix right; ///< φ, r × k: Q(λ) φ = 0, ‖φ‖₂ = 1, the entry of largest modulus real and positive
+    ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised alike
+
+    std::vector<double> real_values; ///< all real λ, ascending: overdamped, divergent or zero; no vectors
+  };
+
+  /**
+   * All eigenvalues of Q(λ) = λ² M + λ C + K, small dense real r × r matrices,
+   * with 0 < Im λ ≤ @p largest_frequency [rad/s], by the companion form
+   *
+   *     [ 0        I      ]
+   *     [ -M⁻¹ K   -M⁻¹ C ]  [φ; λ φ] = λ [φ; λ φ],
+   *
+   * or, without damping (null), -M⁻¹ K φ = λ² φ, for which λ → -λ holds
+   * exactly. λ is measured in units of √(‖K‖/‖M‖) (Fan, Lin, Van Dooren 2004);
+   * φ is taken from the larger half of the vector, ψ = M⁻ᵀ times the second
+   * half of the left one. The values get one two-sided Rayleigh correction
+   * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
+   * algorithm fails.
+   */
+  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
+                                            const DenseMatrix *damping,
+                                            const DenseMatrix &stiffness,
+                                            double             largest_frequency = std::numeric_limits<double>::infinity());
+} // namespace Squeal

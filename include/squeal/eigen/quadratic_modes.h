@@ -1,0 +1,102 @@
+#pragma once
+
+#include <squeal/linear_algebra/factorization.h>
+
+#include <complex>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Q(λ) = λ² M + λ C + K with real n × n matrices, none of which need be symmetric. They must outlive their use.
+  struct QuadraticPencil
+  {
+    const LinearOperator *mass;      ///< M
+    const LinearOperator *damping;   ///< C; null for none, which halves the work
+    const LinearOperator *stiffness; ///< K
+  };
+
+  /// What quadratic_modes() looks for, and how.
+  struct QuadraticModesOptions
+  {
+    double shift             = 0.; ///< s ≥ 0 [1/s]: the operator handed over is Q(s)⁻¹; s > 0 where K is singular
+    double largest_frequency = 0.; ///< wanted are the λ with 0 < Im λ ≤ this [rad/s]
+
+    /// The values found are complete for |Re λ| ≤ this times largest_frequency [-]; damping beyond it may be missed.
+    double largest_damping = 0.1;
+
+    int    expected   = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
+    double tolerance  = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
+    int    block_size = 4;    ///< vectors per block solve
+
+    /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
+    int n_fresh_directions = 4;
+
+    int          max_basis    = 0;  ///< largest number of basis vectors before a restart; 0: from the number of modes
+    int          max_restarts = 30; ///< after which non-convergence is reported
+    unsigned int seed         = 1;  ///< of the random first block
+
+    std::function<void(const std::string &)> report; ///< told the state of the iteration now and then; may be empty
+  };
+
+  /// Eigenpairs Q(λ) φ = 0 in a band, and what they cost.
+  struct QuadraticModes
+  {
+    std::vector<std::complex<double>> values; ///< λ with 0 < Im λ ≤ largest_frequency [rad/s], ascending by Im, then Re
+
+    /// φ = real + i imaginary, n × k: ‖φ‖₂ = 1, the entry of largest modulus real and positive.
+    std::shared_ptr<MultiVector> real_part, imaginary_part;
+
+    std::vector<double> residuals; ///< ‖Q(λ)φ‖₂ / ‖Kφ‖₂, computed with the pencil itself
+
+    /// Real λ ≠ 0 within the radius (overdamped or divergent), ascending; for these no vectors are kept.
+    std::vector<double> real_values;
+
+    /// Eigenvalues λ = 0 with their multiplicity: two for each rigid-body mode without damping.
+    int n_zero_values = 0;
+
+    double radius     = 0.; ///< all λ with |λ - s| (no damping: |λ² - s²|^½) below this were found [rad/s]
+    int    n_solves   = 0;  ///< vectors Q(s)⁻¹ was applied to
+    int    n_restarts = 0;
+    int    n_basis    = 0; ///< largest number of vectors held
+  };
+
+  /**
+   * All eigenpairs of a large real quadratic pencil up to a frequency, by a
+   * compact block Krylov–Schur process (CompactKrylov) for the inverse at a
+   * real shift s. With damping, λ = s + θ and ν = 1/θ,
+   *
+   *     Q(s+θ) = θ² M + θ (C + 2 s M) + Q(s),
+   *     ν [u; v] = [-Q(s)⁻¹ ((C + 2 s M) u + M v); u],   v = θ u,
+   *
+   * with θ measured in units of the radius, so that u and v are comparable at
+   * the end of the band. Without damping, ν = 1/(λ² - s²) and
+   * ν u = -Q(s)⁻¹ M u on vectors of length n: λ → -λ holds exactly.
+   *
+   * The iteration ends when all Ritz values inside the radius have converged
+   * and some have beyond it. The residuals are then computed from the pencil;
+   * if one misses the tolerance, the iteration goes on. A short second process
+   * from fresh directions, with the values found deflated, then looks for
+   * missing ones; if it sees any, these directions join the block and the
+   * iteration goes on. It sees what lies well inside the radius: a missing
+   * member of a cluster at the very end of the band may escape, for which the
+   * block size should be at least the number of members.
+   *
+   * @param inverse_at_shift Q(s)⁻¹ = (s² M + s C + K)⁻¹
+   *
+   * Throws SolverError, saying how many values converged and the worst
+   * residual, if max_restarts do not suffice or rounding errors keep the
+   * residuals above the tolerance.
+   */
+  QuadraticModes quadratic_modes(const QuadraticPencil       &pencil,
+                                 const LinearOperator        &inverse_at_shift,
+                                 const QuadraticModesOptions &options);
+
+  /// ‖Q(λ_j) φ_j‖₂ / ‖K φ_j‖₂ for each column of φ = real_part + i imaginary_part.
+  std::vector<double> residuals(const QuadraticPencil                   &pencil,
+                                const std::vector<std::complex<double>> &values,
+                                const MultiVector                       &real_part,
+                                const MultiVector                       &imaginary_part);
+} // namespace Squeal

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <squeal/geometry/hex_mesh.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// How well hexahedra are shaped.
+  struct MeshQuality
+  {
+    double       worst_scaled_jacobian; ///< 1 for a box, 0 for a flat corner, negative if inverted
+    unsigned int worst_element;         ///< index of the hexahedron it was found in
+    double       worst_edge_ratio;      ///< longest to shortest edge of one hexahedron, largest over all
+  };
+
+  /**
+   * Least scaled Jacobian that check_mesh() accepts. Where a round pin is
+   * filled by three blocks, each block has a corner on the circle whose angle
+   * is 180° - 60°/k, so that the scaled Jacobian sin(60°/k) is small by
+   * construction: 0.5 for 19 nodes, 0.26 for 61, 0.1 for k = 10 (331 nodes).
+   * These elements are harmless; the limit refuses those that are flat.
+   */
+  inline constexpr double smallest_scaled_jacobian = 0.02;
+
+  /**
+   * Scaled Jacobian: at each corner, the triple product of the three edges
+   * that meet there, each divided by its length; the smallest of the eight.
+   *
+   * Throws MeshError for an element below smallest_scaled_jacobian, saying
+   * where it is, and for a mesh without elements.
+   */
+  MeshQuality check_mesh(const HexMesh &mesh);
+
+  /**
+   * Throws MeshError, naming @p where, unless the mesh has the parts that
+   * every analysis needs: volumes `disc` and `pin_*`, surfaces `disc_contact`,
+   * `pin_contact` and `pin_clamp`, and those in @p additional_surfaces; no node
+   * shared by two volumes; and every named surface on the outside of volumes
+   * of its kind (`disc_*` on the disc, `pin_*` on pins).
+   */
+  void check_parts(const HexMesh                  &mesh,
+                   const std::vector<std::string> &additional_surfaces,
+                   const std::string              &where);
+} // namespace Squeal

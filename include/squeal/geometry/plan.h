@@ -1,0 +1,78 @@
+#pragma once
+
+#include <squeal/geometry/gmsh_session.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Disc and pins seen along the axis: quadrilaterals that cover the annulus,
+   * those under each pin, and the named parts of the annulus' boundary. A face
+   * may lie under a top and a bottom pin, also where the two are not exactly
+   * opposite: then both are displaced from their common place in the plan.
+   */
+  struct Plan
+  {
+    using Point = std::array<double, 2>;
+    using Edge  = std::array<unsigned int, 2>;
+    using Face  = std::array<unsigned int, 4>; ///< counter-clockwise
+
+    enum class Side
+    {
+      top,
+      bottom
+    };
+
+    struct Pin
+    {
+      std::string               name; ///< "pin_top..." or "pin_bottom..."
+      Side                      side;
+      std::vector<unsigned int> faces; ///< indices into Plan::faces, ascending
+      Point                     displacement; ///< from the place in the plan to that on the disc [m]
+    };
+
+    struct Curve
+    {
+      std::string       name;
+      std::vector<Edge> edges;
+    };
+
+    std::vector<Point> points; ///< [m]
+    std::vector<Face>  faces;
+    std::vector<Pin>   pins;
+    std::vector<Curve> curves;
+  };
+
+  /**
+   * The plan in a meshed two-dimensional model with these physical groups:
+   *
+   * - surface `disc`: the annulus, with or without what is under the pins;
+   * - surfaces `pin_top*`, `pin_bottom*`: the faces under that pin;
+   * - curves `pin_top*`, `pin_bottom*`: a closed curve around a hole of the
+   *   surfaces, which is filled by fill_with_o_grid();
+   * - points `pin_top*`, `pin_bottom*`: where the centre of the pin of that
+   *   name is on its side of the disc, if it is not the centre of its curve;
+   * - other curves: parts of the annulus' boundary.
+   *
+   * Throws MeshError, naming @p where, for other names and for a plan that
+   * does not fit together: other elements than four-node quadrilaterals,
+   * surfaces that are not joined, open curves, pins of one side that touch, a
+   * named curve inside the annulus, no pin.
+   */
+  Plan make_plan(const GmshMesh &mesh, const std::string &where);
+
+  /**
+   * Fills a closed polygon of 6 k nodes, counter-clockwise, with three blocks of
+   * k x k quadrilaterals around its centre: 3 k (k + 1) + 1 nodes in total. The
+   * first node and every 2 k-th after it lie at the end of a spoke. Appends the
+   * new nodes to @p points.
+   */
+  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop,
+                                           std::vector<Plan::Point>        &points);
+
+  /// Edges that belong to one of the given faces only, in the sense of rotation of that face.
+  std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);
+} // namespace Squeal

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <squeal/geometry/plan.h>
+
+namespace Squeal
+{
+  /**
+   * Moves nodes inside the disc and inside the pins until no badly shaped face
+   * gets better by moving one of its nodes. Nodes on the boundary of the
+   * annulus and on the outlines of pins stay.
+   *
+   * The shape at the corner between edges a and b is 2 a x b / (a² + b²): 1 for
+   * a square, 0 for a flat corner or an edge of length 0, negative if inverted.
+   * A node moves to where the least shape of the faces around it is greatest.
+   *
+   * Gmsh halves elements after meshing and then puts new nodes of round
+   * outlines on the circle; with few nodes on a circle and a neighbour close to
+   * it, the elements between them would be flat or inverted without this.
+   */
+  void smooth(Plan &plan);
+
+  /**
+   * Points of the plan as they are on one face of the disc: the pins of that
+   * side at their places, the boundary of the annulus where it was, and the
+   * rest displaced evenly in between and smoothed.
+   */
+  std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
+} // namespace Squeal

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <squeal/contact/coupled_system.h>
+#include <squeal/contact/updated_inverse.h>
+
+#include <complex>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Complex modes of the coupled system with friction in a band, however they
+   * were found: eigenvalues with 0 < Im λ ≤ the band's end, ascending in
+   * frequency, and coupled displacements φ_c with φᴴ M_c φ = 1.
+   */
+  struct ComplexModes
+  {
+    std::vector<std::complex<double>> lambda;                   ///< [rad/s]
+    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< n × k
+    std::vector<double>               residuals;                ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
+    std::vector<double>               energy_residuals;         ///< ε_res, eq. (16) of the paper [-]
+    std::vector<double>               estimated_errors;         ///< |δλ| / |λ| [-]; empty where the method gives none
+    int                               n_rigid_body = 0;         ///< modes with λ = 0
+    std::vector<double>               overdamped;               ///< real λ inside the band's radius [1/s]
+    std::string                       summary;                  ///< how they were found, one phrase
+  };
+
+  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.
+  MultiVector force_residuals(const CoupledSystem                     &system,
+                              double                                   mu,
+                              const std::vector<std::complex<double>> &lambda,
+                              const MultiVector                       &real_part,
+                              const MultiVector                       &imaginary_part,
+                              bool                                     left = false);
+
+  /**
+   * Normalises the modes to φᴴ M_c φ = 1 with the entry of largest modulus
+   * real, sorts them by frequency, and computes both residuals:
+   *
+   *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
+   *
+   * (eqs. (14) to (16) of the paper). Where K_c is singular R_U uses the shifted stiffness of @p inverse.
+   */
+  void finish_modes(const CoupledSystem &system, double mu, const UpdatedInverse &inverse, ComplexModes &modes);
+} // namespace Squeal

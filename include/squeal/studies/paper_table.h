@@ -1,0 +1,37 @@
+#pragma once
+
+#include <squeal/output/table.h>
+#include <squeal/parameters/operation.h>
+
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Labelled frequencies and eigenvalues of a run, as they are set beside the paper's.
+  struct TableOneResults
+  {
+    std::vector<std::string>          component_labels; ///< with the marks of doublets
+    std::vector<double>               component_frequencies; ///< [Hz]
+    std::vector<std::string>          coupled_labels;
+    std::vector<double>               coupled_frequencies; ///< [Hz]
+    std::vector<std::string>          complex_labels;
+    std::vector<std::complex<double>> lambda; ///< [rad/s]
+  };
+
+  /// Root mean square of the relative differences of frequencies [-], and of how many.
+  struct Agreement
+  {
+    double       component = 0., coupled = 0.;
+    unsigned int n_component = 0, n_coupled = 0;
+  };
+
+  /**
+   * The paper's Table 1 (D. Brizard, O. Chiello, J.-J. Sinou, X. Lorang, J.
+   * Sound Vib. 330 (2011) 703) beside the modes of a run. The complex columns
+   * are those without or with radial dissipation as the run has it. Its
+   * component frequency of F1, printed 3353 Hz, is read 3553 Hz.
+   */
+  Table table_one(const TableOneResults &results, RadialDissipation dissipation, Agreement &agreement);
+} // namespace Squeal

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""Checks the complex modes of a run with other people's eigensolvers.
+
+    scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both]
+
+DIRECTORY is the output of a run with Output/Write matrices = true. The coupled quadratic problem is formed here
+from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc
+(two-level orthogonal Arnoldi, MUMPS). Each eigenvalue of the table is held against the nearest one found, one to
+one. The exit status is 1 when a difference exceeds the tolerance, a count differs or the matrices are not what
+they should be.
+"""
+
+import argparse
+import csv
+import math
+import os
+import pathlib
+import sys
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+import scipy.optimize
+import scipy.sparse.linalg
+
+import exported_matrices
+import slepc_toar
+
+STRUCTURE_TOLERANCE = 1e-10
+
+
+def read_modes(path):
+    """Labels and eigenvalues of a table with the columns `frequency [Hz]` and `growth rate [1/s]`."""
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
+    columns = {name.split("[")[0].strip(): index for index, name in enumerate(rows[0])}
+    for name in ("frequency", "growth rate"):
+        if name not in columns:
+            sys.exit(f"{path} has no column `{name}`; its columns are {', '.join(columns)}.")
+    label = columns.get("label")
+    labels = [row[label].strip() if label is not None else "" for row in rows[1:]]
+    eigenvalues = [complex(float(row[columns["growth rate"]]), 2 * math.pi * float(row[columns["frequency"]]))
+                   for row in rows[1:]]
+    return labels, np.array(eigenvalues, dtype=complex)
+
+
+def solve_by_scipy(problem, band, n_modes, shift=0.0):
+    """All eigenvalues of the band by ARPACK on the companion form, which costs one factorisation of size n.
+
+    With w = lambda u / s, s of the size of the eigenvalues sought, s / (lambda - shift) are the eigenvalues of
+
+        (u, w) -> (x, u + shift / s x),  x = -s Q(shift)^-1 ((C + shift M) u + s M w).
+    """
+    n = problem.size
+    scale = math.pi * band
+    damping = problem.damping + shift * problem.mass
+    factor = scipy.sparse.linalg.splu((problem.stiffness + shift * damping).tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
+                                      options={"SymmetricMode": True})
+
+    def apply(state):
+        u, w = state[:n], state[n:]
+        x = -scale * factor.solve(damping @ u + scale * (problem.mass @ w))
+        return np.concatenate([x, u + shift / scale * x])
+
+    operator = scipy.sparse.linalg.LinearOperator((2 * n, 2 * n), matvec=apply, dtype=float)
+
+    def solve(seed):
+        start = np.random.default_rng(seed).standard_normal(2 * n)
+        n_eigenvalues = 2 * n_modes + 8
+        while True:
+            n_eigenvalues = min(n_eigenvalues, 2 * n - 2)
+            ncv = min(2 * n_eigenvalues + 20, 2 * n)
+            inverse, vectors = scipy.sparse.linalg.eigs(operator, k=n_eigenvalues, v0=start, ncv=ncv, tol=0, maxiter=1000)
+            eigenvalues = shift + scale / inverse
+            if abs(eigenvalues - shift).max() > 2 * math.pi * band + abs(shift) or n_eigenvalues == 2 * n - 2:
+                listed = exported_matrices.in_band(eigenvalues, band)
+                return eigenvalues[listed], vectors[:n, listed]
+            n_eigenvalues = n_eigenvalues * 3 // 2
+
+    return exported_matrices.collect(solve)
+
+
+def compare(name, labels, eigenvalues, found, tolerance):
+    """Prints the differences to the eigenvalues found and says whether they and the counts are as they should be."""
+    distances = abs(eigenvalues[:, None] - found[None, :])
+    rows, columns = scipy.optimize.linear_sum_assignment(distances)
+    matched = {row: found[column] for row, column in zip(rows, columns)}
+
+    print(f"\n{'mode':<10} {'frequency [Hz]':>16} {'growth rate [1/s]':>18} {name + ' [Hz]':>16} {name + ' [1/s]':>18} {'difference':>11}")
+    largest = 0.0
+    for row in np.argsort(eigenvalues.imag, kind="stable"):
+        value, line = eigenvalues[row], f"{labels[row]:<10} {eigenvalues[row].imag / (2 * math.pi):16.6f} {eigenvalues[row].real:18.6f}"
+        if row in matched:
+            difference = abs(value - matched[row]) / abs(matched[row])
+            largest = max(largest, difference)
+            print(f"{line} {matched[row].imag / (2 * math.pi):16.6f} {matched[row].real:18.6f} {difference:11.1e}"
+                  + ("" if difference <= tolerance else "  <-"))
+        else:
+            print(f"{line} {'not found':>16}")
+    for column in sorted(set(range(len(found))) - set(columns), key=lambda column: found[column].imag):
+        print(f"{'missing':<10} {'':>16} {'':>18} {found[column].imag / (2 * math.pi):16.6f} {found[column].real:18.6f}")
+
+    right = len(found) == len(eigenvalues) and largest <= tolerance
+    print(f"{name}: {len(found)} modes, the table has {len(eigenvalues)}; largest relative difference {largest:.1e}, "
+          f"{'as it should be' if right else f'too much (tolerance {tolerance:g})' if largest > tolerance else 'the counts differ'}")
+    return right
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
+    parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="the table, in DIRECTORY (default: %(default)s)")
+    parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
+    parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
+    parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
+    parser.add_argument("--shift", type=float, default=0.0,
+                        help="real shift in 1/s, other than zero where a body can move freely (default: %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-8, help="largest relative difference (default: %(default)s)")
+    arguments = parser.parse_args()
+
+    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
+    band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
+    labels, eigenvalues = read_modes(arguments.directory / arguments.modes)
+    listed = exported_matrices.in_band(eigenvalues, band)
+    labels, eigenvalues = [label for label, keep in zip(labels, listed) if keep], eigenvalues[listed]
+    matrices = exported_matrices.read_matrices(arguments.directory)
+
+    print(f"{matrices['M'].shape[0]} dofs, {matrices['P_n'].shape[0]} contact nodes, friction coefficient {friction_coefficient:g}, "
+          f"modes up to {band:g} Hz")
+    right = True
+    for description, error in exported_matrices.structure_errors(matrices).items():
+        fails = error > STRUCTURE_TOLERANCE
+        right = right and not fails
+        print(f"  {description:<28} {error:8.1e}" + ("  <- should vanish" if fails else ""))
+
+    problem = exported_matrices.couple(matrices, friction_coefficient)
+    solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
+    if arguments.solver in ("slepc", "both"):
+        if slepc_toar.available():
+            solvers["SLEPc"] = slepc_toar.solve_band
+        elif arguments.solver == "slepc":
+            sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+        else:
+            print("SLEPc is not installed; SciPy alone is asked.")
+
+    for name, solve in solvers.items():
+        found, vectors = solve(problem, band, max(len(eigenvalues), 1), arguments.shift)
+        right = compare(name, labels, eigenvalues, found, arguments.tolerance) and right
+        print(f"{name}: largest backward error {problem.backward_errors(found, vectors).max(initial=0):.1e}")
+    sys.exit(0 if right else 1)
+
+
+if __name__ == "__main__":
+    main()

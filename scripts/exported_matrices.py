@@ -1,0 +1,178 @@
+"""Reads the matrices that a run of squeal has exported and forms the quadratic eigenproblem from them.
+
+The files of DIRECTORY/matrices, in Matrix Market form, are
+
+    M, K            n x n    mass and stiffness of disc and pins, not yet coupled, clamped dofs gone
+    C_b             n x n    radial contact damping
+    P_n, P_t, P_b   n_c x n  relative displacement disc minus pin, normal, along the sliding, along the radius
+    T_c             n x n_k  basis of the kernel of P_n
+
+and the problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
+
+    K~ = K - mu/2 P_t^T P_n K,  M~ = M - mu/2 P_t^T P_n M,  K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
+
+Nothing here is taken from the program but these matrices, so that what follows is independent of it.
+"""
+
+import dataclasses
+import math
+import pathlib
+import re
+import sys
+
+import numpy as np
+import scipy.io
+import scipy.linalg
+import scipy.sparse as sparse
+import scipy.sparse.linalg
+
+
+@dataclasses.dataclass
+class QuadraticProblem:
+    """The coupled matrices of lambda^2 mass + lambda damping + stiffness, as scipy's csr matrices."""
+
+    mass: sparse.csr_matrix
+    damping: sparse.csr_matrix
+    stiffness: sparse.csr_matrix
+
+    @property
+    def size(self):
+        return self.stiffness.shape[0]
+
+    def backward_errors(self, eigenvalues, vectors):
+        """|Q(lambda) x| / ((|lambda|^2 |M| + |lambda| |C| + |K|) |x|) of each pair, Frobenius norms of the matrices."""
+        norms = [scipy.sparse.linalg.norm(matrix) for matrix in (self.mass, self.damping, self.stiffness)]
+        residuals = self.mass @ (vectors * eigenvalues**2) + self.damping @ (vectors * eigenvalues) + self.stiffness @ vectors
+        size = np.abs(eigenvalues)
+        scale = size**2 * norms[0] + size * norms[1] + norms[2]
+        return np.linalg.norm(residuals, axis=0) / (scale * np.linalg.norm(vectors, axis=0))
+
+
+def read_matrices(directory):
+    """A dictionary name -> csr matrix of the seven exported matrices."""
+    matrices = {}
+    for name in ("M", "K", "C_b", "P_n", "P_t", "P_b", "T_c"):
+        path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"
+        if not path.is_file():
+            sys.exit(f"{path} is missing; run squeal with --set \"Output/Write matrices=true\".")
+        matrices[name] = sparse.csr_matrix(scipy.io.mmread(path))
+    return matrices
+
+
+def couple(matrices, friction_coefficient):
+    """The quadratic problem of the coupled system with friction."""
+    T_c = matrices["T_c"]
+    friction = -0.5 * friction_coefficient * (matrices["P_t"].T @ matrices["P_n"])
+
+    def project(matrix):
+        projected = sparse.csr_matrix(T_c.T @ matrix @ T_c)
+        projected.sum_duplicates()
+        return projected
+
+    return QuadraticProblem(
+        mass=project(matrices["M"] + friction @ matrices["M"]),
+        damping=project(matrices["C_b"]),
+        stiffness=project(matrices["K"] + friction @ matrices["K"]),
+    )
+
+
+def structure_errors(matrices):
+    """What must vanish in exported matrices, each relative to the size of what it is made of: description -> value."""
+
+    def largest(matrix):
+        return abs(matrix).max() if matrix.nnz else 0.0
+
+    P_n, P_t, P_b, T_c = (matrices[name] for name in ("P_n", "P_t", "P_b", "T_c"))
+    n_contact, n_dofs = P_n.shape
+    errors = {
+        "P_n P_n^T - 2 I": largest(P_n @ P_n.T - 2 * sparse.identity(n_contact)),
+        "P_n P_t^T": largest(P_n @ P_t.T),
+        "P_n P_b^T": largest(P_n @ P_b.T),
+        "P_n T_c": largest(P_n @ T_c),
+        "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact))),
+    }
+    for name in ("M", "K", "C_b"):
+        matrix = matrices[name]
+        errors[f"{name} - {name}^T"] = largest(matrix - matrix.T) / (largest(matrix) or 1.0)
+    return errors
+
+
+def read_parameters(path):
+    """Values of a parameter file as a dictionary "Section/Name" -> text."""
+    values, sections = {}, []
+    for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines():
+        line = line.split("#", 1)[0].strip()
+        if match := re.fullmatch(r"subsection\s+(.+)", line):
+            sections.append(match[1])
+        elif line == "end":
+            sections.pop()
+        elif match := re.fullmatch(r"set\s+(.+?)\s*=\s*(.*)", line):
+            values["/".join([*sections, match[1]])] = match[2]
+    return values
+
+
+def run_parameter(directory, name, given=None):
+    """A number of the run: the one given on the command line, else the one in DIRECTORY/parameters.prm."""
+    if given is not None:
+        return given
+    path = pathlib.Path(directory) / "parameters.prm"
+    values = read_parameters(path) if path.is_file() else {}
+    if name not in values:
+        sys.exit(f"{path} does not give {name}; give it on the command line.")
+    return float(values[name])
+
+
+def merge(eigenvalues, vectors, tolerance=1e-8):
+    """Of pairs found in several runs each mode once: which to keep.
+
+    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept when its
+    vector does not depend on those kept before.
+    """
+    kept, left = [], list(np.argsort(eigenvalues.imag, kind="stable"))
+    unit = vectors / np.linalg.norm(vectors, axis=0)
+    while left:
+        cluster = [left[0]]
+        for candidate in left[1:]:
+            if eigenvalues[candidate].imag - eigenvalues[cluster[-1]].imag > tolerance * abs(eigenvalues[candidate]):
+                break
+            cluster.append(candidate)
+        left = left[len(cluster):]
+        # Eigenvalues of equal frequency may still differ in growth rate: -R and R at least.
+        while cluster:
+            equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
+            cluster = [i for i in cluster if i not in equal]
+            _, triangle, order = scipy.linalg.qr(unit[:, equal], mode="economic", pivoting=True)
+            rank = int(np.sum(abs(np.diagonal(triangle)) > 1e-3))
+            kept.extend(equal[i] for i in order[:rank])
+    return np.array(kept, dtype=int)
+
+
+def collect(solve, n_agreeing=2, n_runs=8):
+    """Eigenvalues and vectors of the band from runs with different starting vectors.
+
+    A Krylov method that starts from one vector may miss members of multiple eigenvalues, so runs are repeated, and what
+    they find is merged, until `n_agreeing` runs in a row (the first one counts) bring nothing new. solve(seed) gives a
+    pair or, where it failed, None.
+    """
+    pairs, agreeing = None, 0
+    for seed in range(1, n_runs + 1):
+        found = solve(seed)
+        if found is None:
+            continue
+        n_before = 0 if pairs is None else len(pairs[0])
+        if pairs is not None:
+            found = np.concatenate([pairs[0], found[0]]), np.hstack([pairs[1], found[1]])
+        keep = merge(*found)
+        pairs = found[0][keep], found[1][:, keep]
+        agreeing = agreeing + 1 if len(keep) == n_before else 1
+        if agreeing == n_agreeing:
+            return pairs
+    if pairs is None:
+        raise RuntimeError("The solver failed with every starting vector.")
+    raise RuntimeError("Further starting vectors keep bringing new modes.")
+
+
+def in_band(eigenvalues, band):
+    """Which eigenvalues have a frequency in (0, band], band in Hz; real ones and rigid-body modes do not count."""
+    frequencies = eigenvalues.imag / (2 * math.pi)
+    return (frequencies > 1e-5 * band) & (frequencies <= band)

@@ -1,0 +1,158 @@
+#!/usr/bin/env bash
+# Makes the checkout ready: installs the Debian packages that are missing, configures and builds.
+# run.sh and test.sh source this file; called by itself it does the same and stops there:
+#
+#   scripts/setup.sh              what building, running and testing need
+#   scripts/setup.sh pictures     also what scripts/render_mode.py and the plots need
+#   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
+#
+# When nothing is missing, nothing is downloaded and no privilege is needed.
+
+set -euo pipefail
+
+squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+
+# libdeal.ii-dev brings MPI, Trilinos, p4est, METIS, ARPACK and the other libraries deal.II was built with;
+# what CMakeLists.txt links by name is listed all the same.
+packages=(g++ cmake ninja-build git
+          libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
+          libopenblas-dev liblapacke-dev nlohmann-json3-dev
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy)
+packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth gnuplot-nox)
+packages_peers=(python3-petsc4py python3-slepc4py)
+
+complain() { printf '%s\n' "$*" >&2; }
+
+# Prints those of the given packages that are not installed.
+missing_packages()
+{
+  local installed package
+  installed=" $(dpkg-query -W -f '${db:Status-Status}:${Package} ' "$@" 2>/dev/null || true)"
+  for package in "$@"; do
+    [[ $installed == *" installed:$package "* ]] || printf '%s\n' "$package"
+  done
+}
+
+# Installs the missing ones among the given packages, or says what to type.
+install_packages()
+{
+  local missing privilege=()
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    complain "This is not a Debian system: packages are not checked here, CMake reports what it does not find."
+    return
+  fi
+  mapfile -t missing < <(missing_packages "$@")
+  ((${#missing[@]} > 0)) || return 0
+
+  if (($(id -u) != 0)); then
+    if command -v sudo >/dev/null && sudo -n true 2>/dev/null; then
+      privilege=(sudo -n)
+    else
+      complain "Missing packages: ${missing[*]}"
+      complain "Install them, then call this script again:"
+      complain "  sudo apt-get update && sudo apt-get install --no-install-recommends ${missing[*]}"
+      exit 1
+    fi
+  fi
+
+  echo "Installing ${missing[*]}"
+  local log apt=("${privilege[@]}" env DEBIAN_FRONTEND=noninteractive
+                 apt-get -qq -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=300)
+  log=$(mktemp)
+  if ! { "${apt[@]}" update && "${apt[@]}" install --yes --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    complain "apt-get could not install: ${missing[*]}"
+    exit 1
+  fi
+  rm -f "$log"
+}
+
+# deal.II calls the BLAS that the system's alternatives name; the reference BLAS is about ten times slower.
+check_blas()
+{
+  local blas
+  blas=$(readlink -f "/usr/lib/$(uname -m)-linux-gnu/libblas.so.3" 2>/dev/null || true)
+  case $blas in
+    */blas/libblas.so.*)
+      complain "Note: the BLAS in use is the slow reference ($blas); see update-alternatives --config libblas.so.3-$(uname -m)-linux-gnu."
+      ;;
+  esac
+}
+
+# Compilations that may run together: one for each core, and 2 GB of memory each.
+build_jobs()
+{
+  local cores memory limit jobs
+  cores=$(nproc)
+  memory=$(awk '/^MemAvailable:/ { print int($2 / 1024) }' /proc/meminfo 2>/dev/null || true)
+  limit=$(cat /sys/fs/cgroup/memory.max 2>/dev/null || true)
+  memory=${memory:-2048}
+  if [[ $limit =~ ^[0-9]+$ ]] && ((limit / 1048576 < memory)); then
+    memory=$((limit / 1048576))
+  fi
+  jobs=$((memory / 2048))
+  ((jobs < cores)) || jobs=$cores
+  ((jobs > 0)) || jobs=1
+  echo "$jobs"
+}
+
+# Configures when needed and builds; the output is shown when something fails, and kept in build/release/build.log.
+build_release()
+{
+  local directory=$squeal_root/build/release
+  local log=$directory/build.log fresh=()
+  mkdir -p "$directory"
+  # A build directory that came along with a copied checkout would build the original.
+  if [[ -f $directory/CMakeCache.txt ]] &&
+     ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$squeal_root" "$directory/CMakeCache.txt"; then
+    fresh=(--fresh)
+  fi
+  echo "Building build/release"
+  if ! (
+    cd "$squeal_root"
+    if [[ ! -f $directory/build.ninja ]] || ((${#fresh[@]} > 0)); then
+      cmake --preset release "${fresh[@]}" || exit 1
+    fi
+    cmake --build --preset release -- --quiet -j "$(build_jobs)"
+  ) >"$log" 2>&1; then
+    cat "$log" >&2
+    complain "The build failed; the messages above are in $log."
+    exit 1
+  fi
+}
+
+# The environment in which programs run: one BLAS thread for each process (threads that share cores
+# with other processes slow the factorisations down many times), and Open MPI usable in a container,
+# by root, and with more processes than cores.
+set_environment()
+{
+  export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
+  export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
+  export OMPI_MCA_rmaps_base_oversubscribe=1
+  export OMPI_MCA_btl_vader_single_copy_mechanism=none
+  if (($(id -u) == 0)); then
+    export OMPI_ALLOW_RUN_AS_ROOT=1
+    export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  fi
+}
+
+setup()
+{
+  install_packages "${packages[@]}" "$@"
+  check_blas
+  build_release
+  set_environment
+}
+
+if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
+  additional=()
+  for group in "$@"; do
+    case $group in
+      pictures) additional+=("${packages_pictures[@]}") ;;
+      peers) additional+=("${packages_peers[@]}") ;;
+      *) complain "usage: scripts/setup.sh [pictures] [peers]"; exit 2 ;;
+    esac
+  done
+  setup "${additional[@]}"
+fi

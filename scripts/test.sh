@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs all tests; arguments are handed to ctest:
+#
+#   scripts/test.sh
+#   scripts/test.sh -R contact
+
+set -euo pipefail
+# shellcheck source=scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+setup
+
+cd "$squeal_root"
+ctest --preset release --no-tests=error "$@"

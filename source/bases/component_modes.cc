@@ -1,0 +1,98 @@
+#include <squeal/base/assignment.h>
+#include <squeal/bases/component_modes.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <map>
+
+namespace Squeal
+{
+  std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
+  {
+    // Row sums of the x displacements: M e_x
+    MultiVector e_x(model.free_map(), 1);
+    for (const Node &node : model.nodes())
+      if (node.dofs[0] >= 0 && model.free_map().MyGID(node.dofs[0]))
+        e_x.ReplaceGlobalValue(node.dofs[0], 0, 1.);
+    const DenseMatrix   row_sums = replicate(mass * e_x);
+    std::vector<double> masses;
+    for (const Node &node : model.nodes())
+      masses.push_back(node.dofs[0] >= 0 ? row_sums(node.dofs[0], 0) : 0.);
+    return masses;
+  }
+
+  ComponentModes component_modes(const Model                 &model,
+                                 const ContactInterface      &interface,
+                                 const SecondOrderSystem     &system,
+                                 const Component              component,
+                                 const ContactBoundary        boundary,
+                                 const double                 largest_eigenvalue,
+                                 const SymmetricModesOptions &options)
+  {
+    std::vector<bool> selected(model.component_names().size());
+    for (std::size_t c = 0; c < selected.size(); ++c)
+      selected[c] = (c == 0) == (component == Component::disc);
+    const auto T = component_kernel(model, interface, selected, boundary);
+
+    const SymmetricModes modes =
+      symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, options);
+
+    ComponentModes result;
+    result.eigenvalues = modes.eigenvalues;
+    result.residuals   = modes.residuals;
+    if (modes.eigenvalues.empty())
+      return result;
+    result.vectors = std::make_shared<MultiVector>(*T * *modes.vectors);
+
+    const auto        masses = nodal_masses(model, *system.mass);
+    const DenseMatrix values = replicate(*result.vectors);
+    result.labels = component == Component::disc ? disc_labels(model, masses, values) : pin_labels(model, interface, masses, values);
+    for (int j = 0; j < modes.n_rigid_body; ++j)
+      result.labels[j] = "RB";
+    return result;
+  }
+
+  std::vector<ModeIdentity> identify(const std::vector<const ComponentModes *> &references,
+                                     const SparseMatrix                        &mass,
+                                     const MultiVector                         &real_part,
+                                     const MultiVector                         *imaginary_part)
+  {
+    const int         n_modes = real_part.NumVectors();
+    const MultiVector M_re    = mass * real_part;
+    const MultiVector M_im    = imaginary_part ? mass * *imaginary_part : MultiVector(real_part.Map(), n_modes);
+
+    std::vector<double> norm_re(n_modes), norm_im(n_modes, 0.);
+    real_part.Dot(M_re, norm_re.data());
+    if (imaginary_part)
+      imaginary_part->Dot(M_im, norm_im.data());
+
+    std::vector<std::map<std::string, double>> shares(n_modes);
+    for (const ComponentModes *reference : references)
+      if (reference->vectors)
+        {
+          const DenseMatrix re = gram(*reference->vectors, M_re), im = gram(*reference->vectors, M_im);
+          for (int j = 0; j < n_modes; ++j)
+            for (int i = 0; i < re.n_rows(); ++i)
+              shares[j][reference->labels[i]] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
+        }
+
+    // A label is given to no more modes than there are component modes of it
+    std::vector<std::string> names;
+    for (const ComponentModes *reference : references)
+      names.insert(names.end(), reference->labels.begin(), reference->labels.end());
+    const std::size_t n_names = names.size();
+    names.resize(std::max<std::size_t>(n_names, n_modes), "unnamed");
+    const auto share = [&](const int mode, const int name) {
+      const auto it = shares[mode].find(names[name]);
+      return it != shares[mode].end() ? it->second : 0.;
+    };
+    const std::vector<int>    assigned = best_assignment(n_modes, names.size(), share);
+    std::vector<ModeIdentity> identities;
+    for (int j = 0; j < n_modes; ++j)
+      identities.push_back({names[assigned[j]], share(j, assigned[j])});
+    return identities;
+  }
+} // namespace Squeal

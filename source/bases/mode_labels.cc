@@ -1,0 +1,391 @@
+#include <squeal/bases/mode_labels.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <limits>
+#include <numeric>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Functions on a set of nodes, orthonormal in the mass-weighted inner product.
+    class Projection
+    {
+    public:
+      /**
+       * @param functions  n_nodes × n_functions, replaced by orthonormal combinations
+       * @param weights    n_nodes
+       */
+      Projection(DenseMatrix functions, const std::vector<double> &weights)
+        : basis(std::move(functions))
+        , weights(weights)
+      {
+        // Modified Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped.
+        for (int j = 0; j < basis.n_columns(); ++j)
+          {
+            const double before = std::sqrt(inner(basis.column(j), basis.column(j)));
+            for (unsigned int pass = 0; pass < 2; ++pass)
+              for (int i = 0; i < j; ++i)
+                {
+                  const double s = inner(basis.column(i), basis.column(j));
+                  for (int k = 0; k < basis.n_rows(); ++k)
+                    basis(k, j) -= s * basis(k, i);
+                }
+            const double norm = std::sqrt(inner(basis.column(j), basis.column(j)));
+            for (int k = 0; k < basis.n_rows(); ++k)
+              basis(k, j) = norm > 1e-8 * before ? basis(k, j) / norm : 0.;
+          }
+      }
+
+      /// Coefficients of the projection of a field; their squares sum up to its energy.
+      std::vector<double> coefficients(const std::vector<double> &field) const
+      {
+        std::vector<double> result(basis.n_columns());
+        for (int j = 0; j < basis.n_columns(); ++j)
+          result[j] = inner(basis.column(j), field.data());
+        return result;
+      }
+
+      double energy(const std::vector<double> &field) const
+      {
+        const auto c = coefficients(field);
+        return std::inner_product(c.begin(), c.end(), c.begin(), 0.);
+      }
+
+      /// Values of the projection at node k.
+      const DenseMatrix &functions() const
+      {
+        return basis;
+      }
+
+    private:
+      double inner(const double *u, const double *v) const
+      {
+        double sum = 0.;
+        for (std::size_t k = 0; k < weights.size(); ++k)
+          sum += weights[k] * u[k] * v[k];
+        return sum;
+      }
+
+      DenseMatrix         basis;
+      std::vector<double> weights;
+    };
+
+    /// Displacement of a node; clamped directions are at rest.
+    std::array<double, 3> displacement(const Node &node, const double *mode)
+    {
+      std::array<double, 3> u;
+      for (unsigned int k = 0; k < 3; ++k)
+        u[k] = node.dofs[k] >= 0 ? mode[node.dofs[k]] : 0.;
+      return u;
+    }
+
+    constexpr int n_radial_functions = 5;
+    constexpr int largest_harmonic   = 16;
+
+    /// Projections of disc fields on harmonics 0 ... largest_harmonic.
+    struct DiscHarmonics
+    {
+      std::vector<const Node *> nodes;
+      std::vector<double>       weights, cosines, sines;
+      double                    inner_radius, outer_radius;
+      std::vector<Projection>   harmonics;
+
+      DiscHarmonics(const Model &model, const std::vector<double> &nodal_masses)
+      {
+        inner_radius = std::numeric_limits<double>::max();
+        outer_radius = 0.;
+        std::vector<double> radii;
+        for (std::size_t i = 0; i < model.nodes().size(); ++i)
+          if (const Node &node = model.nodes()[i]; node.component == 0)
+            {
+              const double r = std::hypot(node.position[0], node.position[1]);
+              nodes.push_back(&node);
+              weights.push_back(nodal_masses[i]);
+              radii.push_back(r);
+              cosines.push_back(r > 0. ? node.position[0] / r : 1.);
+              sines.push_back(r > 0. ? node.position[1] / r : 0.);
+              inner_radius = std::min(inner_radius, r);
+              outer_radius = std::max(outer_radius, r);
+            }
+        for (int n = 0; n <= largest_harmonic; ++n)
+          {
+            // Columns: powers of the scaled radius times cosine, then times sine
+            DenseMatrix functions(nodes.size(), (n == 0 ? 1 : 2) * n_radial_functions);
+            for (std::size_t i = 0; i < nodes.size(); ++i)
+              {
+                const double s = scaled_radius(radii[i]), theta = std::atan2(sines[i], cosines[i]);
+                for (int k = 0; k < n_radial_functions; ++k)
+                  {
+                    functions(i, k) = std::pow(s, k) * std::cos(n * theta);
+                    if (n > 0)
+                      functions(i, n_radial_functions + k) = std::pow(s, k) * std::sin(n * theta);
+                  }
+              }
+            harmonics.emplace_back(std::move(functions), weights);
+          }
+      }
+
+      double scaled_radius(const double r) const
+      {
+        return (2. * r - inner_radius - outer_radius) / (outer_radius - inner_radius);
+      }
+
+      /// Axial, radial and circumferential displacement of the nodes.
+      std::array<std::vector<double>, 3> cylindrical(const double *mode) const
+      {
+        std::array<std::vector<double>, 3> fields;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          {
+            const auto u = displacement(*nodes[i], mode);
+            fields[0].push_back(u[2]);
+            fields[1].push_back(u[0] * cosines[i] + u[1] * sines[i]);
+            fields[2].push_back(-u[0] * sines[i] + u[1] * cosines[i]);
+          }
+        return fields;
+      }
+
+      /**
+       * Sign changes of the radial profile of harmonic n. The projection is
+       * sampled in narrow rings: in each, its cosine and sine amplitude; the
+       * nodal line pattern may be turned, so the amplitudes are taken along
+       * their common direction in the cosine-sine plane.
+       */
+      int nodal_circles(const std::vector<double> &field, const int n) const
+      {
+        // Profile a(r), b(r) of a cos nθ + b sin nθ by least squares on the powers themselves
+        constexpr int n_samples = 41;
+        const auto    profile   = radial_profile(field, n, n_samples);
+
+        // Common direction: dominant axis of Σ (a, b)ᵀ(a, b)
+        double aa = 0., ab = 0., bb = 0.;
+        for (const auto &[a, b] : profile)
+          {
+            aa += a * a;
+            ab += a * b;
+            bb += b * b;
+          }
+        const double angle = 0.5 * std::atan2(2. * ab, aa - bb);
+        double       largest = 0.;
+        std::vector<double> amplitude;
+        for (const auto &[a, b] : profile)
+          {
+            amplitude.push_back(a * std::cos(angle) + b * std::sin(angle));
+            largest = std::max(largest, std::abs(amplitude.back()));
+          }
+
+        // Changes between values that are clearly different from zero
+        constexpr double clear = 0.1;
+        int              sign = 0, changes = 0;
+        for (const double value : amplitude)
+          if (std::abs(value) > clear * largest)
+            {
+              const int new_sign = value > 0. ? 1 : -1;
+              changes += sign != 0 && new_sign != sign;
+              sign = new_sign;
+            }
+        return changes;
+      }
+
+    private:
+      /// (a, b) at equidistant radii: solves the least-squares problem in the monomials s^k.
+      std::vector<std::pair<double, double>> radial_profile(const std::vector<double> &field, const int n, const int n_samples) const
+      {
+        const int   n_functions = (n == 0 ? 1 : 2) * n_radial_functions;
+        DenseMatrix normal(n_functions, n_functions), rhs(n_functions, 1);
+        std::vector<double> row(n_functions);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          {
+            const double theta = std::atan2(sines[i], cosines[i]);
+            const double s     = scaled_radius(std::hypot(nodes[i]->position[0], nodes[i]->position[1]));
+            for (int k = 0; k < n_radial_functions; ++k)
+              {
+                row[k] = std::pow(s, k) * std::cos(n * theta);
+                if (n > 0)
+                  row[n_radial_functions + k] = std::pow(s, k) * std::sin(n * theta);
+              }
+            for (int a = 0; a < n_functions; ++a)
+              {
+                for (int b = 0; b < n_functions; ++b)
+                  normal(a, b) += weights[i] * row[a] * row[b];
+                rhs(a, 0) += weights[i] * row[a] * field[i];
+              }
+          }
+        DenseLU(normal, "radial profile of a disc mode").solve(rhs);
+
+        std::vector<std::pair<double, double>> profile;
+        for (int i = 0; i < n_samples; ++i)
+          {
+            const double s = -1. + 2. * i / (n_samples - 1);
+            double       a = 0., b = 0.;
+            for (int k = 0; k < n_radial_functions; ++k)
+              {
+                a += rhs(k, 0) * std::pow(s, k);
+                if (n > 0)
+                  b += rhs(n_radial_functions + k, 0) * std::pow(s, k);
+              }
+            profile.emplace_back(a, b);
+          }
+        return profile;
+      }
+    };
+  } // namespace
+
+  std::vector<std::string> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
+  {
+    const DiscHarmonics      disc(model, nodal_masses);
+    std::vector<std::string> labels;
+    for (int j = 0; j < modes.n_columns(); ++j)
+      {
+        const auto fields = disc.cylindrical(modes.column(j));
+
+        // Harmonic of the largest energy, the three directions together
+        double largest = -1.;
+        int    n_best  = 0;
+        std::array<double, 3> energies{};
+        for (int n = 0; n <= largest_harmonic; ++n)
+          {
+            std::array<double, 3> e;
+            for (unsigned int d = 0; d < 3; ++d)
+              e[d] = disc.harmonics[n].energy(fields[d]);
+            if (const double sum = e[0] + e[1] + e[2]; sum > largest)
+              {
+                largest  = sum;
+                n_best   = n;
+                energies = e;
+              }
+          }
+
+        const unsigned int family = std::max_element(energies.begin(), energies.end()) - energies.begin();
+        labels.push_back(std::string(1, "ARC"[family]) + std::to_string(disc.nodal_circles(fields[family], n_best)) + "-" +
+                         std::to_string(n_best));
+      }
+    return labels;
+  }
+
+  std::vector<std::string> pin_labels(const Model               &model,
+                                      const ContactInterface    &interface,
+                                      const std::vector<double> &nodal_masses,
+                                      const DenseMatrix         &modes)
+  {
+    // Axis of each pin: centre and mean normal of its contact nodes
+    struct Pin
+    {
+      std::array<double, 3>     centre{}, axis{};
+      std::vector<const Node *> nodes;
+      std::vector<double>       weights, heights;
+      double                    n_contact = 0.;
+    };
+    std::map<unsigned int, Pin> pins;
+    for (const ContactNode &contact : interface)
+      {
+        Pin &pin = pins[contact.pin];
+        pin.n_contact += 1.;
+        for (unsigned int k = 0; k < 3; ++k)
+          {
+            pin.centre[k] += contact.position[k];
+            pin.axis[k] += contact.normal[k];
+          }
+      }
+    for (auto &[number, pin] : pins)
+      {
+        const double norm = std::hypot(pin.axis[0], pin.axis[1], pin.axis[2]);
+        for (unsigned int k = 0; k < 3; ++k)
+          {
+            pin.centre[k] /= pin.n_contact;
+            pin.axis[k] /= norm;
+          }
+      }
+    for (std::size_t i = 0; i < model.nodes().size(); ++i)
+      if (const auto it = pins.find(model.nodes()[i].component); it != pins.end())
+        {
+          it->second.nodes.push_back(&model.nodes()[i]);
+          it->second.weights.push_back(nodal_masses[i]);
+        }
+
+    // Energies of bending, torsion and stretching: projections on polynomials of the height
+    constexpr int         n_height_functions = 4;
+    std::vector<unsigned> family(modes.n_columns());
+    std::vector<std::array<double, 3>> energies(modes.n_columns(), std::array<double, 3>{});
+    for (const auto &[number, pin] : pins)
+      {
+        const std::size_t n = pin.nodes.size();
+        // e_1, e_2 span the cross-section
+        const unsigned int    k = std::abs(pin.axis[0]) < 0.9 ? 0 : 1;
+        std::array<double, 3> e_1{}, e_2;
+        for (unsigned int j = 0; j < 3; ++j)
+          e_1[j] = (j == k) - pin.axis[k] * pin.axis[j];
+        const double norm = std::hypot(e_1[0], e_1[1], e_1[2]);
+        for (double &value : e_1)
+          value /= norm;
+        for (unsigned int j = 0; j < 3; ++j)
+          e_2[j] = pin.axis[(j + 1) % 3] * e_1[(j + 2) % 3] - pin.axis[(j + 2) % 3] * e_1[(j + 1) % 3];
+
+        DenseMatrix         powers(n, n_height_functions), radius_powers(n, n_height_functions);
+        std::vector<double> x(n), y(n);
+        double              height = 0.;
+        for (unsigned int pass = 0; pass < 2; ++pass)
+          for (std::size_t i = 0; i < n; ++i)
+            {
+              double h = 0.;
+              x[i] = y[i] = 0.;
+              for (unsigned int j = 0; j < 3; ++j)
+                {
+                  const double d = pin.nodes[i]->position[j] - pin.centre[j];
+                  h += d * pin.axis[j];
+                  x[i] += d * e_1[j];
+                  y[i] += d * e_2[j];
+                }
+              height = std::max(height, std::abs(h));
+              for (int p = 0; p < n_height_functions; ++p)
+                {
+                  powers(i, p)        = std::pow(h / height, p);
+                  radius_powers(i, p) = std::hypot(x[i], y[i]) * powers(i, p);
+                }
+            }
+        const Projection translation(powers, pin.weights), torsion(radius_powers, pin.weights);
+
+        std::vector<double> u_1(n), u_2(n), u_axial(n), u_phi(n);
+        for (int m = 0; m < modes.n_columns(); ++m)
+          {
+            for (std::size_t i = 0; i < n; ++i)
+              {
+                const auto u = displacement(*pin.nodes[i], modes.column(m));
+                u_1[i]       = u[0] * e_1[0] + u[1] * e_1[1] + u[2] * e_1[2];
+                u_2[i]       = u[0] * e_2[0] + u[1] * e_2[1] + u[2] * e_2[2];
+                u_axial[i]   = u[0] * pin.axis[0] + u[1] * pin.axis[1] + u[2] * pin.axis[2];
+                const double r = std::hypot(x[i], y[i]);
+                u_phi[i]     = r > 0. ? (x[i] * u_2[i] - y[i] * u_1[i]) / r : 0.;
+              }
+            energies[m][0] += translation.energy(u_1) + translation.energy(u_2);
+            energies[m][1] += torsion.energy(u_phi);
+            energies[m][2] += translation.energy(u_axial);
+          }
+      }
+
+    // Numbers within each family, by the number of modes that every pin has of it
+    std::vector<std::string> labels;
+    std::array<std::size_t, 3> count{}, per_order = {2 * pins.size(), pins.size(), pins.size()};
+    for (const auto &e : energies)
+      {
+        const unsigned int f = std::max_element(e.begin(), e.end()) - e.begin();
+        labels.push_back(std::string(1, "FTL"[f]) + std::to_string(count[f]++ / per_order[f] + 1));
+      }
+    return labels;
+  }
+
+  void mark_doublets(std::vector<std::string> &labels)
+  {
+    std::map<std::string, std::vector<std::size_t>> places;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      places[labels[i]].push_back(i);
+    for (const auto &[label, where] : places)
+      if (where.size() == 2)
+        {
+          labels[where[0]] += " -";
+          labels[where[1]] += " +";
+        }
+  }
+} // namespace Squeal

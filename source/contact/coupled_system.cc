@@ -1,0 +1,92 @@
+#include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse.h>
+
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <complex>
+
+namespace Squeal
+{
+  const Epetra_Map &CoupledSystem::map() const
+  {
+    return frictionless.stiffness->RowMap();
+  }
+
+  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const std::vector<double> &c_b)
+  {
+    if (std::all_of(c_b.begin(), c_b.end(), [](const double c) { return c == 0.; }))
+      return nullptr;
+
+    const SparseMatrix &P_b = *contact.radial;
+    Epetra_Vector       c(P_b.RowMap());
+    for (int i = 0; i < c.MyLength(); ++i)
+      c[i] = c_b[P_b.RowMap().GID(i)];
+    SparseMatrix scaled(P_b);
+    scaled.LeftScale(c);
+    return multiply(P_b, scaled, true, false);
+  }
+
+  CoupledSystem couple(const SecondOrderSystem                   &system,
+                       const ContactOperators                    &contact,
+                       const std::shared_ptr<const SparseMatrix> &contact_damping)
+  {
+    const SparseMatrix &T_c = *contact.kernel;
+
+    CoupledSystem coupled;
+    coupled.kernel                 = contact.kernel;
+    coupled.frictionless.mass      = congruence(*system.mass, T_c);
+    coupled.frictionless.stiffness = congruence(*system.stiffness, T_c);
+    std::shared_ptr<const SparseMatrix> damping = system.damping;
+    if (contact_damping)
+      damping = damping ? add(1., *damping, 1., *contact_damping) : contact_damping;
+    if (damping)
+      coupled.frictionless.damping = congruence(*damping, T_c);
+
+    coupled.friction_forces = multiply(T_c, *contact.tangential, true, true);
+    const auto half_reaction = [&](const SparseMatrix &matrix) {
+      auto V = multiply(*multiply(*contact.normal, matrix, false, false), T_c, false, false);
+      V->Scale(0.5);
+      return V;
+    };
+    coupled.normal_stiffness = half_reaction(*system.stiffness);
+    coupled.normal_mass      = half_reaction(*system.mass);
+    return coupled;
+  }
+
+  SecondOrderSystem with_friction(const CoupledSystem &system, const double mu)
+  {
+    SecondOrderSystem result = system.frictionless;
+    if (mu == 0.)
+      return result;
+    const auto friction = [&](const SparseMatrix &V) { return multiply(*system.friction_forces, V, false, false); };
+    result.stiffness    = add(1., *system.frictionless.stiffness, -mu, *friction(*system.normal_stiffness));
+    result.mass         = add(1., *system.frictionless.mass, -mu, *friction(*system.normal_mass));
+    return result;
+  }
+
+  void normal_reactions(const CoupledSystem                     &system,
+                        const std::vector<std::complex<double>> &lambda,
+                        const MultiVector                       &real_part,
+                        const MultiVector                       &imaginary_part,
+                        DenseMatrix                             &reaction_real,
+                        DenseMatrix                             &reaction_imaginary)
+  {
+    const DenseMatrix K_re = replicate(*system.normal_stiffness * real_part), K_im = replicate(*system.normal_stiffness * imaginary_part);
+    const DenseMatrix M_re = replicate(*system.normal_mass * real_part), M_im = replicate(*system.normal_mass * imaginary_part);
+    reaction_real      = K_re;
+    reaction_imaginary = K_im;
+    for (int j = 0; j < K_re.n_columns(); ++j)
+      {
+        const std::complex<double> square = lambda[j] * lambda[j];
+        for (int i = 0; i < K_re.n_rows(); ++i)
+          {
+            const std::complex<double> r =
+              std::complex<double>(K_re(i, j), K_im(i, j)) + square * std::complex<double>(M_re(i, j), M_im(i, j));
+            reaction_real(i, j)      = r.real();
+            reaction_imaginary(i, j) = r.imag();
+          }
+      }
+  }
+} // namespace Squeal

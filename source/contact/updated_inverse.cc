@@ -1,0 +1,74 @@
+#include <squeal/contact/updated_inverse.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse.h>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// A as vectors.
+    MultiVector to_vectors(const SparseMatrix &A)
+    {
+      MultiVector identity(A.DomainMap(), A.NumGlobalCols());
+      for (int i = 0; i < identity.MyLength(); ++i)
+        identity.ReplaceMyValue(i, A.DomainMap().GID(i), 1.);
+      return A * identity;
+    }
+  } // namespace
+
+  UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
+  {
+    std::shared_ptr<const SparseMatrix> S = system.frictionless.stiffness;
+    V                                     = system.normal_stiffness;
+    if (shift != 0.)
+      {
+        S = add(1., *S, shift * shift, *system.frictionless.mass);
+        if (system.frictionless.damping)
+          S = add(1., *S, shift, *system.frictionless.damping);
+        V = add(1., *V, shift * shift, *system.normal_mass);
+      }
+    factor = factorize_positive_definite(*S, library, "stiffness of the coupled system without friction");
+
+    const MultiVector A = to_vectors(*system.friction_forces);
+    X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());
+    factor->apply(A, *X);
+    VX = replicate(*V * *X);
+  }
+
+  void UpdatedInverse::set_friction_coefficient(const double mu)
+  {
+    friction_coefficient = mu;
+    correction           = std::make_unique<DenseLU>(add(identity(VX.n_rows()), VX, -mu),
+                                           "stiffness with friction, condensed to the contact nodes");
+  }
+
+  void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const
+  {
+    factor->apply(B, Y);
+    if (friction_coefficient == 0.)
+      return;
+    DenseMatrix reactions = replicate(*V * Y);
+    correction->solve(reactions);
+    multiply_add(friction_coefficient, *X, reactions, 1., Y);
+  }
+
+  void UpdatedInverse::apply_frictionless(const MultiVector &B, MultiVector &Y) const
+  {
+    factor->apply(B, Y);
+  }
+
+  const Epetra_Map &UpdatedInverse::map() const
+  {
+    return factor->map();
+  }
+
+  const MultiVector &UpdatedInverse::attachment_modes() const
+  {
+    return *X;
+  }
+
+  double UpdatedInverse::n_factor_entries() const
+  {
+    return factor->n_factor_entries();
+  }
+} // namespace Squeal

@@ -1,0 +1,521 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/eigen/compact_krylov.h>
+#include <squeal/eigen/quadratic_modes.h>
+
+#include <Epetra_Comm.h>
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// λ below this fraction of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
+    constexpr double zero_fraction = 1e-4;
+    /// λ is real if |Im λ| is below this fraction of |λ|.
+    constexpr double real_fraction = 1e-7;
+    /// Values beyond the radius that have to converge, so that none inside can still be on its way.
+    constexpr int n_beyond = 2;
+    /// Block steps of fresh directions, with the values found deflated, before these are taken as complete.
+    constexpr int n_proving_steps = 8;
+    /// The same if fewer modes were found than expected.
+    constexpr int n_searching_steps = 16;
+
+    /**
+     * S and its eigenvalues: the only place where λ becomes θ and ν. In units
+     * of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ = ρ² θ̂ with
+     * λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
+     */
+    class InverseAtShift
+    {
+    public:
+      InverseAtShift(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
+        : pencil(pencil)
+        , inverse(inverse)
+        , s(options.shift)
+        , degree(pencil.damping != nullptr ? 2 : 1)
+      {
+        const Complex corner(-options.largest_damping * options.largest_frequency, options.largest_frequency);
+        radius = degree == 2 ? std::abs(corner - s) : std::sqrt(std::abs(corner * corner - s * s));
+      }
+
+      /// Upper part of S x for the states x = [u v] (degree two) or [u] (degree one).
+      void apply(const MultiVector &states, MultiVector &image) const
+      {
+        const int         b = image.NumVectors();
+        const MultiVector u = view(states, 0, b);
+        MultiVector       force(image.Map(), b, false);
+        if (degree == 1)
+          {
+            pencil.mass->apply(u, force);
+            force.Scale(-radius * radius);
+          }
+        else
+          {
+            // ρ (C + 2 s M) u + ρ² M v = ρ C u + M (2 ρ s u + ρ² v)
+            MultiVector combined(image.Map(), b, false);
+            combined.Update(2. * radius * s, u, radius * radius, view(states, b, b), 0.);
+            pencil.mass->apply(combined, force);
+            MultiVector damped(image.Map(), b, false);
+            pencil.damping->apply(u, damped);
+            force.Update(-radius, damped, -1.);
+          }
+        inverse.apply(force, image);
+        n_solves += b;
+      }
+
+      /// λ of ν; of the two for degree one, the one with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
+      Complex value(const Complex nu) const
+      {
+        const double tiny  = std::numeric_limits<double>::min();
+        const Complex theta = std::abs(nu) > tiny ? 1. / nu : Complex(1. / tiny);
+        if (degree == 2)
+          return s + radius * theta;
+        const Complex square = s * s + radius * radius * theta;
+        // A negative square must not depend on the sign of a zero.
+        const Complex root = square.imag() == 0. && square.real() < 0. ? Complex(0., std::sqrt(-square.real())) : std::sqrt(square);
+        return root.imag() < 0. ? -root : root;
+      }
+
+      bool inside(const Complex nu) const
+      {
+        return std::abs(nu) >= 1.;
+      }
+
+      /**
+       * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε.
+       * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1
+       * (degree two) or θ M r_0 (degree one): no stiffness enters. Compared
+       * with |λ²| |ν| ‖M u‖ for uniform masses; the residuals proper decide.
+       */
+      double residual_estimate(const Complex nu, const double epsilon) const
+      {
+        const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
+        const double lambda = std::abs(value(nu)) / radius;
+        if (lambda < zero_fraction)
+          return epsilon * theta;
+        if (degree == 1)
+          return epsilon * theta * theta / (lambda * lambda);
+        return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
+      }
+
+      const QuadraticPencil &pencil;
+      const LinearOperator  &inverse;
+      double                 s, radius;
+      int                    degree;
+      mutable int            n_solves = 0;
+    };
+
+    /// How far the Ritz values have converged.
+    struct Convergence
+    {
+      int    n_inside    = 0; ///< Ritz values inside the radius
+      int    n_converged = 0; ///< of these, converged
+      double worst       = 0.;
+      bool   complete    = false; ///< all of them, and some beyond
+    };
+
+    Convergence convergence(const InverseAtShift &transformation, const RitzPairs &ritz, const double tolerance, const bool exhausted)
+    {
+      Convergence state;
+      int         n_outside = 0;
+      bool        covered   = true;
+      for (std::size_t i = 0; i < ritz.values.size(); ++i)
+        {
+          const double estimate = transformation.residual_estimate(ritz.values[i], ritz.errors[i]);
+          if (transformation.inside(ritz.values[i]))
+            {
+              ++state.n_inside;
+              state.worst = std::max(state.worst, estimate);
+              if (estimate <= tolerance)
+                ++state.n_converged;
+            }
+          else if (n_outside < n_beyond)
+            {
+              ++n_outside;
+              covered = covered && ritz.errors[i] <= std::sqrt(tolerance) * std::abs(ritz.values[i]);
+            }
+        }
+      state.complete = state.n_converged == state.n_inside && (exhausted || (covered && n_outside == n_beyond));
+      return state;
+    }
+
+    /// The λ = x + iy of the result, before their vectors are known.
+    struct Candidate
+    {
+      Complex value;
+      int     column;    ///< of the real part among the vectors computed
+      double  conjugate; ///< sign of the imaginary part; 0 for a real vector
+    };
+
+    /// Multiplies each φ by the factor that makes ‖φ‖₂ = 1 and its entry of largest modulus real and positive.
+    void normalize(MultiVector &real, MultiVector &imaginary)
+    {
+      const int                 k = real.NumVectors(), n = real.MyLength();
+      const std::vector<double> real_norms = column_norms(real), imaginary_norms = column_norms(imaginary);
+
+      // ------------------------------------------------- largest entry over all processes, ties to the first row
+      std::vector<double> local(k, 0.), largest(k, 0.);
+      for (int j = 0; j < k; ++j)
+        for (int i = 0; i < n; ++i)
+          local[j] = std::max(local[j], std::hypot(real[j][i], imaginary[j][i]));
+      real.Comm().MaxAll(local.data(), largest.data(), k);
+      std::vector<int> row(k, std::numeric_limits<int>::max()), first_row(k);
+      for (int j = 0; j < k; ++j)
+        for (int i = 0; i < n; ++i)
+          if (std::hypot(real[j][i], imaginary[j][i]) >= (1. - 1e-6) * largest[j])
+            row[j] = std::min(row[j], real.Map().GID(i));
+      real.Comm().MinAll(row.data(), first_row.data(), k);
+      std::vector<double> entry(2 * k, 0.), entries(2 * k);
+      for (int j = 0; j < k; ++j)
+        if (const int i = real.Map().LID(first_row[j]); i >= 0)
+          {
+            entry[2 * j]     = real[j][i];
+            entry[2 * j + 1] = imaginary[j][i];
+          }
+      real.Comm().SumAll(entry.data(), entries.data(), 2 * k);
+
+      // ------------------------------------------------- rotate and scale
+      for (int j = 0; j < k; ++j)
+        {
+          const Complex pivot(entries[2 * j], entries[2 * j + 1]);
+          const double  size = std::hypot(real_norms[j], imaginary_norms[j]);
+          if (size == 0. || std::abs(pivot) == 0.)
+            continue;
+          const Complex factor = std::conj(pivot) / (std::abs(pivot) * size);
+          for (int i = 0; i < n; ++i)
+            {
+              const Complex phi = factor * Complex(real[j][i], imaginary[j][i]);
+              real[j][i]        = phi.real();
+              imaginary[j][i]   = phi.imag();
+            }
+        }
+    }
+
+    /// Sorts the Ritz values inside the radius into oscillating, real and zero ones; computes vectors and residuals.
+    QuadraticModes extract(const QuadraticPencil       &pencil,
+                           const InverseAtShift        &transformation,
+                           const CompactKrylov         &krylov,
+                           const RitzPairs             &ritz,
+                           const QuadraticModesOptions &options)
+    {
+      QuadraticModes         modes;
+      std::vector<Candidate> candidates;
+      std::vector<int>       positions;
+      for (std::size_t i = 0; i < ritz.values.size(); ++i)
+        {
+          const Complex nu     = ritz.values[i];
+          const Complex lambda = transformation.value(nu);
+          const bool    pair   = nu.imag() != 0.;
+          if (!transformation.inside(nu))
+            continue;
+          if (std::abs(lambda) <= zero_fraction * options.largest_frequency)
+            modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
+          else if (std::abs(lambda.imag()) <= real_fraction * std::abs(lambda))
+            {
+              modes.real_values.push_back(lambda.real());
+              if (transformation.degree == 1)
+                modes.real_values.push_back(-lambda.real());
+            }
+          else if (lambda.imag() > 0. && lambda.imag() <= options.largest_frequency)
+            {
+              // The members of a conjugate pair ν share two columns; of degree
+              // one both have a λ with Im λ > 0, of degree two only one.
+              auto found = std::find(positions.begin(), positions.end(), ritz.positions[i]);
+              const int column = static_cast<int>(found - positions.begin());
+              if (found == positions.end())
+                for (int part = 0; part < (pair ? 2 : 1); ++part)
+                  positions.push_back(ritz.positions[i] + part);
+              candidates.push_back({lambda, column, !pair ? 0. : nu.imag() > 0. ? 1. : -1.});
+            }
+        }
+      std::sort(modes.real_values.begin(), modes.real_values.end());
+      std::stable_sort(candidates.begin(), candidates.end(), [](const Candidate &a, const Candidate &b) {
+        return a.value.imag() != b.value.imag() ? a.value.imag() < b.value.imag() : a.value.real() < b.value.real();
+      });
+
+      // ------------------------------------------------- vectors
+      const int k          = static_cast<int>(candidates.size());
+      modes.real_part      = k > 0 ? std::make_shared<MultiVector>(pencil.mass->map(), k) : nullptr;
+      modes.imaginary_part = k > 0 ? std::make_shared<MultiVector>(pencil.mass->map(), k) : nullptr;
+      if (k > 0)
+        {
+          const MultiVector vectors = krylov.ritz_vectors(ritz, positions);
+          for (int j = 0; j < k; ++j)
+            {
+              const Candidate &candidate = candidates[j];
+              modes.values.push_back(candidate.value);
+              (*modes.real_part)(j)->Update(1., *vectors(candidate.column), 0.);
+              if (candidate.conjugate != 0.)
+                (*modes.imaginary_part)(j)->Update(candidate.conjugate, *vectors(candidate.column + 1), 0.);
+            }
+          normalize(*modes.real_part, *modes.imaginary_part);
+          modes.residuals = residuals(pencil, modes.values, *modes.real_part, *modes.imaginary_part);
+        }
+      modes.radius = transformation.radius;
+      return modes;
+    }
+
+    std::string scientific(const double x)
+    {
+      std::ostringstream text;
+      text.precision(2);
+      text << std::scientific << x;
+      return text.str();
+    }
+
+    [[noreturn]] void throw_unconverged(const Convergence &state, const double worst, const std::string &reason, const QuadraticModesOptions &options)
+    {
+      throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
+                          " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) +
+                          ", allowed is " + scientific(options.tolerance) + ": " + reason,
+                        "complex modes up to " + scientific(options.largest_frequency) + " rad/s",
+                        "raise the tolerance, the number of basis vectors or of restarts, or lower the largest frequency");
+    }
+
+    void check(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
+    {
+      const auto refuse = [](const std::string &what, const std::string &change) {
+        throw SolverError(what, "options of the complex modes", change);
+      };
+      if (!(options.largest_frequency > 0.))
+        refuse("The largest frequency is " + scientific(options.largest_frequency) + " rad/s", "give a positive frequency");
+      if (!(options.shift >= 0.))
+        refuse("The shift is " + scientific(options.shift) + " 1/s", "give a real shift that is not negative");
+      if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
+        refuse("The tolerance, the block size or the number of fresh directions is not positive", "give positive values");
+      if (inverse.map().NumGlobalElements64() != pencil.mass->map().NumGlobalElements64())
+        refuse("The operators have different sizes", "hand over the factors of the same pencil");
+    }
+
+    /// The iteration: grows the Krylov space, restarts it, and says when it suffices.
+    class Search
+    {
+    public:
+      Search(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
+        : options(options)
+        , transformation(pencil, inverse, options)
+        , n_wanted(std::max(options.expected, 4) * transformation.degree)
+        , krylov(pencil.mass->map(), transformation.degree, largest_basis() + 2 * width())
+        , tolerance(0.3 * options.tolerance)
+      {}
+
+      /// Expands the space to @p n_basis states.
+      void grow(const int n_basis)
+      {
+        while (krylov.dimension() < n_basis && !exhausted)
+          {
+            if (krylov.dimension() == 0)
+              inject(options.block_size);
+            if (krylov.block_size() == 0)
+              {
+                exhausted = inject(options.block_size) == 0;
+                continue;
+              }
+            krylov.expand(shift_invert());
+            n_basis_largest = std::max(n_basis_largest, krylov.n_vectors());
+          }
+      }
+
+      /// Looks at the Ritz values.
+      void assess()
+      {
+        ritz     = krylov.ritz_pairs();
+        state    = convergence(transformation, ritz, tolerance, exhausted);
+        n_wanted = std::max(n_wanted, state.n_inside);
+        if (options.report)
+          options.report(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) + " eigenvalues, " +
+                         std::to_string(krylov.dimension()) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
+      }
+
+      /// Size at which to look next; restarts if it does not fit.
+      int next_size()
+      {
+        const int b         = std::max(krylov.block_size(), 1);
+        const int n_missing = state.n_inside - state.n_converged;
+        // Between one and a half and two and a half vectors for each missing value is what it takes in the end.
+        int       n_more    = std::max(3 * b, 3 * n_missing / 2);
+        if (krylov.dimension() + n_more > largest_basis())
+          {
+            // Half of the room beyond the wanted vectors keeps what is on its way.
+            const int n_kept = std::min(krylov.dimension(), state.n_inside + (largest_basis() - state.n_inside) / 3);
+            if (++n_restarts > options.max_restarts)
+              throw_unconverged(state, state.worst, "no convergence after " + std::to_string(options.max_restarts) + " restarts", options);
+            krylov.restart(ritz, n_kept);
+            n_more = std::max(n_more, (largest_basis() - krylov.dimension()) / 2);
+          }
+        return krylov.dimension() + n_more;
+      }
+
+      /**
+       * Looks for eigenvalues inside the radius that the block had no
+       * component of, such as members of a cluster beyond the block size: a
+       * short process from fresh directions, with everything inside deflated.
+       * If it finds any, fresh directions join the search and the result is
+       * false.
+       */
+      bool proven()
+      {
+        const int n_fresh = options.n_fresh_directions;
+        if (exhausted || n_fresh == 0)
+          return true;
+        CompactKrylov proof = krylov.deflated(ritz, state.n_inside);
+        proof.inject(fresh_vectors(n_fresh));
+        const bool fewer = transformation.degree * options.expected > state.n_inside;
+        for (int step = 0; step < (fewer ? n_searching_steps : n_proving_steps) && proof.block_size() > 0; ++step)
+          proof.expand(shift_invert());
+        const RitzPairs more  = proof.ritz_pairs();
+        const auto      count = std::count_if(more.values.begin(), more.values.end(), [this](const Complex &nu) {
+          return transformation.inside(nu);
+        });
+        if (count <= state.n_inside)
+          return true;
+        if (options.report)
+          options.report("fresh directions show " + std::to_string(count - state.n_inside) + " eigenvalues or more that were missing");
+        n_wanted += static_cast<int>(count) - state.n_inside;
+        inject(n_fresh);
+        return false;
+      }
+
+      int width() const
+      {
+        return options.block_size + options.n_fresh_directions;
+      }
+
+      int largest_basis() const
+      {
+        return options.max_basis > 0 ? std::max(options.max_basis, 2 * width()) : 3 * n_wanted + 8 * width();
+      }
+
+      const QuadraticModesOptions &options;
+      InverseAtShift               transformation;
+      int                          n_wanted; ///< states needed at least
+      CompactKrylov                krylov;
+      double                       tolerance; ///< on the estimate of the residual
+      RitzPairs                    ritz;
+      Convergence                  state;
+      bool                         exhausted = false; ///< the basis spans all states
+      int                          n_restarts = 0, n_basis_largest = 0;
+
+    private:
+      CompactKrylov::Operator shift_invert() const
+      {
+        return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };
+      }
+
+      /// Different ones at every call.
+      MultiVector fresh_vectors(const int n)
+      {
+        return random_vectors(transformation.pencil.mass->map(), n, options.seed + 7919 * n_injections++);
+      }
+
+      int inject(const int n_directions)
+      {
+        return krylov.inject(fresh_vectors(n_directions));
+      }
+
+      int n_injections = 0;
+    };
+  } // namespace
+
+  QuadraticModes quadratic_modes(const QuadraticPencil       &pencil,
+                                 const LinearOperator        &inverse_at_shift,
+                                 const QuadraticModesOptions &options)
+  {
+    check(pencil, inverse_at_shift, options);
+    Search search(pencil, inverse_at_shift, options);
+    int    size = 3 * search.n_wanted / 2 + search.width();
+    while (true)
+      {
+        search.grow(std::min(size, search.largest_basis()));
+        search.assess();
+        if (search.state.complete)
+          {
+            QuadraticModes modes = extract(pencil, search.transformation, search.krylov, search.ritz, options);
+            const double   worst =
+              modes.residuals.empty() ? 0. : *std::max_element(modes.residuals.begin(), modes.residuals.end());
+            if (worst <= options.tolerance)
+              {
+                if (!search.proven())
+                  {
+                    size = search.krylov.dimension() + n_proving_steps * search.width();
+                    continue;
+                  }
+                modes.n_solves   = search.transformation.n_solves;
+                modes.n_restarts = search.n_restarts;
+                modes.n_basis    = search.n_basis_largest;
+                return modes;
+              }
+            // The estimate assumed uniform masses: ask for as much more as it was wrong.
+            search.tolerance *= 0.3 * options.tolerance / worst;
+            if (search.exhausted || search.tolerance < std::numeric_limits<double>::epsilon())
+              throw_unconverged(search.state, worst, "rounding errors do not allow a smaller residual", options);
+          }
+        size = search.next_size();
+      }
+  }
+
+  std::vector<double> residuals(const QuadraticPencil      &pencil,
+                                const std::vector<Complex> &values,
+                                const MultiVector          &real_part,
+                                const MultiVector          &imaginary_part)
+  {
+    constexpr int             chunk = 16;
+    const int                 k     = static_cast<int>(values.size());
+    const std::vector<double> imaginary_norms = column_norms(imaginary_part);
+    std::vector<double>       result(k);
+    for (int first = 0; first < k; first += chunk)
+      {
+        const int  width   = std::min(chunk, k - first);
+        const bool is_real = std::all_of(imaginary_norms.begin() + first, imaginary_norms.begin() + first + width, [](const double x) {
+          return x == 0.;
+        });
+
+        // ------------------------------------------------- λ² M φ + λ C φ + K φ, real and imaginary part
+        MultiVector real(real_part.Map(), width), imaginary(real_part.Map(), width), product(real_part.Map(), width, false);
+        std::vector<double> stiffness_norms(width, 0.);
+        for (const bool imaginary_input : {false, true})
+          {
+            if (imaginary_input && is_real)
+              continue;
+            const MultiVector input = view(imaginary_input ? imaginary_part : real_part, first, width);
+            const auto        add_term = [&](const LinearOperator *matrix, const int power) {
+              if (matrix == nullptr)
+                return;
+              matrix->apply(input, product);
+              if (power == 0)
+                {
+                  const std::vector<double> norms = column_norms(product);
+                  for (int j = 0; j < width; ++j)
+                    stiffness_norms[j] = std::hypot(stiffness_norms[j], norms[j]);
+                }
+              for (int j = 0; j < width; ++j)
+                {
+                  const Complex lambda = values[first + j];
+                  Complex       factor = power == 2 ? lambda * lambda : power == 1 ? lambda : Complex(1.);
+                  if (imaginary_input)
+                    factor *= Complex(0., 1.);
+                  real(j)->Update(factor.real(), *product(j), 1.);
+                  imaginary(j)->Update(factor.imag(), *product(j), 1.);
+                }
+            };
+            add_term(pencil.stiffness, 0);
+            add_term(pencil.damping, 1);
+            add_term(pencil.mass, 2);
+          }
+
+        const std::vector<double> real_norms = column_norms(real), other_norms = column_norms(imaginary);
+        for (int j = 0; j < width; ++j)
+          result[first + j] = std::hypot(real_norms[j], other_norms[j]) /
+                              std::max(stiffness_norms[j], std::numeric_limits<double>::min());
+      }
+    return result;
+  }
+} // namespace Squeal

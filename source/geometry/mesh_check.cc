@@ -1,0 +1,197 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/geometry/mesh_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Point = HexMesh::Point;
+
+    Point operator-(const Point &a, const Point &b)
+    {
+      return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
+    }
+
+    double norm(const Point &a)
+    {
+      return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
+    }
+
+    double triple_product(const Point &a, const Point &b, const Point &c)
+    {
+      return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+             a[2] * (b[0] * c[1] - b[1] * c[0]);
+    }
+
+    /// For each corner, the corners at the ends of its edges, as a right-handed triple.
+    constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
+                                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+
+    constexpr unsigned int face_corners[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+
+    std::string describe(const HexMesh &mesh, const unsigned int element)
+    {
+      const HexMesh::Hexahedron &hexahedron = mesh.hexahedra[element];
+      Point                      centre     = {{0., 0., 0.}};
+      for (const unsigned int node : hexahedron.nodes)
+        for (unsigned int d = 0; d < 3; ++d)
+          centre[d] += mesh.points[node][d] / 8.;
+      std::ostringstream text;
+      text << "element " << element << " of volume '" << mesh.volume_names[hexahedron.volume] << "', near ("
+           << centre[0] << ", " << centre[1] << ", " << centre[2] << ") m";
+      return text.str();
+    }
+
+    std::string list(const std::vector<std::string> &names)
+    {
+      std::string text;
+      for (const std::string &name : names)
+        text += (text.empty() ? "" : ", ") + name;
+      return text.empty() ? "(none)" : text;
+    }
+  } // namespace
+
+  MeshQuality check_mesh(const HexMesh &mesh)
+  {
+    if (mesh.hexahedra.empty())
+      throw MeshError("The mesh has no elements", "mesh", "check the geometry");
+
+    MeshQuality quality{1., 0, 1.};
+    for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
+      {
+        const auto &nodes    = mesh.hexahedra[element].nodes;
+        double      shortest = 1e300, longest = 0., scaled_jacobian = 1.;
+        for (unsigned int corner = 0; corner < 8; ++corner)
+          {
+            Point  edges[3];
+            double lengths = 1.;
+            for (unsigned int e = 0; e < 3; ++e)
+              {
+                edges[e]            = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
+                const double length = norm(edges[e]);
+                shortest            = std::min(shortest, length);
+                longest             = std::max(longest, length);
+                lengths *= length;
+              }
+            const double jacobian = lengths > 0. ? triple_product(edges[0], edges[1], edges[2]) / lengths : 0.;
+            scaled_jacobian       = std::min(scaled_jacobian, jacobian);
+          }
+        if (scaled_jacobian < quality.worst_scaled_jacobian)
+          {
+            quality.worst_scaled_jacobian = scaled_jacobian;
+            quality.worst_element         = element;
+          }
+        if (shortest > 0.)
+          quality.worst_edge_ratio = std::max(quality.worst_edge_ratio, longest / shortest);
+      }
+
+    if (!(quality.worst_scaled_jacobian >= smallest_scaled_jacobian))
+      {
+        std::ostringstream what;
+        what << (quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate")
+             << ": scaled Jacobian " << quality.worst_scaled_jacobian << ", at least " << smallest_scaled_jacobian
+             << " is needed";
+        throw MeshError(what.str(), describe(mesh, quality.worst_element),
+                        "change the element size or the number of nodes per pin face; keep pins away from "
+                        "edges and from each other, and in a mesh of your own correct this element");
+      }
+    return quality;
+  }
+
+  void check_parts(const HexMesh                  &mesh,
+                   const std::vector<std::string> &additional_surfaces,
+                   const std::string              &where)
+  {
+    // Volumes
+    std::vector<std::size_t> n_elements(mesh.volume_names.size(), 0);
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      ++n_elements[hexahedron.volume];
+    std::size_t n_pins = 0, n_discs = 0;
+    for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
+      {
+        if (n_elements[v] == 0)
+          throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where,
+                          "mesh it with hexahedra, or remove the name");
+        ++(mesh.volume_names[v] == PhysicalNames::disc ? n_discs : n_pins);
+      }
+    if (n_discs == 0 || n_pins == 0)
+      throw MeshError(std::string("There is no physical volume '") + (n_discs == 0 ? "disc" : "pin_...") +
+                        "', only: " + list(mesh.volume_names),
+                      where, "name the disc's volume 'disc' and each pin's or pad's with a name that begins with 'pin_'");
+
+    // Surfaces
+    std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact,
+                                       PhysicalNames::pin_clamp};
+    needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
+    std::vector<std::size_t> n_faces(mesh.surface_names.size(), 0);
+    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+      ++n_faces[quadrilateral.surface];
+    for (const std::string &name : needed)
+      {
+        const auto position = std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name);
+        if (position == mesh.surface_names.end() || n_faces[position - mesh.surface_names.begin()] == 0)
+          throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " +
+                            list(mesh.surface_names),
+                          where, "give the surface this name");
+      }
+
+    // Nodes belong to one volume
+    std::vector<int> volume_of_node(mesh.points.size(), -1);
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const unsigned int node : hexahedron.nodes)
+        {
+          int &volume = volume_of_node[node];
+          if (volume >= 0 && volume != int(hexahedron.volume))
+            throw MeshError("Volumes '" + mesh.volume_names[volume] + "' and '" +
+                              mesh.volume_names[hexahedron.volume] + "' share nodes, so nothing could slide",
+                            where, "give each volume surfaces and nodes of its own where they touch");
+          volume = hexahedron.volume;
+        }
+
+    // Named faces are outer faces of volumes of their kind
+    struct Owner
+    {
+      std::array<unsigned int, 4> nodes;
+      unsigned int                volume;
+      bool                        operator<(const Owner &other) const { return nodes < other.nodes; }
+    };
+    std::vector<Owner> faces;
+    faces.reserve(6 * mesh.hexahedra.size());
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const auto &corners : face_corners)
+        {
+          Owner face;
+          for (unsigned int v = 0; v < 4; ++v)
+            face.nodes[v] = hexahedron.nodes[corners[v]];
+          std::sort(face.nodes.begin(), face.nodes.end());
+          face.volume = hexahedron.volume;
+          faces.push_back(face);
+        }
+    std::sort(faces.begin(), faces.end());
+    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+      {
+        const std::string &name = mesh.surface_names[quadrilateral.surface];
+        Owner              wanted{quadrilateral.nodes, 0};
+        std::sort(wanted.nodes.begin(), wanted.nodes.end());
+        const auto [first, last] = std::equal_range(faces.begin(), faces.end(), wanted);
+        if (last - first != 1)
+          throw MeshError("Surface '" + name + "' has a face that is " +
+                            (first == last ? "not a face of any hexahedron" : "inside a volume"),
+                          where, "name only outer faces of the disc and the pins");
+
+        const bool on_disc = mesh.volume_names[first->volume] == PhysicalNames::disc;
+        const bool of_disc = name == PhysicalNames::disc_contact || name == PhysicalNames::disc_bore ||
+                             name == PhysicalNames::disc_rim;
+        const bool of_pin = name == PhysicalNames::pin_contact || name == PhysicalNames::pin_clamp ||
+                            name == PhysicalNames::pin_side;
+        if ((of_disc && !on_disc) || (of_pin && on_disc))
+          throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'",
+                          where, "put disc_... on the disc and pin_... on pins");
+      }
+  }
+} // namespace Squeal

@@ -1,0 +1,190 @@
+#include <squeal/geometry/plan_smoothing.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    // Faces above this shape (a rectangle of sides 1 : 3, or an angle of 37°) stay as Gmsh made them.
+    constexpr double good_shape = 0.6;
+    constexpr int    max_sweeps = 100;
+
+    // Enough for a displacement to spread from a pin to its neighbours; how evenly does not matter.
+    constexpr int displacement_sweeps = 200;
+
+    /// Least shape of the four corners.
+    double shape(const Plan::Face &face, const std::vector<Plan::Point> &points)
+    {
+      double worst = 1.;
+      for (unsigned int v = 0; v < 4; ++v)
+        {
+          const Plan::Point &corner = points[face[v]];
+          const Plan::Point &next   = points[face[(v + 1) % 4]];
+          const Plan::Point &last   = points[face[(v + 3) % 4]];
+          const double       ax = next[0] - corner[0], ay = next[1] - corner[1];
+          const double       bx = last[0] - corner[0], by = last[1] - corner[1];
+          const double       squares = ax * ax + ay * ay + bx * bx + by * by;
+          worst = std::min(worst, squares > 0. ? 2. * (ax * by - ay * bx) / squares : -1.);
+        }
+      return worst;
+    }
+  } // namespace
+
+  namespace
+  {
+    /// Marks the nodes on the outline of a set of faces.
+    void fix_outline(const std::vector<Plan::Face> &faces, std::vector<bool> &fixed)
+    {
+      for (const Plan::Edge &edge : boundary_edges(faces))
+        fixed[edge[0]] = fixed[edge[1]] = true;
+    }
+
+    std::vector<Plan::Face> faces_of(const Plan::Pin &pin, const Plan &plan)
+    {
+      std::vector<Plan::Face> faces;
+      for (const unsigned int face : pin.faces)
+        faces.push_back(plan.faces[face]);
+      return faces;
+    }
+
+    void smooth(const std::vector<Plan::Face> &faces, const std::vector<bool> &fixed, std::vector<Plan::Point> &points)
+    {
+      // Faces around the nodes that may move
+      std::vector<std::vector<unsigned int>> faces_at(points.size());
+      for (unsigned int face = 0; face < faces.size(); ++face)
+        for (const unsigned int node : faces[face])
+          if (!fixed[node])
+            faces_at[node].push_back(face);
+
+      // Length of steps: fixed, so that tangled nodes do not run away
+      std::vector<double> longest_edge(points.size(), 0.);
+      for (const Plan::Face &face : faces)
+        for (unsigned int v = 0; v < 4; ++v)
+          {
+            const Plan::Point &a      = points[face[v]];
+            const Plan::Point &b      = points[face[(v + 1) % 4]];
+            const double       length = std::hypot(a[0] - b[0], a[1] - b[1]);
+            for (const unsigned int node : {face[v], face[(v + 1) % 4]})
+              longest_edge[node] = std::max(longest_edge[node], length);
+          }
+
+      // Sweeps: try the mean of the neighbours, then steps of decreasing length
+      const auto worst_at = [&](const unsigned int node) {
+        double worst = 1.;
+        for (const unsigned int face : faces_at[node])
+          worst = std::min(worst, shape(faces[face], points));
+        return worst;
+      };
+      bool moved = true;
+      for (int sweep = 0; sweep < max_sweeps && moved; ++sweep)
+        {
+          moved = false;
+          for (unsigned int node = 0; node < points.size(); ++node)
+            {
+              if (fixed[node])
+                continue;
+              const double before = worst_at(node);
+              if (before >= good_shape)
+                continue;
+
+              double      best          = before;
+              Plan::Point best_position = points[node];
+              const auto  attempt       = [&](const Plan::Point &position) {
+                points[node]  = position;
+                const double worst = worst_at(node);
+                if (worst > best)
+                  {
+                    best          = worst;
+                    best_position = position;
+                  }
+              };
+
+              Plan::Point  mean  = {{0., 0.}};
+              unsigned int count = 0;
+              for (const unsigned int face : faces_at[node])
+                for (const unsigned int other : faces[face])
+                  if (other != node)
+                    {
+                      for (unsigned int d = 0; d < 2; ++d)
+                        mean[d] += points[other][d];
+                      ++count;
+                    }
+              attempt({{mean[0] / count, mean[1] / count}});
+              const double longest = 0.5 * longest_edge[node], shortest = 1e-3 * longest;
+              for (double step = longest; step > shortest; step /= 2.)
+                {
+                  const Plan::Point from = best_position;
+                  for (int direction = 0; direction < 8; ++direction)
+                    attempt({{from[0] + step * std::cos(direction * std::acos(-1.) / 4.),
+                              from[1] + step * std::sin(direction * std::acos(-1.) / 4.)}});
+                }
+
+              points[node] = best_position;
+              moved        = moved || best > before + 1e-4;
+            }
+        }
+    }
+  } // namespace
+
+  void smooth(Plan &plan)
+  {
+    std::vector<bool> fixed(plan.points.size(), false);
+    fix_outline(plan.faces, fixed);
+    for (const Plan::Pin &pin : plan.pins)
+      fix_outline(faces_of(pin, plan), fixed);
+    smooth(plan.faces, fixed, plan.points);
+  }
+
+  std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side)
+  {
+    // Pins of this side and the boundary of the annulus have given displacements
+    std::vector<Plan::Point> displacements(plan.points.size(), {{0., 0.}});
+    std::vector<bool>        outline(plan.points.size(), false), given(plan.points.size(), false);
+    bool                     displaced = false;
+    fix_outline(plan.faces, outline);
+    given = outline;
+    for (const Plan::Pin &pin : plan.pins)
+      {
+        displaced = displaced || pin.displacement != Plan::Point{{0., 0.}};
+        if (pin.side != side)
+          continue;
+        fix_outline(faces_of(pin, plan), outline);
+        for (const unsigned int face : pin.faces)
+          for (const unsigned int node : plan.faces[face])
+            {
+              given[node]         = true;
+              displacements[node] = pin.displacement;
+            }
+      }
+    if (!displaced)
+      return plan.points;
+
+    // The other nodes follow their neighbours
+    std::vector<std::vector<unsigned int>> neighbours(plan.points.size());
+    for (const Plan::Face &face : plan.faces)
+      for (unsigned int v = 0; v < 4; ++v)
+        {
+          neighbours[face[v]].push_back(face[(v + 1) % 4]);
+          neighbours[face[v]].push_back(face[(v + 3) % 4]);
+        }
+    for (int sweep = 0; sweep < displacement_sweeps; ++sweep)
+      for (std::size_t node = 0; node < given.size(); ++node)
+        if (!given[node])
+          for (unsigned int d = 0; d < 2; ++d)
+            {
+              double sum = 0.;
+              for (const unsigned int neighbour : neighbours[node])
+                sum += displacements[neighbour][d];
+              displacements[node][d] = sum / neighbours[node].size();
+            }
+
+    std::vector<Plan::Point> points = plan.points;
+    for (std::size_t node = 0; node < points.size(); ++node)
+      for (unsigned int d = 0; d < 2; ++d)
+        points[node][d] += displacements[node][d];
+    smooth(plan.faces, outline, points);
+    return points;
+  }
+} // namespace Squeal

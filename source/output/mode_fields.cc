@@ -1,0 +1,166 @@
+#include <squeal/output/mode_fields.h>
+
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/mapping_q.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/numerics/data_out.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <map>
+#include <sstream>
+
+namespace Squeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Interpretation = DataComponentInterpretation::DataComponentInterpretation;
+    const std::vector<Interpretation> vector_field(3, DataComponentInterpretation::component_is_part_of_vector);
+
+    double largest_amplitude(const ModeField &mode)
+    {
+      double largest = 0.;
+      for (const auto &u : mode.displacement)
+        largest = std::max(largest, std::abs(u));
+      return largest > 0. ? largest : 1.;
+    }
+
+    template <int dim, int spacedim>
+    void set_flags(DataOut<dim, spacedim> &output)
+    {
+      DataOutBase::VtkFlags flags;
+      flags.compression_level = DataOutBase::VtkFlags::best_speed;
+      output.set_flags(flags);
+    }
+
+    std::array<long, 3> position_key(const double x, const double y, const double z)
+    {
+      constexpr double grid = 1e-6; // [m]
+      return {{std::lround(x / grid), std::lround(y / grid), std::lround(z / grid)}};
+    }
+  } // namespace
+
+  ModeFieldWriter::ModeFieldWriter(const Model &model, const ContactInterface &interface, const ResultFolder &folder)
+    : model(model)
+    , interface(interface)
+    , folder(folder)
+    , components(model.triangulation().n_active_cells())
+  {
+    for (const auto &cell : model.triangulation().active_cell_iterators())
+      components(cell->active_cell_index()) = cell->material_id();
+
+    // The pins' contact faces as a surface mesh of their own
+    const types::boundary_id    id = model.surface_id(PhysicalNames::pin_contact);
+    std::vector<Point<3>>       vertices(model.triangulation().get_vertices());
+    std::vector<CellData<2>>    cells;
+    for (const auto &cell : model.triangulation().active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+        if (face->at_boundary() && face->boundary_id() == id)
+          {
+            CellData<2> data;
+            for (unsigned int v = 0; v < 4; ++v)
+              data.vertices[v] = face->vertex_index(v);
+            cells.push_back(data);
+          }
+    SubCellData none;
+    GridTools::delete_unused_vertices(vertices, cells, none);
+    GridTools::consistently_order_cells(cells);
+    contact_mesh.create_triangulation(vertices, cells, none);
+    contact_fe = std::make_unique<FE_Q<2, 3>>(1);
+    contact_dofs.reinit(contact_mesh);
+    contact_dofs.distribute_dofs(*contact_fe);
+
+    // Its vertices are contact nodes; nodes between them (degree 2) are not shown
+    std::map<std::array<long, 3>, unsigned int> numbers;
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      {
+        const auto &p                             = model.nodes()[interface[c].pin_node].position;
+        numbers[position_key(p[0], p[1], p[2])] = c;
+      }
+    std::vector<Point<3>> support(contact_dofs.n_dofs());
+    DoFTools::map_dofs_to_support_points(MappingQ<2, 3>(1), contact_dofs, support);
+    for (const auto &p : support)
+      contact_node_of_dof.push_back(numbers.at(position_key(p[0], p[1], p[2])));
+  }
+
+  template <typename Function>
+  Vector<double> ModeFieldWriter::dof_vector(const ModeField &mode, const Function &value) const
+  {
+    Vector<double> result(model.n_dofs());
+    for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
+      if (const int free = model.free_dof(dof); free >= 0)
+        result(dof) = value(mode.displacement[free]);
+    return result;
+  }
+
+  void ModeFieldWriter::write_mode(const ModeField &mode) const
+  {
+    using Complex      = std::complex<double>;
+    const double scale = 1. / largest_amplitude(mode);
+    const auto   re    = dof_vector(mode, [&](const Complex &u) { return scale * u.real(); });
+    const auto   im    = dof_vector(mode, [&](const Complex &u) { return scale * u.imag(); });
+    const auto   mod   = dof_vector(mode, [&](const Complex &u) { return scale * std::abs(u); });
+    const auto   arg   = dof_vector(mode, [](const Complex &u) { return std::arg(u); });
+
+    DataOut<3> output;
+    set_flags(output);
+    output.attach_dof_handler(model.dof_handler());
+    output.add_data_vector(re, std::vector<std::string>(3, "displacement_real"), DataOut<3>::type_dof_data, vector_field);
+    output.add_data_vector(im, std::vector<std::string>(3, "displacement_imag"), DataOut<3>::type_dof_data, vector_field);
+    output.add_data_vector(mod, std::vector<std::string>(3, "amplitude"), DataOut<3>::type_dof_data, vector_field);
+    output.add_data_vector(arg, std::vector<std::string>(3, "phase"), DataOut<3>::type_dof_data, vector_field);
+    output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
+    output.build_patches(model.mapping(), model.degree());
+    output.write_vtu_in_parallel(folder.path("modes/" + mode.name + ".vtu"), model.communicator());
+
+    write_contact(mode);
+  }
+
+  void ModeFieldWriter::write_contact(const ModeField &mode) const
+  {
+    const double   scale = 1. / largest_amplitude(mode);
+    Vector<double> re(contact_dofs.n_dofs()), im(contact_dofs.n_dofs());
+    for (unsigned int dof = 0; dof < re.size(); ++dof)
+      {
+        const auto &r = mode.reactions[contact_node_of_dof[dof]];
+        re(dof)       = scale * r.real();
+        im(dof)       = scale * r.imag();
+      }
+    DataOut<2, 3> output;
+    set_flags(output);
+    output.attach_dof_handler(contact_dofs);
+    output.add_data_vector(re, "normal_reaction_real");
+    output.add_data_vector(im, "normal_reaction_imag");
+    output.build_patches();
+    folder.write("modes/" + mode.name + "_contact.vtu", [&](std::ostream &stream) { output.write_vtu(stream); });
+  }
+
+  void ModeFieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
+  {
+    const double scale  = 1. / largest_amplitude(mode);
+    const double period = 2. * M_PI / mode.lambda.imag();
+    std::vector<std::pair<double, std::string>> frames;
+    for (unsigned int frame = 0; frame < n_frames; ++frame)
+      {
+        const double time = period * frame / n_frames;
+        const auto   turn = std::polar(scale, mode.lambda.imag() * time);
+        const auto   u    = dof_vector(mode, [&](const std::complex<double> &value) { return (turn * value).real(); });
+
+        DataOut<3> output;
+        set_flags(output);
+        output.attach_dof_handler(model.dof_handler());
+        output.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
+        output.build_patches(model.mapping(), model.degree());
+
+        std::ostringstream name;
+        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame << ".vtu";
+        output.write_vtu_in_parallel(folder.path("animations/" + name.str()), model.communicator());
+        frames.emplace_back(time, name.str());
+      }
+    folder.write("animations/" + mode.name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, frames); });
+  }
+} // namespace Squeal

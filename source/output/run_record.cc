@@ -1,0 +1,64 @@
+#include <squeal/base/version.h>
+#include <squeal/output/run_record.h>
+
+#include <deal.II/base/config.h>
+
+#include <Trilinos_version.h>
+#include <cholmod.h>
+#include <dmumps_c.h>
+#include <gmsh.h>
+#include <nlohmann/json.hpp>
+#include <umfpack.h>
+
+#include <ctime>
+#include <iomanip>
+#include <ostream>
+#include <sstream>
+#include <thread>
+
+namespace Squeal
+{
+  namespace
+  {
+    std::string utc_time()
+    {
+      const std::time_t  now = std::time(nullptr);
+      std::ostringstream text;
+      text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
+      return text.str();
+    }
+
+    std::string cholmod_version()
+    {
+      return std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) + "." + std::to_string(CHOLMOD_SUBSUB_VERSION);
+    }
+  } // namespace
+
+  void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress)
+  {
+    using Json = nlohmann::ordered_json;
+    Json tree;
+    tree["command"]  = record.command;
+    tree["finished"] = utc_time();
+    tree["versions"] = {{"squeal", version},
+                        {"revision", revision},
+                        {"deal.II", DEAL_II_PACKAGE_VERSION},
+                        {"Trilinos", TRILINOS_VERSION_STRING},
+                        {"MUMPS", MUMPS_VERSION},
+                        {"CHOLMOD", cholmod_version()},
+                        {"UMFPACK", UMFPACK_VERSION},
+                        {"Gmsh", GMSH_API_VERSION}};
+    tree["machine"]  = {{"cores", std::thread::hardware_concurrency()},
+                        {"processes", record.n_processes},
+                        {"BLAS threads per process", record.blas_threads}};
+    for (const auto &[name, count] : record.counts)
+      tree["counts"][name] = count;
+    for (const auto &[name, value] : record.quantities)
+      tree["quantities"][name] = value;
+    tree["wall time [s]"] = progress.elapsed();
+    for (const StepRecord &step : progress.steps())
+      tree["steps"].push_back(
+        {{"name", step.name}, {"wall time [s]", step.seconds}, {"peak memory so far [byte]", step.peak_memory}, {"result", step.summary}});
+    stream << tree.dump(2) << '\n';
+  }
+} // namespace Squeal

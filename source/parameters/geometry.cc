@@ -1,0 +1,193 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/geometry.h>
+
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    template <typename... Values>
+    std::string text(const Values &...values)
+    {
+      std::ostringstream stream;
+      (stream << ... << values);
+      return stream.str();
+    }
+
+    [[noreturn]] void refuse(const std::string &what, const std::string &name, const std::string &change)
+    {
+      throw ParameterError(what, "Geometry/" + name, change);
+    }
+
+    void check_positive(const double value, const std::string &name)
+    {
+      if (!(value > 0.) || !std::isfinite(value))
+        refuse(text("Geometry/", name, " is ", value, ", but must be positive"), name, "set a positive value");
+    }
+
+    /// Number of intervals k on a third of the circle of a pin whose face has 3 k (k + 1) + 1 nodes, not rounded.
+    double intervals(const double nodes_per_pin_face)
+    {
+      return (std::sqrt(12. * nodes_per_pin_face - 3.) - 3.) / 6.;
+    }
+
+    unsigned int nodes(const unsigned int intervals)
+    {
+      return 3 * intervals * (intervals + 1) + 1;
+    }
+
+    void check_nodes_per_pin_face(const unsigned int nodes_per_pin_face)
+    {
+      const unsigned int below = nodes_per_pin_face < 7 ? 1 : std::floor(intervals(nodes_per_pin_face) + 1e-9);
+      if (nodes(below) == nodes_per_pin_face)
+        return;
+      const unsigned int above   = nodes_per_pin_face < 7 ? 1 : below + 1;
+      const unsigned int nearest = nodes_per_pin_face - nodes(below) <= nodes(above) - nodes_per_pin_face ?
+                                     nodes(below) :
+                                     nodes(above);
+      refuse(text("Geometry/Nodes per pin face is ", nodes_per_pin_face,
+                  ", but a pin is filled by three blocks of k x k elements, which gives 3 k (k + 1) + 1 nodes: "
+                  "7, 19, 37, 61, ..."),
+             "Nodes per pin face", text("the nearest allowed value is ", nodes_per_pin_face < 7 ? 7 : nearest));
+    }
+
+    /// Positions of the pins of one side; @p side is "Top" or "Bottom".
+    void check_layout(const PinLayout &layout, const std::string &side, const GeometryParameters &parameters)
+    {
+      const std::string radii_name = side + " pin radii", angles_name = side + " pin angles";
+      const double      pin_radius = parameters.pin_diameter / 2.;
+
+      // Inside the annulus
+      for (std::size_t i = 0; i < layout.radii.size(); ++i)
+        {
+          const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
+          const double outside = layout.radii[i] + pin_radius - parameters.disc_outer_radius;
+          if (inside >= 0. || outside >= 0.)
+            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", layout.radii[i],
+                        " m with diameter ", parameters.pin_diameter, " m, reaches ", std::max(inside, outside),
+                        " m beyond the ", inside >= outside ? "inner" : "outer", " radius of the disc (",
+                        inside >= outside ? parameters.disc_inner_radius : parameters.disc_outer_radius, " m)"),
+                   radii_name,
+                   text("a radius between ", parameters.disc_inner_radius + pin_radius, " m and ",
+                        parameters.disc_outer_radius - pin_radius,
+                        " m, both excluded, keeps the pin on the disc; or make the pin smaller"));
+        }
+
+      // Apart from each other
+      const double to_radians = std::acos(-1.) / 180.;
+      for (std::size_t i = 0; i < layout.radii.size(); ++i)
+        for (std::size_t j = i + 1; j < layout.radii.size(); ++j)
+          {
+            const double angle = (layout.angles[i] - layout.angles[j]) * to_radians;
+            const double distance =
+              std::sqrt(std::pow(layout.radii[i] - layout.radii[j], 2) +
+                        4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
+            if (distance <= parameters.pin_diameter)
+              refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
+                          parameters.pin_diameter - distance, " m: their axes are ", distance,
+                          " m apart, their diameter is ", parameters.pin_diameter, " m"),
+                     angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
+          }
+    }
+  } // namespace
+
+  void GeometryParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using namespace dealii::Patterns;
+
+    prm.enter_subsection("Geometry");
+    prm.add_parameter("File", file,
+                      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). A name without a "
+                      "directory is looked for in the current directory, then among the geometries that come with "
+                      "the program. A file with physical volumes is a solid and is used as it is; one with physical "
+                      "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below. "
+                      "Units: none.",
+                      Anything());
+    prm.add_parameter("Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
+    prm.add_parameter("Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
+    prm.add_parameter("Disc thickness", disc_thickness,
+                      "Thickness of the disc, half of it on each side of z = 0. Units: m.", Double(0.));
+    prm.add_parameter("Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", Double(0.));
+    prm.add_parameter("Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", Double(0.));
+    prm.add_parameter("Top pin radii", top.radii,
+                      "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
+                      "separated by commas; empty for none. Units: m.",
+                      List(Double(0.), 0));
+    prm.add_parameter("Top pin angles", top.angles,
+                      "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.",
+                      List(Double(), 0));
+    prm.add_parameter("Bottom pin radii", bottom.radii,
+                      "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
+                      "separated by commas; empty for none. Units: m.",
+                      List(Double(0.), 0));
+    prm.add_parameter("Bottom pin angles", bottom.angles,
+                      "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.",
+                      List(Double(), 0));
+    prm.add_parameter("Nodes per pin face", nodes_per_pin_face,
+                      "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.",
+                      Integer(1));
+    prm.add_parameter("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.",
+                      Integer(1));
+    prm.add_parameter("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", Integer(1));
+    prm.add_parameter("Element size", element_size,
+                      "Length of the elements of the disc, in its plane and away from the pins. Units: m.", Double(0.));
+    prm.add_parameter("Pairing tolerance", pairing_tolerance,
+                      "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
+                      "Units: m.",
+                      Double(0.));
+    prm.leave_subsection();
+  }
+
+  void GeometryParameters::check() const
+  {
+    // Sizes and counts
+    if (file.empty())
+      refuse("Geometry/File is empty", "File", "name a .geo or .msh, or leave it out for disc_pins.geo");
+    check_positive(disc_inner_radius, "Disc inner radius");
+    check_positive(disc_outer_radius, "Disc outer radius");
+    check_positive(disc_thickness, "Disc thickness");
+    check_positive(pin_diameter, "Pin diameter");
+    check_positive(pin_height, "Pin height");
+    check_positive(element_size, "Element size");
+    check_positive(pairing_tolerance, "Pairing tolerance");
+    check_positive(pin_layers, "Pin layers");
+    check_positive(disc_layers, "Disc layers");
+    check_nodes_per_pin_face(nodes_per_pin_face);
+
+    for (const auto &[layout, side] : {std::make_pair(&top, "Top"), std::make_pair(&bottom, "Bottom")})
+      if (layout->radii.size() != layout->angles.size())
+        refuse(text("Geometry/", side, " pin radii has ", layout->radii.size(), " values, ", side,
+                    " pin angles has ", layout->angles.size()),
+               text(side, " pin angles"), "give every pin one radius and one angle");
+
+    // Pairs must be unambiguous: neighbours on a contact face are at least one element apart.
+    if (pairing_tolerance >= element_size / 2.)
+      refuse(text("Geometry/Pairing tolerance is ", pairing_tolerance, " m with elements of ", element_size, " m"),
+             "Pairing tolerance", "set it far below the element size; 1e-6 m suits most geometries");
+
+    // The built-in plan; in files of the user's own these need not mean anything
+    if (std::filesystem::path(file).filename() != "disc_pins.geo")
+      return;
+    if (disc_inner_radius >= disc_outer_radius)
+      refuse(text("Geometry/Disc inner radius is ", disc_inner_radius,
+                  " m, not smaller than Geometry/Disc outer radius, ", disc_outer_radius, " m"),
+             "Disc inner radius", "set it below the outer radius");
+    const double width = disc_outer_radius - disc_inner_radius;
+    if (element_size > width / 2.)
+      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", width,
+                  " m wide between its radii"),
+             "Element size", text("set it to at most ", width / 2., " m, better a fraction of that"));
+    if (element_size > disc_inner_radius)
+      refuse(text("Geometry/Element size is ", element_size, " m, but the bore has a radius of only ",
+                  disc_inner_radius, " m"),
+             "Element size", text("set it to at most ", disc_inner_radius, " m, better a fraction of that"));
+    if (top.radii.empty() && bottom.radii.empty())
+      refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty, so there is no contact",
+             "Top pin radii", "place at least one pin");
+    check_layout(top, "Top", *this);
+    check_layout(bottom, "Bottom", *this);
+  }
+} // namespace Squeal

@@ -1,0 +1,172 @@
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/stability/complex_modes.h>
+
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Y_j += c_j (x_j + i y_j) for the columns of complex vectors kept as real and imaginary halves.
+    void add_scaled(MultiVector &Y, const std::vector<std::complex<double>> &c, const MultiVector &X)
+    {
+      const int k = X.NumVectors() / 2;
+      for (int j = 0; j < k; ++j)
+        {
+          Y(j)->Update(c[j].real(), *X(j), -c[j].imag(), *X(k + j), 1.);
+          Y(k + j)->Update(c[j].real(), *X(k + j), c[j].imag(), *X(j), 1.);
+        }
+    }
+
+    /// Dot products of corresponding columns.
+    std::vector<double> column_products(const MultiVector &X, const MultiVector &Y)
+    {
+      std::vector<double> result(X.NumVectors());
+      if (!result.empty())
+        X.Dot(Y, result.data());
+      return result;
+    }
+
+    /// Turns each vector so that its entry of largest modulus is real and positive.
+    void fix_phase(MultiVector &real_part, MultiVector &imaginary_part)
+    {
+      for (int j = 0; j < real_part.NumVectors(); ++j)
+        {
+          // The largest entry of all processes; ties go to the lowest process
+          double largest = -1.;
+          double entry[2] = {1., 0.};
+          for (int i = 0; i < real_part.MyLength(); ++i)
+            if (const double modulus = std::hypot(real_part[j][i], imaginary_part[j][i]); modulus > largest)
+              {
+                largest  = modulus;
+                entry[0] = real_part[j][i];
+                entry[1] = imaginary_part[j][i];
+              }
+          const Epetra_Comm &comm = real_part.Comm();
+          double             global;
+          comm.MaxAll(&largest, &global, 1);
+          int owner = largest == global ? comm.MyPID() : comm.NumProc(), root;
+          comm.MinAll(&owner, &root, 1);
+          comm.Broadcast(entry, 2, root);
+
+          const double modulus = std::hypot(entry[0], entry[1]);
+          const double c = entry[0] / modulus, s = -entry[1] / modulus;
+          for (int i = 0; i < real_part.MyLength(); ++i)
+            {
+              const double re = real_part[j][i], im = imaginary_part[j][i];
+              real_part[j][i]      = c * re - s * im;
+              imaginary_part[j][i] = s * re + c * im;
+            }
+        }
+    }
+
+    MultiVector permuted(const MultiVector &X, const std::vector<int> &order)
+    {
+      MultiVector result(X.Map(), X.NumVectors());
+      for (int j = 0; j < X.NumVectors(); ++j)
+        *result(j) = *X(order[j]);
+      return result;
+    }
+  } // namespace
+
+  MultiVector force_residuals(const CoupledSystem                     &system,
+                              const double                             mu,
+                              const std::vector<std::complex<double>> &lambda,
+                              const MultiVector                       &real_part,
+                              const MultiVector                       &imaginary_part,
+                              const bool                               left)
+  {
+    const MultiVector        X        = join({&real_part, &imaginary_part});
+    const SecondOrderSystem &matrices = system.frictionless;
+    std::vector<std::complex<double>> square(lambda.size());
+    std::transform(lambda.begin(), lambda.end(), square.begin(), [](const auto &l) { return l * l; });
+
+    // Frictionless part
+    MultiVector R = *matrices.stiffness * X;
+    add_scaled(R, square, *matrices.mass * X);
+    if (matrices.damping)
+      add_scaled(R, lambda, *matrices.damping * X);
+
+    // Friction: −μ A (V_K + λ² V_M) φ, or its transpose −μ (V_K + λ² V_M)ᵀ Aᵀ φ
+    if (mu != 0.)
+      {
+        if (left)
+          {
+            const MultiVector a = transpose_times(*system.friction_forces, X);
+            MultiVector       F = transpose_times(*system.normal_stiffness, a);
+            add_scaled(F, square, transpose_times(*system.normal_mass, a));
+            R.Update(-mu, F, 1.);
+          }
+        else
+          {
+            MultiVector r = *system.normal_stiffness * X;
+            add_scaled(r, square, *system.normal_mass * X);
+            R.Update(-mu, *system.friction_forces * r, 1.);
+          }
+      }
+    return R;
+  }
+
+  void finish_modes(const CoupledSystem &system, const double mu, const UpdatedInverse &inverse, ComplexModes &modes)
+  {
+    const int k = modes.lambda.size();
+    if (k == 0)
+      return;
+
+    // Ascending frequency; of a pair with equal frequencies the stable mode first
+    std::vector<int> order(k);
+    std::iota(order.begin(), order.end(), 0);
+    constexpr double equal = 1e-9;
+    std::sort(order.begin(), order.end(), [&](const int a, const int b) {
+      return std::make_pair(modes.lambda[a].imag(), modes.lambda[a].real()) < std::make_pair(modes.lambda[b].imag(), modes.lambda[b].real());
+    });
+    for (int j = 0; j + 1 < k; ++j)
+      {
+        const auto &a = modes.lambda[order[j]], &b = modes.lambda[order[j + 1]];
+        if (b.imag() - a.imag() < equal * b.imag() && a.real() > b.real())
+          std::swap(order[j], order[j + 1]);
+      }
+    std::vector<std::complex<double>> sorted(k);
+    for (int j = 0; j < k; ++j)
+      sorted[j] = modes.lambda[order[j]];
+    modes.lambda         = sorted;
+    modes.real_part      = std::make_shared<MultiVector>(permuted(*modes.real_part, order));
+    modes.imaginary_part = std::make_shared<MultiVector>(permuted(*modes.imaginary_part, order));
+    if (!modes.estimated_errors.empty())
+      {
+        const auto errors = modes.estimated_errors;
+        for (int j = 0; j < k; ++j)
+          modes.estimated_errors[j] = errors[order[j]];
+      }
+
+    // φᴴ M φ = 1
+    fix_phase(*modes.real_part, *modes.imaginary_part);
+    const auto mass_products = [&](const MultiVector &X) { return column_products(X, *system.frictionless.mass * X); };
+    const auto m_re = mass_products(*modes.real_part), m_im = mass_products(*modes.imaginary_part);
+    for (int j = 0; j < k; ++j)
+      {
+        const double factor = 1. / std::sqrt(m_re[j] + m_im[j]);
+        (*modes.real_part)(j)->Scale(factor);
+        (*modes.imaginary_part)(j)->Scale(factor);
+      }
+
+    // Residuals
+    const MultiVector X  = join({modes.real_part.get(), modes.imaginary_part.get()});
+    const MultiVector KX = *system.frictionless.stiffness * X;
+    const MultiVector R  = force_residuals(system, mu, modes.lambda, *modes.real_part, *modes.imaginary_part);
+    MultiVector       U(R.Map(), R.NumVectors());
+    inverse.apply_frictionless(R, U);
+    const auto R_R = column_products(R, R), KX_KX = column_products(KX, KX), U_R = column_products(U, R), X_KX = column_products(X, KX);
+    modes.residuals.resize(k);
+    modes.energy_residuals.resize(k);
+    for (int j = 0; j < k; ++j)
+      {
+        modes.residuals[j]        = std::sqrt((R_R[j] + R_R[k + j]) / (KX_KX[j] + KX_KX[k + j]));
+        modes.energy_residuals[j] = (U_R[j] + U_R[k + j]) / (X_KX[j] + X_KX[k + j]);
+      }
+  }
+} // namespace Squeal

@@ -1,0 +1,63 @@
+#include <squeal/eigen/quadratic_modes.h>
+#include <squeal/linear_algebra/matrix_operator.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/stability/krylov_modes.h>
+
+#include <optional>
+
+namespace Squeal
+{
+  ComplexModes krylov_modes(const CoupledSystem    &system,
+                            UpdatedInverse         &inverse,
+                            const double            shift,
+                            const double            mu,
+                            const double            largest_circular_frequency,
+                            const int               n_expected,
+                            const SolverParameters &parameters,
+                            Progress               &progress)
+  {
+    // The pencil as sparse matrices
+    const SecondOrderSystem       matrices = with_friction(system, mu);
+    const MatrixOperator          mass(matrices.mass), stiffness(matrices.stiffness);
+    std::optional<MatrixOperator> damping;
+    if (matrices.damping)
+      damping.emplace(matrices.damping);
+    const QuadraticPencil pencil{&mass, damping ? &*damping : nullptr, &stiffness};
+
+    // Its inverse at the shift
+    std::unique_ptr<Factorization> lu;
+    if (parameters.shift_inverse == ShiftInverse::sparse_lu)
+      {
+        std::shared_ptr<const SparseMatrix> shifted = matrices.stiffness;
+        if (shift != 0.)
+          {
+            shifted = add(1., *shifted, shift * shift, *matrices.mass);
+            if (matrices.damping)
+              shifted = add(1., *shifted, shift, *matrices.damping);
+          }
+        const auto library = parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library;
+        lu                 = factorize_general(*shifted, library, "stiffness of the coupled system with friction");
+      }
+    else
+      inverse.set_friction_coefficient(mu);
+    const LinearOperator &shift_inverse = lu ? static_cast<const LinearOperator &>(*lu) : inverse;
+
+    QuadraticModesOptions options;
+    options.shift             = shift;
+    options.largest_frequency = largest_circular_frequency;
+    options.expected          = n_expected;
+    options.tolerance         = parameters.complex_tolerance;
+    options.report            = [&](const std::string &state) { progress.update(state); };
+    const QuadraticModes found = quadratic_modes(pencil, shift_inverse, options);
+
+    ComplexModes modes;
+    modes.lambda         = found.values;
+    modes.real_part      = found.real_part;
+    modes.imaginary_part = found.imaginary_part;
+    modes.overdamped     = found.real_values;
+    modes.n_rigid_body   = found.n_zero_values / 2;
+    modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
+    finish_modes(system, mu, inverse, modes);
+    return modes;
+  }
+} // namespace Squeal

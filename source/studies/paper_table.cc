@@ -1,0 +1,190 @@
+#include <squeal/base/conventions.h>
+#include <squeal/studies/paper_table.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Value = std::optional<double>;
+
+    /// How a row of the paper finds its mode in a run.
+    enum class Match
+    {
+      label,           ///< the mode of that label
+      lowest,          ///< lowest frequency among the modes of the label
+      highest,         ///< highest frequency among the modes of the label
+      most_unstable,   ///< largest growth rate among the modes of the label
+      second_unstable, ///< second largest
+      frequency        ///< nearest frequency: the paper finds these coupled modes hard to name
+    };
+
+    struct Row
+    {
+      const char *name;
+      const char *label;
+      Match       match;
+      Value       component, coupled, complex_undamped, divergence_undamped, complex_damped, divergence_damped;
+    };
+
+    constexpr auto none = std::nullopt;
+
+    /// Frequencies in Hz, divergence rates in per cent; empty: not given or negligible.
+    const std::vector<Row> &rows()
+    {
+      static const std::vector<Row> table = {
+        {"A0-1 -", "A0-1 -", Match::label, 251, 295, 295, none, 296, none},
+        {"A0-1 +", "A0-1 +", Match::frequency, 251, 312, 312, none, 313, none},
+        {"A0-0", "A0-0", Match::label, 352, none, none, none, none, none},
+        {"A0-2 -", "A0-2 -", Match::label, 569, 489, 489, none, 489, none},
+        {"A0-2 +", "A0-2 +", Match::label, 569, 697, 700, none, 700, none},
+        {"C0-0", "C0-0", Match::label, 644, 644, 645, none, 644, none},
+        {"R0-1 -", "R0-1 -", Match::label, 649, 643, 644, none, 644, none},
+        {"R0-1 +", "R0-1 +", Match::label, 649, 647, 648, none, 648, -0.093},
+        {"unnamed", "", Match::frequency, none, 1057, 1061, none, 1061, none},
+        {"A0-3 -", "A0-3 -", Match::label, 1267, 1374, 1379, none, 1379, none},
+        {"A0-3 +", "A0-3 +", Match::label, 1267, 1567, 1576, none, 1576, none},
+        {"A1-0", "A1-0", Match::label, 1404, 1449, 1450, none, 1450, none},
+        {"R0-2 -", "R0-2 -", Match::label, 1822, 1823, 1823, none, 1823, none},
+        {"R0-2 +", "R0-2 +", Match::label, 1822, 1825, 1826, none, 1826, none},
+        {"A1-1 -", "A1-1 -", Match::label, 2082, 2087, 2087, none, 2087, none},
+        {"A1-1 +", "A1-1 +", Match::label, 2082, 2150, 2153, none, 2153, none},
+        {"A0-4 -", "A0-4 -", Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
+        {"A0-4 +", "A0-4 +", Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
+        {"A0-5 -", "A0-5 -", Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
+        {"A0-5 +", "A0-5 +", Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
+        {"A1-2 -", "A1-2 -", Match::label, 3365, 3350, 3352, none, 3352, none},
+        {"A1-2 +", "A1-2 +", Match::label, 3365, 3371, 3386, none, 3387, -0.078},
+        {"F1 lowest", "F1", Match::lowest, 3553, 3551, 3516, none, 3521, none},
+        {"F1 highest", "F1", Match::highest, 3553, 3562, 3564, none, 3563, none},
+        {"F1 most unstable", "F1", Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
+        {"F1 second unstable", "F1", Match::second_unstable, none, none, 3550, 0.10, none, none},
+        {"R0-0", "R0-0", Match::label, 3704, 3704, 3704, none, 3704, none},
+        {"T1 lowest", "T1", Match::lowest, 3934, 3934, 3934, none, 3933, none},
+        {"T1 highest", "T1", Match::highest, 3934, 3934, 3934, none, 3933, none},
+        {"R0-3 -", "R0-3 -", Match::label, 3990, 3989, 3989, none, 3989, none},
+        {"R0-3 +", "R0-3 +", Match::label, 3990, 3991, 3989, none, 3990, none},
+        {"C0-1 -", "C0-1 -", Match::label, 4500, 4499, 4499, none, 4499, none},
+        {"C0-1 +", "C0-1 +", Match::label, 4500, 4500, 4500, none, 4500, none},
+        {"A0-6 -", "A0-6 -", Match::label, 4659, 4641, 4641, none, 4641, none},
+        {"A0-6 +", "A0-6 +", Match::label, 4659, 4653, 4652, none, 4652, none},
+        {"A1-3 -", "A1-3 -", Match::label, 4794, 4800, 4799, none, 4800, none},
+        {"A1-3 +", "A1-3 +", Match::label, 4794, 4815, 4814, none, 4815, none}};
+      return table;
+    }
+
+    /// The mode that a row asks for; nothing if the run has none.
+    std::optional<std::size_t> find(const Row                      &row,
+                                    const std::vector<std::string> &labels,
+                                    const std::vector<double>      &frequencies,
+                                    const std::vector<double>      &growth_rates,
+                                    const Value                     paper_frequency)
+    {
+      // Modes that carry the label, with or without the mark of a doublet
+      std::vector<std::size_t> candidates;
+      for (std::size_t i = 0; i < labels.size(); ++i)
+        if (row.match == Match::frequency || labels[i] == row.label || (row.match != Match::label && labels[i].rfind(std::string(row.label) + " ", 0) == 0))
+          candidates.push_back(i);
+      if (candidates.empty())
+        return {};
+
+      const auto by_growth = [&](const std::size_t a, const std::size_t b) { return growth_rates[a] > growth_rates[b]; };
+      switch (row.match)
+        {
+          case Match::label:
+          case Match::lowest:
+            return candidates.front();
+          case Match::highest:
+            return candidates.back();
+          case Match::most_unstable:
+          case Match::second_unstable:
+            {
+              const std::size_t place = row.match == Match::most_unstable ? 0 : 1;
+              if (growth_rates.empty() || candidates.size() <= place)
+                return {};
+              std::stable_sort(candidates.begin(), candidates.end(), by_growth);
+              return candidates[place];
+            }
+          case Match::frequency:
+            if (!paper_frequency)
+              return {};
+            return *std::min_element(candidates.begin(), candidates.end(), [&](const std::size_t a, const std::size_t b) {
+              return std::abs(frequencies[a] - *paper_frequency) < std::abs(frequencies[b] - *paper_frequency);
+            });
+        }
+      return {};
+    }
+
+    Cell to_cell(const Value value)
+    {
+      return value ? Cell(*value) : Cell();
+    }
+  } // namespace
+
+  Table table_one(const TableOneResults &results, const RadialDissipation dissipation, Agreement &agreement)
+  {
+    const bool damped = dissipation != RadialDissipation::none;
+    Table      table({{"label", ""},
+                      {"component paper", "Hz", 0},
+                      {"component", "Hz", 1},
+                      {"difference", "%", 2},
+                      {"coupled paper", "Hz", 0},
+                      {"coupled", "Hz", 1},
+                      {"difference", "%", 2},
+                      {"complex paper", "Hz", 0},
+                      {"complex", "Hz", 1},
+                      {"divergence paper", "%", 3},
+                      {"divergence", "%", 3}});
+
+    std::vector<double> frequencies, growth_rates;
+    for (const auto &lambda : results.lambda)
+      {
+        const ModalQuantities mode = modal_quantities(lambda);
+        frequencies.push_back(mode.frequency);
+        growth_rates.push_back(mode.growth_rate);
+      }
+
+    double sum_component = 0., sum_coupled = 0.;
+    for (const Row &row : rows())
+      {
+        std::vector<Cell> cells = {std::string(row.name)};
+        const auto add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum, unsigned int &n) {
+          const auto mode = paper ? find(match, labels, values, {}, paper) : std::nullopt;
+          cells.push_back(to_cell(paper));
+          cells.push_back(mode ? Cell(values[*mode]) : Cell());
+          if (mode)
+            {
+              const double difference = values[*mode] / *paper - 1.;
+              cells.emplace_back(100. * difference);
+              sum += difference * difference;
+              ++n;
+            }
+          else
+            cells.emplace_back();
+        };
+        // Component modes are beyond doubt.
+        Row component_row = row;
+        if (row.match == Match::frequency)
+          component_row.match = Match::label;
+        add_frequency(component_row, row.component, results.component_labels, results.component_frequencies, sum_component, agreement.n_component);
+        add_frequency(row, row.coupled, results.coupled_labels, results.coupled_frequencies, sum_coupled, agreement.n_coupled);
+
+        const Value paper_frequency  = damped ? row.complex_damped : row.complex_undamped;
+        const Value paper_divergence = damped ? row.divergence_damped : row.divergence_undamped;
+        const auto  mode = find(row, results.complex_labels, frequencies, growth_rates, paper_frequency);
+        cells.push_back(to_cell(paper_frequency));
+        cells.push_back(mode ? Cell(frequencies[*mode]) : Cell());
+        cells.push_back(to_cell(paper_divergence));
+        cells.push_back(mode ? Cell(100. * modal_quantities(results.lambda[*mode]).divergence_rate) : Cell());
+        table.add_row(std::move(cells));
+      }
+    agreement.component = agreement.n_component > 0 ? std::sqrt(sum_component / agreement.n_component) : 0.;
+    agreement.coupled   = agreement.n_coupled > 0 ? std::sqrt(sum_coupled / agreement.n_coupled) : 0.;
+    return table;
+  }
+} // namespace Squeal

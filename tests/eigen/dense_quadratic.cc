@@ -1,0 +1,149 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/eigen/dense_quadratic.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace
+{
+  using namespace Squeal;
+  using Complex = std::complex<double>;
+
+  DenseMatrix random_matrix(const int n, const unsigned int seed)
+  {
+    std::mt19937                           generator(seed);
+    std::uniform_real_distribution<double> entry(-1., 1.);
+    DenseMatrix                            A(n, n);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        A(i, j) = entry(generator);
+    return A;
+  }
+
+  /// Like a reduced model: diagonal stiffness over a wide range, nonsymmetric coupling, damping of low rank.
+  struct Pencil
+  {
+    explicit Pencil(const int n)
+      : M(add(identity(n), random_matrix(n, 1), 0.1 / n))
+      , C(multiply(columns(random_matrix(n, 2), 0, n / 4), columns(random_matrix(n, 2), 0, n / 4), false, true, 0.1 / n))
+      , K(random_matrix(n, 3))
+    {
+      for (int i = 0; i < n; ++i)
+        K(i, i) += std::pow(1. + i, 2);
+    }
+    DenseMatrix M, C, K;
+  };
+
+  /// Largest ‖Q(λ)x‖ / (|λ|²‖M‖ + |λ|‖C‖ + ‖K‖) of the columns of X; of Q(λ)ᵀ if transposed.
+  double backward_error(const Pencil &pencil, const bool damped, const DenseQuadraticModes &modes, const bool left)
+  {
+    const ComplexDenseMatrix &X     = left ? modes.left : modes.right;
+    const int                 n     = X.n_rows();
+    double                    worst = 0.;
+    for (int j = 0; j < X.n_columns(); ++j)
+      {
+        const Complex lambda = modes.values[j];
+        double        sum    = 0.;
+        for (int i = 0; i < n; ++i)
+          {
+            Complex entry = 0.;
+            for (int k = 0; k < n; ++k)
+              {
+                const int a = left ? k : i, b = left ? i : k;
+                entry += (lambda * lambda * pencil.M(a, b) + (damped ? lambda * pencil.C(a, b) : 0.) + pencil.K(a, b)) * X(k, j);
+              }
+            sum += std::norm(entry);
+          }
+        const double scale = std::norm(lambda) * max_norm(pencil.M) + std::abs(lambda) * max_norm(pencil.C) + max_norm(pencil.K);
+        worst              = std::max(worst, std::sqrt(sum) / scale);
+      }
+    return worst;
+  }
+} // namespace
+
+TEST(DenseQuadratic, VectorsOfBothSides)
+{
+  const Pencil pencil(60);
+  for (const bool damped : {false, true})
+    {
+      const auto modes = dense_quadratic_modes(pencil.M, damped ? &pencil.C : nullptr, pencil.K);
+      EXPECT_EQ(2 * modes.values.size() + modes.real_values.size(), 120u);
+      EXPECT_LT(backward_error(pencil, damped, modes, false), 1e-12);
+      EXPECT_LT(backward_error(pencil, damped, modes, true), 1e-12);
+      EXPECT_TRUE(std::is_sorted(modes.values.begin(), modes.values.end(), [](const Complex &a, const Complex &b) {
+        return a.imag() < b.imag();
+      }));
+    }
+}
+
+TEST(DenseQuadratic, TheLimitSelects)
+{
+  const Pencil pencil(40);
+  const auto   all = dense_quadratic_modes(pencil.M, &pencil.C, pencil.K), some = dense_quadratic_modes(pencil.M, &pencil.C, pencil.K, 20.);
+  ASSERT_LT(some.values.size(), all.values.size());
+  ASSERT_GT(some.values.size(), 10u);
+  for (std::size_t i = 0; i < some.values.size(); ++i)
+    EXPECT_NEAR(std::abs(some.values[i] - all.values[i]), 0., 1e-12 * std::abs(all.values[i]));
+  EXPECT_LE(some.values.back().imag(), 20.);
+}
+
+TEST(DenseQuadratic, OscillatorsOverWideRange)
+{
+  // λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5: also the smallest keep ten digits.
+  const int   n = 26;
+  DenseMatrix C(n, n), K(n, n);
+  for (int i = 0; i < n; ++i)
+    {
+      const double omega = std::pow(10., 0.2 * i);
+      K(i, i)            = omega * omega;
+      C(i, i)            = 2. * 0.03 * omega;
+    }
+  const auto modes = dense_quadratic_modes(identity(n), &C, K);
+  ASSERT_EQ(modes.values.size(), static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i)
+    {
+      const double  omega = std::pow(10., 0.2 * i);
+      const Complex expected(-0.03 * omega, omega * std::sqrt(1. - 0.03 * 0.03));
+      EXPECT_LT(std::abs(modes.values[i] - expected), 1e-10 * omega);
+      EXPECT_NEAR(std::abs(modes.right(i, i)), 1., 1e-10);
+      EXPECT_NEAR(std::abs(modes.left(i, i)), 1., 1e-10);
+    }
+}
+
+TEST(DenseQuadratic, FlutterPairsShareTheFrequency)
+{
+  DenseMatrix K(2, 2);
+  K(0, 0) = 2.;
+  K(1, 1) = 2.2;
+  K(0, 1) = 1.;
+  K(1, 0) = -0.5;
+  const auto modes = dense_quadratic_modes(identity(2), nullptr, K);
+  ASSERT_EQ(modes.values.size(), 2u);
+  EXPECT_NEAR(modes.values[0].imag(), modes.values[1].imag(), 1e-14);
+  EXPECT_NEAR(modes.values[0].real(), -modes.values[1].real(), 1e-14);
+  EXPECT_GT(modes.values[1].real(), 0.1);
+}
+
+TEST(DenseQuadratic, OverdampedAndDivergentValuesAreReal)
+{
+  DenseMatrix C(2, 2), K(2, 2);
+  C(0, 0) = 3.;
+  K(0, 0) = 2.;
+  K(1, 1) = -9.;
+  const auto damped = dense_quadratic_modes(identity(2), &C, K), undamped = dense_quadratic_modes(identity(2), nullptr, K);
+  ASSERT_EQ(damped.real_values.size(), 4u);
+  EXPECT_NEAR(damped.real_values[0], -3., 1e-13);
+  EXPECT_NEAR(damped.real_values[1], -2., 1e-13);
+  EXPECT_NEAR(damped.real_values[2], -1., 1e-13);
+  EXPECT_NEAR(damped.real_values[3], 3., 1e-13);
+  ASSERT_EQ(undamped.real_values.size(), 2u);
+  EXPECT_EQ(undamped.values.size(), 1u);
+}
+
+TEST(DenseQuadratic, SingularMassIsRefused)
+{
+  EXPECT_THROW(dense_quadratic_modes(DenseMatrix(2, 2), nullptr, identity(2)), SolverError);
+}
