@@ -146,8 +146,9 @@ int main(int argc, char **argv)
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  Squeal::Progress                         progress =
-    is_root ? Squeal::Progress(std::cout, isatty(STDOUT_FILENO) != 0) : Squeal::Progress();
+  // mpirun shows every process a terminal, whether there is one behind it or not.
+  const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+  Squeal::Progress progress(screen, live && is_root);
   try
     {
       run(parse(argc, argv), command, screen, progress);
