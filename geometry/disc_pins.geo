@@ -32,9 +32,8 @@ Mesh.SubdivisionAlgorithm = 1;
 Mesh.MeshSizeMax          = size;
 
 // Pins. A top and a bottom pin that overlap share a hole in the plan, nearest
-// first. Where they are not exactly opposite, the hole is halfway, and physical
-// points say where each of the two is; the mesh of the disc is sheared between
-// them.
+// first. Where the hole is not where the pin is, a physical point says where the
+// pin is; the mesh of the disc is sheared between its two faces.
 n_top     = #top_pin_radii();
 n_pins    = n_top + #bottom_pin_radii();
 tolerance = 1e-6 * pin_diameter;
@@ -84,16 +83,13 @@ For ring In {0 : 1}
   loop~{ring} = newll; Curve Loop(loop~{ring}) = {c : c + 2};
 EndFor
 
-// Holes: three arcs around each, made with the first pin of a pair
-holes() = {};
+// Holes: where the pin is, or halfway between the two of a pair
 For pin In {1 : n_pins}
-  other  = twin~{pin};
-  halved = 0;
+  other = twin~{pin};
   hole_x~{pin} = x~{pin};
   hole_y~{pin} = y~{pin};
   If(other)
     If(Hypot(x~{pin} - x~{other}, y~{pin} - y~{other}) > tolerance)
-      halved = 1;
       mean_x = (x~{pin} + x~{other}) / 2;
       mean_y = (y~{pin} + y~{other}) / 2;
       scale  = (radius~{pin} + radius~{other}) / 2 / Hypot(mean_x, mean_y);
@@ -101,15 +97,55 @@ For pin In {1 : n_pins}
       hole_y~{pin} = scale * mean_y;
     EndIf
   EndIf
+EndFor
 
+// Holes that overlap, because a pin overlaps two of the other side, move apart.
+least   = disc_inner_radius + 0.55 * pin_diameter;
+most    = disc_outer_radius - 0.55 * pin_diameter;
+crowded = 1;
+For pass In {1 : 50}
+  If(crowded)
+    crowded = 0;
+    For pin In {2 : n_pins}
+      For other In {1 : pin - 1}
+        If(twin~{pin} != other)
+          dx = hole_x~{pin} - hole_x~{other};
+          dy = hole_y~{pin} - hole_y~{other};
+          distance = Hypot(dx, dy);
+          If(distance < pin_diameter)
+            crowded = 1;
+            push = (1.1 * pin_diameter / distance - 1) / 2;
+            For which In {0 : 1}
+              pushed = which ? pin : other;
+              sign   = which ? 1 : -1;
+              new_x  = hole_x~{pushed} + sign * push * dx;
+              new_y  = hole_y~{pushed} + sign * push * dy;
+              r      = Hypot(new_x, new_y);
+              scale  = Min(Max(r, least), most) / r;
+              hole_x~{pushed} = scale * new_x;
+              hole_y~{pushed} = scale * new_y;
+              If(twin~{pushed})
+                hole_x~{twin~{pushed}} = hole_x~{pushed};
+                hole_y~{twin~{pushed}} = hole_y~{pushed};
+              EndIf
+            EndFor
+          EndIf
+        EndIf
+      EndFor
+    EndFor
+  EndIf
+EndFor
+If(crowded)
+  Error("There is no room in the plan for the top and bottom pins, which overlap but are not opposite each other. Move the pins of one side, or draw a plan of your own");
+EndIf
+
+// Circles of three arcs, made with the first pin of a pair
+holes() = {};
+For pin In {1 : n_pins}
+  other = twin~{pin};
   If(other && other < pin)
     pin_curves~{pin}() = pin_curves~{other}();
   Else
-    For before In {1 : pin - 1}
-      If(Hypot(hole_x~{pin} - hole_x~{before}, hole_y~{pin} - hole_y~{before}) < pin_diameter)
-        Error("Top and bottom pins overlap in such a way that no one-to-one pairing of them leaves room in the plan. Move the pins of one side, or draw a plan of your own");
-      EndIf
-    EndFor
     p = newp;
     Point(p) = {hole_x~{pin}, hole_y~{pin}, 0};
     For i In {0 : 2}
@@ -132,7 +168,7 @@ For pin In {1 : n_pins}
     name = Sprintf("pin_bottom_%g", pin - n_top);
   EndIf
   Physical Curve(Str(name)) = {pin_curves~{pin}()};
-  If(halved)
+  If(Hypot(x~{pin} - hole_x~{pin}, y~{pin} - hole_y~{pin}) > tolerance)
     p = newp; Point(p) = {x~{pin}, y~{pin}, 0};
     Physical Point(Str(name)) = {p};
   EndIf

@@ -4,7 +4,8 @@
     scripts/slepc_toar.py DIRECTORY [--modes 66] [--runs 3]
 
 DIRECTORY is the output of a run with Output/Write matrices = true. Prints, for each run, the time from the
-coupled matrices in memory to the eigenvalues and eigenvectors. Needs Debian's python3-slepc4py (real scalars).
+coupled matrices in memory to the eigenvalues and eigenvectors. Like every Krylov method with one starting vector a run
+may miss members of multiple eigenvalues; the number found is printed. Needs Debian's python3-slepc4py (real scalars).
 """
 
 import argparse
@@ -148,7 +149,7 @@ def main():
         reach = abs(solution.eigenvalues).max() / (2 * math.pi)
         print(f"run {run + 1}: {solution.wall:.2f} s wall, {solution.cpu:.2f} s CPU (setup {solution.setup_wall:.2f} s wall, "
               f"{solution.setup_cpu:.2f} s CPU); {listed.sum()} modes up to {band:g} Hz, "
-              f"{'all' if reach > band else 'incomplete'}, largest backward error {errors.max(initial=0):.1e}")
+              f"{'the last one found lies beyond' if reach > band else 'the band is not covered'}, largest backward error {errors.max(initial=0):.1e}")
         walls.append(solution.wall)
     print(f"median: {statistics.median(walls):.2f} s wall")
 

@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/version.h>
+#include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/stability_study.h>
 
@@ -134,6 +135,8 @@ Decides whether a disc rubbed by friction pins squeals.
 
 int main(int argc, char **argv)
 {
+  Squeal::use_native_blas_kernels(argv);
+
   std::string command;
   for (int i = 0; i < argc; ++i)
     command += (i > 0 ? " " : "") + std::string(argv[i]);
@@ -143,8 +146,9 @@ int main(int argc, char **argv)
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
   std::ostream                             silence(nullptr);
   std::ostream                            &screen = is_root ? std::cout : silence;
-  Squeal::Progress                         progress =
-    is_root ? Squeal::Progress(std::cout, isatty(STDOUT_FILENO) != 0) : Squeal::Progress();
+  // mpirun shows every process a terminal, whether there is one behind it or not.
+  const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+  Squeal::Progress progress(screen, live && is_root);
   try
     {
       run(parse(argc, argv), command, screen, progress);

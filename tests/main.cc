@@ -1,9 +1,14 @@
+#include <squeal/linear_algebra/blas_kernels.h>
+#include <squeal/linear_algebra/blas_threads.h>
+
 #include <deal.II/base/mpi.h>
 
 #include <gtest/gtest.h>
 
 int main(int argc, char **argv)
 {
+  Squeal::use_native_blas_kernels(argv);
+  Squeal::set_blas_threads(1);
   dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   ::testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();

@@ -19,12 +19,20 @@ namespace Squeal
     }
 
     constexpr const char *erase_line = "\r\033[K";
+
+    /// Name and elapsed time of a step.
+    std::string line_start(const std::string &name, const double seconds)
+    {
+      std::ostringstream line;
+      line << "  " << std::left << std::setw(26) << name << std::right << std::fixed << std::setprecision(2) << std::setw(8) << seconds
+           << " s";
+      return line.str();
+    }
   } // namespace
 
   Progress::Progress()
     : start(Clock::now())
     , step_start(start)
-    , last_update(start)
   {}
 
   Progress::Progress(std::ostream &stream, const bool live)
@@ -32,48 +40,65 @@ namespace Squeal
   {
     this->stream = &stream;
     this->live   = live;
+    if (live)
+      counter = std::thread([this]() { count(); });
+  }
+
+  Progress::~Progress()
+  {
+    {
+      const std::lock_guard<std::mutex> lock(mutex);
+      closed = true;
+      if (live && !current.empty())
+        *stream << erase_line << std::flush;
+    }
+    closing.notify_all();
+    if (counter.joinable())
+      counter.join();
+  }
+
+  void Progress::count()
+  {
+    std::unique_lock<std::mutex> lock(mutex);
+    while (!closing.wait_for(lock, std::chrono::milliseconds(200), [this]() { return closed; }))
+      if (!current.empty())
+        {
+          const double seconds = std::chrono::duration<double>(Clock::now() - step_start).count();
+          *stream << erase_line << line_start(current, seconds) << (state.empty() ? "" : "   ") << state << std::flush;
+        }
   }
 
   void Progress::begin(const std::string &name)
   {
     if (!current.empty())
       finish();
+    const std::lock_guard<std::mutex> lock(mutex);
     current    = name;
     step_start = Clock::now();
-    update("");
+    state.clear();
   }
 
-  void Progress::update(const std::string &state)
+  void Progress::update(const std::string &new_state)
   {
-    if (stream == nullptr || !live || current.empty())
-      return;
-    const auto now = Clock::now();
-    if (!state.empty() && now - last_update < std::chrono::milliseconds(100))
-      return;
-    last_update = now;
-    *stream << erase_line << "  " << current << " ... " << state << std::flush;
+    const std::lock_guard<std::mutex> lock(mutex);
+    state = new_state;
   }
 
   void Progress::finish(const std::string &summary)
   {
+    const std::lock_guard<std::mutex> lock(mutex);
     if (current.empty())
       return;
     const double seconds = std::chrono::duration<double>(Clock::now() - step_start).count();
     records.push_back({current, seconds, peak_memory(), summary});
     if (stream != nullptr)
-      {
-        std::ostringstream line;
-        line << "  " << std::left << std::setw(26) << current << std::right << std::fixed
-             << std::setprecision(2) << std::setw(8) << seconds << " s";
-        if (!summary.empty())
-          line << "   " << summary;
-        *stream << (live ? erase_line : "") << line.str() << std::endl;
-      }
+      *stream << (live ? erase_line : "") << line_start(current, seconds) << (summary.empty() ? "" : "   ") << summary << std::endl;
     current.clear();
   }
 
   void Progress::note(const std::string &text)
   {
+    const std::lock_guard<std::mutex> lock(mutex);
     if (stream != nullptr)
       *stream << (live ? erase_line : "") << text << std::endl;
   }

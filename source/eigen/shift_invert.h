@@ -44,6 +44,7 @@ namespace Squeal
     double       tolerance; ///< relative residual of the inverted problem
     int          block_size;
     unsigned int seed;
+    int          attempt; ///< number of earlier starts: later ones search a larger space
     std::string  what;
   };
 

@@ -91,12 +91,12 @@ namespace Squeal
           return dense();
 
         RitzPairs pairs;
-        int       n_found = 0;
+        int       n_found = 0, n_vain = 0;
         // Members of multiple eigenvalues may be missing at first; every start
         // finds at least one more, in general all.
         for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
           {
-            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, pairs.vectors);
+            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_vain, pairs.vectors);
             if (fresh)
               {
                 const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &*fresh}) : *fresh;
@@ -111,7 +111,7 @@ namespace Squeal
                     continue;
                   }
               }
-            if (lift_limit())
+            if (lift_limit() || ++n_vain < 3)
               continue;
             fail_incomplete(n_found);
           }
@@ -135,7 +135,7 @@ namespace Squeal
       }
 
       std::optional<MultiVector>
-      krylov(const int n_wanted, const unsigned int attempt, const std::optional<MultiVector> &deflated)
+      krylov(const int n_wanted, const unsigned int attempt, const int n_vain, const std::optional<MultiVector> &deflated)
       {
         const ShiftInvert A(factors(), M, deflated ? &*deflated : nullptr);
         KrylovRequest     request;
@@ -143,6 +143,7 @@ namespace Squeal
         request.tolerance  = 0.1 * options.tolerance;
         request.block_size = options.block_size > 0 ? options.block_size : 8;
         request.seed       = options.seed + 7919 * attempt;
+        request.attempt    = n_vain;
         request.what       = options.what;
         return options.solver == RealSolver::anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
       }

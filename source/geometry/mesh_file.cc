@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -48,7 +49,10 @@ namespace Squeal
           check_type(group, "Hexahedron 8", where);
           volumes.insert(is_disc ? volumes.begin() : volumes.end(), &group);
         }
-      else if (group.dimension == 2)
+
+    // Surfaces
+    for (const GmshMesh::Group &group : mesh.groups)
+      if (group.dimension == 2)
         {
           if (std::find(known_surfaces.begin(), known_surfaces.end(), group.name) == known_surfaces.end() &&
               std::find(additional_surfaces.begin(), additional_surfaces.end(), group.name) ==
@@ -156,6 +160,8 @@ namespace Squeal
     // Gmsh chooses the format by the name, so the temporary name ends in .msh
     const std::string temporary = file + "." + std::to_string(::getpid()) + ".part.msh";
     std::error_code   failure;
+    if (!std::ofstream(temporary))
+      throw FileError("The mesh could not be written", file, "check that the directory exists and is writable");
     try
       {
         GmshSession session;
@@ -167,8 +173,6 @@ namespace Squeal
         std::filesystem::remove(temporary, failure);
         throw;
       }
-    if (!std::filesystem::exists(temporary))
-      throw FileError("The mesh could not be written", file, "check that the directory exists and is writable");
     std::filesystem::rename(temporary, file, failure);
     if (failure)
       {

@@ -13,6 +13,7 @@ namespace Squeal
 
     // Enough for a displacement to spread from a pin to its neighbours; how evenly does not matter.
     constexpr int displacement_sweeps = 200;
+    constexpr int displacement_steps  = 5;
 
     /// Least shape of the four corners.
     double shape(const Plan::Face &face, const std::vector<Plan::Point> &points)
@@ -180,11 +181,15 @@ namespace Squeal
               displacements[node][d] = sum / neighbours[node].size();
             }
 
+    // In steps, smoothed each time: faces that turned over at once might not be turned back
     std::vector<Plan::Point> points = plan.points;
-    for (std::size_t node = 0; node < points.size(); ++node)
-      for (unsigned int d = 0; d < 2; ++d)
-        points[node][d] += displacements[node][d];
-    smooth(plan.faces, outline, points);
+    for (int step = 0; step < displacement_steps; ++step)
+      {
+        for (std::size_t node = 0; node < points.size(); ++node)
+          for (unsigned int d = 0; d < 2; ++d)
+            points[node][d] += displacements[node][d] / displacement_steps;
+        smooth(plan.faces, outline, points);
+      }
     return points;
   }
 } // namespace Squeal

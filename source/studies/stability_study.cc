@@ -32,8 +32,11 @@ namespace Squeal
     /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
     constexpr double label_band = 1.2;
 
-    /// Divergence rates below this are rounding errors of a neutral mode [-].
+    /// Divergence rates below this are rounding errors of a neutral mode of the Krylov solver [-].
     constexpr double negligible_divergence = 1e-8;
+
+    /// The estimated error of λ may be that much too small.
+    constexpr double estimate_safety = 3.;
 
     template <typename... Parts>
     std::string text(const Parts &...parts)
@@ -128,9 +131,18 @@ namespace Squeal
       return with_doublets(labels);
     }
 
-    bool is_unstable(const std::complex<double> &lambda)
+    /// Which modes grow beyond what their accuracy leaves open.
+    std::vector<bool> unstable_modes(const ComplexModes &modes)
     {
-      return modal_quantities(lambda).divergence_rate > negligible_divergence;
+      std::vector<bool> result;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        {
+          double uncertainty = negligible_divergence;
+          if (!modes.estimated_errors.empty())
+            uncertainty = std::max(uncertainty, estimate_safety * modes.estimated_errors[j]);
+          result.push_back(modal_quantities(modes.lambda[j]).divergence_rate > uncertainty);
+        }
+      return result;
     }
 
     // ------------------------------------------------------------------ fields
@@ -152,13 +164,14 @@ namespace Squeal
                       const CoupledSystem            &system,
                       const ComplexModes             &modes,
                       const std::vector<std::string> &labels,
+                      const std::vector<bool>        &unstable,
                       const ResultFolder             &folder,
                       Progress                       &progress)
     {
       progress.begin("Mode shapes");
       std::vector<std::size_t> chosen;
       for (std::size_t j = 0; j < labels.size(); ++j)
-        if (parameters.output.fields == FieldSelection::all || is_unstable(modes.lambda[j]))
+        if (parameters.output.fields == FieldSelection::all || unstable[j])
           chosen.push_back(j);
 
       const ModeFieldWriter writer(model, interface, folder);
@@ -178,7 +191,7 @@ namespace Squeal
           for (int c = 0; c < reaction_re.n_rows(); ++c)
             field.reactions.emplace_back(reaction_re(c, j), reaction_im(c, j));
           writer.write_mode(field);
-          if (is_unstable(modes.lambda[j]) && parameters.output.animation_frames > 0)
+          if (unstable[j] && parameters.output.animation_frames > 0)
             {
               writer.write_animation(field, parameters.output.animation_frames);
               ++n_animations;
@@ -197,7 +210,7 @@ namespace Squeal
                         const ResultFolder                        &folder,
                         Progress                                  &progress)
     {
-      progress.begin("Matrices");
+      progress.begin("Matrix files");
       const auto write = [&](const SparseMatrix &matrix, const char *name, const MatrixMarketSymmetry symmetry) {
         write_matrix_market(matrix, folder.path(text("matrices/", name, ".mtx")), symmetry);
       };
@@ -287,7 +300,7 @@ namespace Squeal
       }
 
     // ----------------------------------------------------------------- system
-    progress.begin("Matrices");
+    progress.begin("Assembly");
     const SecondOrderSystem system = assemble(model, parameters.materials);
     const auto              damping =
       contact_damping(contact, radial_dissipation_of_equal_shares(interface, parameters.operation));
@@ -307,6 +320,7 @@ namespace Squeal
     const auto components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
       SymmetricModesOptions component_options = real_options;
       component_options.what                  = name;
+      progress.update(name);
       component_options.shift                 = component == Component::disc ? shift * shift : 0.;
       return component_modes(model, interface, system, component, boundary, band * band * limit, component_options);
     };
@@ -350,10 +364,12 @@ namespace Squeal
         iteration.maximum_basis     = parameters.solvers.maximum_basis;
         modes                       = residual_iteration(coupled, inverse, *real.vectors, mu, iteration, progress);
       }
-    const std::size_t n_unstable = std::count_if(modes.lambda.begin(), modes.lambda.end(), is_unstable);
+    const std::vector<bool> unstable   = unstable_modes(modes);
+    const std::size_t       n_unstable = std::count(unstable.begin(), unstable.end(), true);
     count("complex modes", modes.lambda.size());
     count("unstable modes", n_unstable);
-    progress.finish(text(modes.lambda.size(), " found, ", n_unstable, " unstable at mu = ", mu, "; ", modes.summary));
+    progress.finish(text(modes.lambda.size(), " found, ", n_unstable, " unstable at mu = ", mu,
+                         modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "", "; ", modes.summary));
 
     // ----------------------------------------------------------------- results
     const auto identify_modes = [&](const MultiVector &re, const MultiVector *im) {
@@ -399,7 +415,7 @@ namespace Squeal
                          " complex modes lie in the band: with friction a mode crossed its end"));
 
     if (parameters.output.fields != FieldSelection::none)
-      write_fields(parameters, model, interface, coupled, modes, complex_labels, *folder, progress);
+      write_fields(parameters, model, interface, coupled, modes, complex_labels, unstable, *folder, progress);
     if (parameters.output.write_matrices)
       write_matrices(model, interface, system, contact, damping, *folder, progress);
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <iosfwd>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace Squeal
@@ -18,7 +21,8 @@ namespace Squeal
 
   /**
    * The one channel through which computing code speaks while it works: one
-   * line per step with its elapsed time, and on a terminal a live counter.
+   * line per step with its elapsed time, and on a terminal a live counter,
+   * which a thread of its own keeps running while libraries compute.
    * Silent on every process but the one that was given a stream.
    */
   class Progress
@@ -30,10 +34,15 @@ namespace Squeal
     /// A channel that prints to @p stream; @p live: it is a terminal.
     Progress(std::ostream &stream, bool live);
 
+    ~Progress();
+
+    Progress(const Progress &)            = delete;
+    Progress &operator=(const Progress &) = delete;
+
     /// Begins a step; an unfinished one is finished first.
     void begin(const std::string &name);
 
-    /// Shows @p state of the current step on a terminal, at most ten times a second.
+    /// Sets the state of the current step that the live counter shows.
     void update(const std::string &state);
 
     /// Ends the current step with the line that stays.
@@ -51,10 +60,18 @@ namespace Squeal
   private:
     using Clock = std::chrono::steady_clock;
 
+    /// Shows the counter until the channel is closed.
+    void count();
+
     std::ostream           *stream = nullptr;
     bool                    live   = false;
-    Clock::time_point       start, step_start, last_update;
-    std::string             current;
+    Clock::time_point       start, step_start;
+    std::string             current, state;
     std::vector<StepRecord> records;
+
+    std::mutex              mutex; ///< guards the stream and the current step
+    std::condition_variable closing;
+    bool                    closed = false;
+    std::thread             counter;
   };
 } // namespace Squeal

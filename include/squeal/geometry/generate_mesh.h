@@ -19,7 +19,7 @@ namespace Squeal
    *
    * - physical volumes: a solid, taken as it is (see make_hex_mesh());
    * - physical surfaces and curves only: a plan (see make_plan()), meshed with
-   *   quadrilaterals and extruded (see extrude()). Gmsh halves every element of
+   *   quadrilaterals, smoothed and extruded (see smooth(), extrude()). Gmsh halves every element of
    *   a plan after meshing, so sizes in the file are twice those of the mesh.
    *
    * A file name without a directory is looked for in the current directory,
