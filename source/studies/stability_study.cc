@@ -365,11 +365,16 @@ namespace Squeal
     // ------------------------------------------------------ real coupled modes
     progress.begin("Factorisation");
     UpdatedInverse inverse(coupled, shift, parameters.solvers.library);
-    progress.finish(shift > 0. ? text("shifted: the disc can move as a rigid body") : text("K_c is positive definite"));
+    record.quantities.emplace_back("entries of the Cholesky factor", inverse.frictionless().n_factor_entries());
+    progress.finish(text(inverse.frictionless().n_factor_entries() / 1e6, " million entries",
+                         shift > 0. ? ", shifted: the disc can move as a rigid body" : ""));
 
     progress.begin("Real modes");
     real_options.what         = "real modes of the coupled system";
     real_options.shift        = shift * shift;
+    // The factor at hand serves here too, unless the shift brought damping into it.
+    if (shift == 0. || !coupled.frictionless.damping)
+      real_options.inverse = &inverse.frictionless();
     const SymmetricModes real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, limit, real_options);
     if (real.eigenvalues.empty())
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
