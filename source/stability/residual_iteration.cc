@@ -20,6 +20,8 @@ namespace Squeal
     constexpr double dependence_tolerance = 1e-8;
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
+    /// λ below this part of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
+    constexpr double zero_fraction = 1e-4;
 
     DenseMatrix real_part(const ComplexDenseMatrix &X)
     {
@@ -95,6 +97,41 @@ namespace Squeal
       const double limit   = compression_tolerance * compression_tolerance * squares.back();
       const int    first   = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
       return X * columns(axes, first, k - first);
+    }
+
+    /// Columns of X.
+    ComplexDenseMatrix selected(const ComplexDenseMatrix &X, const std::vector<int> &chosen)
+    {
+      ComplexDenseMatrix result(X.n_rows(), static_cast<int>(chosen.size()));
+      for (std::size_t j = 0; j < chosen.size(); ++j)
+        std::copy(X.column(chosen[j]), X.column(chosen[j]) + X.n_rows(), result.column(static_cast<int>(j)));
+      return result;
+    }
+
+    /// Takes values with |λ| ≤ @p limit out, those of rigid-body motions, and returns how many they are.
+    int remove_zeros(DenseQuadraticModes &modes, const double limit)
+    {
+      // With an oscillating value its conjugate is zero, too
+      std::vector<int>     others;
+      std::vector<Complex> values;
+      for (std::size_t j = 0; j < modes.values.size(); ++j)
+        if (std::abs(modes.values[j]) > limit)
+          {
+            others.push_back(static_cast<int>(j));
+            values.push_back(modes.values[j]);
+          }
+      int n_zeros = 2 * static_cast<int>(modes.values.size() - values.size());
+      if (n_zeros > 0)
+        {
+          modes.right  = selected(modes.right, others);
+          modes.left   = selected(modes.left, others);
+          modes.values = values;
+        }
+
+      const auto end = std::remove_if(modes.real_values.begin(), modes.real_values.end(), [limit](const double l) { return std::abs(l) <= limit; });
+      n_zeros += static_cast<int>(modes.real_values.end() - end);
+      modes.real_values.erase(end, modes.real_values.end());
+      return n_zeros;
     }
 
     struct Estimate
@@ -176,9 +213,12 @@ namespace Squeal
 
     for (int step = 0;; ++step)
       {
-        const ReducedPencil       pencil = reduced.at(mu);
-        const DenseQuadraticModes pairs =
+        const ReducedPencil pencil = reduced.at(mu);
+        DenseQuadraticModes pairs =
           dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, options.largest_frequency);
+        const int n_zeros = remove_zeros(pairs, zero_fraction * options.largest_frequency);
+        if (pairs.values.empty())
+          throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
         const Estimate estimate = estimate_errors(system, inverse, pencil, mu, pairs, reduced.basis());
         const double   worst    = *std::max_element(estimate.errors.begin(), estimate.errors.end());
 
@@ -193,6 +233,10 @@ namespace Squeal
             modes.estimated_errors = estimate.errors;
             modes.real_part        = std::make_shared<MultiVector>(reduced.basis() * real_part(pairs.right));
             modes.imaginary_part   = std::make_shared<MultiVector>(reduced.basis() * imaginary_part(pairs.right));
+            modes.n_rigid_body     = n_zeros / 2;
+            for (const double l : pairs.real_values)
+              if (std::abs(l) <= options.largest_frequency)
+                modes.overdamped.push_back(l);
             modes.summary          = state.str() + ", " + std::to_string(step) + " growths";
             finish_modes(system, mu, inverse, modes);
             return modes;
