@@ -367,7 +367,8 @@ namespace Squeal
 
     // Numbers within each family, by the number of modes that every pin has of it
     std::vector<std::string> labels;
-    std::array<std::size_t, 3> count{}, per_order = {2 * pins.size(), pins.size(), pins.size()};
+    std::array<std::size_t, 3> count{};
+    const std::array<std::size_t, 3> per_order = {{2 * pins.size(), pins.size(), pins.size()}};
     for (const auto &e : energies)
       {
         const unsigned int f = std::max_element(e.begin(), e.end()) - e.begin();
