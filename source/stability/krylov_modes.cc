@@ -47,6 +47,7 @@ namespace Squeal
     options.largest_frequency = largest_circular_frequency;
     options.expected          = n_expected;
     options.tolerance         = parameters.complex_tolerance;
+    options.stiffness_norm    = matrices.stiffness->NormInf();
     options.report            = [&](const std::string &state) { progress.update(state); };
     const QuadraticModes found = quadratic_modes(pencil, shift_inverse, options);
 
@@ -55,7 +56,6 @@ namespace Squeal
     modes.real_part      = found.real_part;
     modes.imaginary_part = found.imaginary_part;
     modes.overdamped     = found.real_values;
-    modes.n_rigid_body   = found.n_zero_values / 2;
     modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
     finish_modes(system, mu, inverse, modes);
     return modes;

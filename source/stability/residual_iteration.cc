@@ -20,6 +20,8 @@ namespace Squeal
     constexpr double dependence_tolerance = 1e-8;
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
+    /// Where there are rigid-body modes, λ below this part of the band's end are theirs.
+    constexpr double rigid_fraction = 1e-4;
 
     DenseMatrix real_part(const ComplexDenseMatrix &X)
     {
@@ -59,6 +61,31 @@ namespace Squeal
       for (const MultiVector &part : parts)
         pointers.push_back(&part);
       return join(pointers);
+    }
+
+    ComplexDenseMatrix columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen)
+    {
+      ComplexDenseMatrix result(X.n_rows(), chosen.size());
+      for (std::size_t j = 0; j < chosen.size(); ++j)
+        std::copy(X.column(chosen[j]), X.column(chosen[j] + 1), result.column(j));
+      return result;
+    }
+
+    /// The modes without those of a rigid body, of which rounding leaves some λ with a small imaginary part.
+    DenseQuadraticModes elastic_modes(const DenseQuadraticModes &pairs, const double largest_frequency)
+    {
+      DenseQuadraticModes result;
+      std::vector<int>    chosen;
+      for (std::size_t j = 0; j < pairs.values.size(); ++j)
+        if (std::abs(pairs.values[j]) > rigid_fraction * largest_frequency)
+          {
+            result.values.push_back(pairs.values[j]);
+            chosen.push_back(j);
+          }
+      result.right       = columns(pairs.right, chosen);
+      result.left        = columns(pairs.left, chosen);
+      result.real_values = pairs.real_values;
+      return result;
     }
 
     /// ψᵀ A φ for complex columns j, no conjugate.
@@ -177,8 +204,12 @@ namespace Squeal
     for (int step = 0;; ++step)
       {
         const ReducedPencil       pencil = reduced.at(mu);
-        const DenseQuadraticModes pairs =
+        DenseQuadraticModes pairs =
           dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, options.largest_frequency);
+        if (options.n_rigid_body > 0)
+          pairs = elastic_modes(pairs, options.largest_frequency);
+        if (pairs.values.empty())
+          throw SolverError("only modes of a rigid body lie in the band", "complex modes", "raise Band/Maximum frequency");
         const Estimate estimate = estimate_errors(system, inverse, pencil, mu, pairs, reduced.basis());
         const double   worst    = *std::max_element(estimate.errors.begin(), estimate.errors.end());
 
