@@ -271,6 +271,29 @@ namespace Squeal
       return text.str();
     }
 
+    /// Largest ratio of a residual to what is accepted: the tolerance or, where that is more, rounding errors of Kφ.
+    double excess(const QuadraticPencil &pencil, const QuadraticModes &modes, const QuadraticModesOptions &options)
+    {
+      if (modes.residuals.empty())
+        return 0.;
+      const double worst = *std::max_element(modes.residuals.begin(), modes.residuals.end());
+      if (worst <= options.tolerance)
+        return worst / options.tolerance;
+
+      // ‖φ‖ is one.
+      const double              rounding = 10. * std::numeric_limits<double>::epsilon() * options.stiffness_norm;
+      MultiVector               product(*modes.real_part);
+      pencil.stiffness->apply(*modes.real_part, product);
+      const std::vector<double> real_norms = column_norms(product);
+      pencil.stiffness->apply(*modes.imaginary_part, product);
+      const std::vector<double> imaginary_norms = column_norms(product);
+      double                    largest         = 0.;
+      for (std::size_t j = 0; j < modes.residuals.size(); ++j)
+        largest = std::max(largest,
+                           modes.residuals[j] / std::max(options.tolerance, rounding / std::hypot(real_norms[j], imaginary_norms[j])));
+      return largest;
+    }
+
     [[noreturn]] void throw_unconverged(const Convergence &state, const double worst, const std::string &reason, const QuadraticModesOptions &options)
     {
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
@@ -439,9 +462,8 @@ namespace Squeal
         if (search.state.complete)
           {
             QuadraticModes modes = extract(pencil, search.transformation, search.krylov, search.ritz, options);
-            const double   worst =
-              modes.residuals.empty() ? 0. : *std::max_element(modes.residuals.begin(), modes.residuals.end());
-            if (worst <= options.tolerance)
+            const double   excessive = excess(pencil, modes, options);
+            if (excessive <= 1.)
               {
                 if (!search.proven())
                   {
@@ -454,9 +476,9 @@ namespace Squeal
                 return modes;
               }
             // The estimate assumed uniform masses: ask for as much more as it was wrong.
-            search.tolerance *= 0.3 * options.tolerance / worst;
+            search.tolerance *= 0.3 / excessive;
             if (search.exhausted || search.tolerance < std::numeric_limits<double>::epsilon())
-              throw_unconverged(search.state, worst, "rounding errors do not allow a smaller residual", options);
+              throw_unconverged(search.state, excessive * options.tolerance, "rounding errors do not allow a smaller residual", options);
           }
         size = search.next_size();
       }
