@@ -17,6 +17,8 @@ namespace Squeal
     temporary = directory + ".unfinished";
     if (!is_root)
       return;
+    if (directory.empty())
+      throw FileError("the name of the result folder is empty", "--output", "name a folder");
     try
       {
         if (fs::exists(directory) && !fs::is_directory(directory))

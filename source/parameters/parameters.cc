@@ -81,28 +81,69 @@ namespace Squeal
       return row[b.size()];
     }
 
+    /// The words of a name.
+    std::vector<std::string> words(const std::string &name)
+    {
+      std::istringstream       stream(name);
+      std::vector<std::string> result;
+      for (std::string word; stream >> word;)
+        result.push_back(word);
+      return result;
+    }
+
+    /**
+     * Edits that lead from one name to another, words compared with their best counterparts: words may be left out,
+     * exchanged or cut short, each at the price of one edit.
+     */
+    unsigned int word_distance(const std::string &written, const std::string &name)
+    {
+      const auto   written_words = words(written), name_words = words(name);
+      unsigned int sum = std::max(written_words.size(), name_words.size()) - written_words.size();
+      for (const std::string &word : written_words)
+        {
+          unsigned int smallest = word.size();
+          for (const std::string &counterpart : name_words)
+            {
+              smallest = std::min(smallest, edit_distance(word, counterpart));
+              if (word.size() > 1 && word.size() < counterpart.size())
+                smallest = std::min(smallest, edit_distance(word, counterpart.substr(0, word.size())) + 1);
+            }
+          sum += smallest;
+        }
+      return sum;
+    }
+
+    /// Edits between two paths; a wrong section counts little, so that the right name in the wrong section is found.
+    unsigned int path_distance(const std::string &written, const std::string &candidate)
+    {
+      const auto split = [](const std::string &path) {
+        const auto slash = path.rfind('/', path.size() - 2);
+        return slash == std::string::npos ? std::make_pair(std::string(), path) :
+                                            std::make_pair(path.substr(0, slash), path.substr(slash + 1));
+      };
+      const auto [written_section, written_name]     = split(written);
+      const auto [candidate_section, candidate_name] = split(candidate);
+      const auto distance = [](const std::string &a, const std::string &b) { return std::min(edit_distance(a, b), word_distance(a, b)); };
+      constexpr unsigned int wrong_section = 4;
+      return wrong_section * distance(written_name, candidate_name) +
+             std::min(distance(written_section, candidate_section), wrong_section);
+    }
+
     /// Refuses a name that was not declared.
     void check_name(const Entry &entry, const std::vector<std::string> &known)
     {
       if (std::find(known.begin(), known.end(), entry.path) != known.end())
         return;
-      // Full paths are compared, and bare names too, so that the right name in the wrong section is found.
-      const auto base_name = [](const std::string &path) { return path.substr(path.rfind('/') + 1); };
-      const bool is_section = entry.path.back() == '/';
+      const bool   is_section = entry.path.back() == '/';
       std::string  nearest;
       unsigned int smallest = -1;
       for (const std::string &candidate : known)
         if ((candidate.back() == '/') == is_section)
-          {
-            unsigned int distance = edit_distance(entry.path, candidate);
-            if (!is_section)
-              distance = std::min(distance, edit_distance(base_name(entry.path), base_name(candidate)) + 1);
-            if (distance < smallest)
-              {
-                smallest = distance;
-                nearest  = candidate;
-              }
-          }
+          if (const unsigned int distance = path_distance(entry.path, candidate); distance < smallest)
+            {
+              smallest = distance;
+              nearest  = candidate;
+            }
       throw ParameterError(std::string("unknown ") + (is_section ? "section `" : "parameter `") + entry.path + "`", entry.where,
                            "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all");
     }

@@ -47,6 +47,7 @@ namespace Squeal
     options.largest_frequency = largest_circular_frequency;
     options.expected          = n_expected;
     options.tolerance         = parameters.complex_tolerance;
+    options.stiffness_norm    = matrices.stiffness->NormInf();
     options.report            = [&](const std::string &state) { progress.update(state); };
     const QuadraticModes found = quadratic_modes(pencil, shift_inverse, options);
 

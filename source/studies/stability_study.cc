@@ -397,6 +397,9 @@ namespace Squeal
         iteration.maximum_basis     = parameters.solvers.maximum_basis;
         modes                       = residual_iteration(coupled, inverse, *real.vectors, mu, iteration, progress);
       }
+    // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
+    modes.n_rigid_body = real.n_rigid_body;
+
     const std::vector<bool> unstable   = unstable_modes(modes);
     const std::size_t       n_unstable = std::count(unstable.begin(), unstable.end(), true);
     count("complex modes", modes.lambda.size());
