@@ -350,6 +350,10 @@ namespace Squeal
       component_options.what                  = name;
       progress.update(name);
       component_options.shift                 = component == Component::disc ? shift * shift : 0.;
+      // Pins are alike: every mode of one comes once for each of them, bending modes twice, and a block finds the members
+      // of such a cluster together.
+      if (component == Component::pins)
+        component_options.block_size = std::max<int>(8, 2 * (mesh.volume_names.size() - 1));
       return component_modes(model, interface, system, component, boundary, band * band * limit, component_options);
     };
     progress.begin("Component modes");

@@ -1,0 +1,117 @@
+"""Runs the executable on a small scene and reads what it leaves.
+
+The environment variable SQUEAL names the executable, MPIRUN the launcher of several processes.
+"""
+
+import csv
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+EXECUTABLE = os.environ["SQUEAL"]
+MPIRUN = os.environ.get("MPIRUN", "mpirun")
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+
+# Two pins on each side with seven nodes each, large elements: less than a second, 38 modes, unstable ones of disc and pins.
+SCENE = """
+subsection Geometry
+  set Top pin radii = 0.2275, 0.2275
+  set Top pin angles = -10, 10
+  set Bottom pin radii = 0.2275, 0.2275
+  set Bottom pin angles = -10, 10
+  set Nodes per pin face = 7
+  set Pin layers = 2
+  set Disc layers = 1
+  set Element size = 0.04
+end
+subsection Output
+  set Mode shapes = none
+  set Animation frames = 3
+end
+"""
+
+COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "damping ratio [%]",
+                   "residual [-]", "eps_res [-]"]
+
+# Of the same eigenvalue found in another way [-]
+SAME = 1e-9
+
+
+class ProgramTest(unittest.TestCase):
+    """A folder of its own with the scene in scene.prm, kept while the tests of a class run."""
+
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        (cls.folder / "scene.prm").write_text(SCENE, encoding="utf-8")
+
+    @classmethod
+    def call(cls, *arguments, n_processes=1):
+        """The finished process."""
+        launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
+        return subprocess.run([*launcher, EXECUTABLE, *arguments], cwd=cls.folder, text=True, capture_output=True, timeout=300)
+
+    @classmethod
+    def run_scene(cls, output, *overrides, file="scene.prm", n_processes=1):
+        """Runs a parameter file with overrides "Section/Name=value" and returns the folder of the results."""
+        settings = [word for override in overrides for word in ("--set", override)]
+        process = cls.call(file, "--output", output, *settings, n_processes=n_processes)
+        if process.returncode != 0:
+            raise AssertionError(f"the run {output} failed:\n{process.stdout}\n{process.stderr}")
+        return cls.folder / output
+
+    def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
+        """Holds two lists against each other, whatever the order within clusters."""
+        self.assertEqual(len(actual), len(expected))
+        self.assertLessEqual(distance(actual, expected), tolerance)
+
+
+def read_table(path):
+    """Rows of a table as dictionaries."""
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def header(path):
+    with open(path, encoding="utf-8") as file:
+        return file.readline().rstrip("\n")
+
+
+def eigenvalues(folder):
+    """lambda [rad/s] of the complex modes."""
+    return [complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"]))
+            for row in read_table(folder / "complex_modes.csv")]
+
+
+def real_frequencies(folder, table="real_modes.csv"):
+    return [float(row["frequency [Hz]"]) for row in read_table(folder / table)]
+
+
+def distance(actual, expected):
+    """Largest relative difference of eigenvalues, each held against the nearest one that is left."""
+    left, largest = list(expected), 0.0
+    for value in actual:
+        nearest = min(left, key=lambda other: abs(other - value))
+        left.remove(nearest)
+        largest = max(largest, abs(value - nearest) / max(abs(value), abs(nearest)) if value != nearest else 0.0)
+    return largest
+
+
+def numbers(path):
+    """Every number of a table."""
+    for row in read_table(path):
+        for text in row.values():
+            try:
+                yield float(text)
+            except ValueError:
+                pass
+
+
+def contents(folder):
+    """Every file below a folder with what it holds."""
+    return {str(path.relative_to(folder)): path.read_bytes() if path.is_file() else None for path in sorted(folder.rglob("*"))}

@@ -1,0 +1,110 @@
+"""What a run leaves behind, and that it can be repeated from it."""
+
+import json
+import math
+import shutil
+import unittest
+import xml.etree.ElementTree
+
+from program import COMPLEX_COLUMNS, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
+
+TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv", "table1.csv"]
+
+
+class Results(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", "Output/Mode shapes=unstable")
+        cls.record = json.loads((cls.results / "run.json").read_text(encoding="utf-8"))
+
+    def test_files(self):
+        for name in [*TABLES, "run.json", "parameters.prm", "mesh.msh"]:
+            self.assertTrue((self.results / name).is_file(), name)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["results", "scene.prm"])
+
+    def test_tables(self):
+        self.assertEqual(header(self.results / "complex_modes.csv"), ",".join(COMPLEX_COLUMNS))
+        self.assertEqual(header(self.results / "real_modes.csv"), "label,share [-],frequency [Hz],residual [-]")
+        self.assertEqual(header(self.results / "component_modes.csv"), "component,contact,label,frequency [Hz],residual [-]")
+        for name in TABLES:
+            self.assertTrue(read_table(self.results / name), name)
+            self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / name)), name)
+
+    def test_modes(self):
+        rows = read_table(self.results / "complex_modes.csv")
+        frequencies = [float(row["frequency [Hz]"]) for row in rows]
+        self.assertEqual(frequencies, sorted(frequencies))
+        self.assertLessEqual(frequencies[-1], 5000)
+        for row in rows:
+            growth, frequency = float(row["growth rate [1/s]"]), float(row["frequency [Hz]"])
+            rate, damping = float(row["divergence rate [%]"]), float(row["damping ratio [%]"])
+            self.assertAlmostEqual(rate, 100 * growth / (2 * math.pi * frequency), delta=1e-9 * abs(rate))
+            self.assertAlmostEqual(damping, -2 * rate, delta=1e-9 * abs(rate))
+            self.assertLessEqual(float(row["residual [-]"]), 1e-9)
+            self.assertTrue(0 < float(row["share [-]"]) <= 1)
+        # Without dissipation growth and decay come in pairs.
+        values = eigenvalues(self.results)
+        self.assertLess(distance([-value.conjugate() for value in values], values), 1e-9)
+
+    def test_record(self):
+        self.assertIn("--output results", self.record["command"])
+        self.assertLessEqual({"squeal", "revision", "deal.II", "Trilinos", "MUMPS", "CHOLMOD", "UMFPACK", "Gmsh"},
+                             set(self.record["versions"]))
+        steps = [step["name"] for step in self.record["steps"]]
+        self.assertEqual(steps, ["Mesh", "Contact", "Assembly", "Component modes", "Factorisation", "Real modes", "Complex modes",
+                                 "Mode shapes"])
+        self.assertLessEqual(sum(step["wall time [s]"] for step in self.record["steps"]), self.record["wall time [s]"])
+        counts = self.record["counts"]
+        self.assertEqual(counts["contact nodes"], 4 * 7)
+        self.assertEqual(counts["coupled dofs"], counts["dofs"] - counts["contact nodes"])
+        self.assertEqual(counts["rigid-body modes"], 0)
+        self.assertEqual(counts["real modes"], len(read_table(self.results / "real_modes.csv")))
+        self.assertEqual(counts["complex modes"], len(read_table(self.results / "complex_modes.csv")))
+
+    def test_fields(self):
+        rows = read_table(self.results / "complex_modes.csv")
+        unstable = [number for number, row in enumerate(rows, start=1) if float(row["divergence rate [%]"]) > 1e-6]
+        self.assertEqual(len(unstable), self.record["counts"]["unstable modes"])
+        self.assertGreater(len(unstable), 0)
+        for number in unstable:
+            fields = sorted((self.results / "modes").glob(f"complex_{number:03d}_*.vtu"))
+            self.assertEqual(len(fields), 2)
+            volume, contact = sorted(fields, key=lambda path: path.name.endswith("_contact.vtu"))
+            self.assertEqual(arrays(volume), {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
+            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag"})
+
+            animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
+            frames = xml.etree.ElementTree.parse(animation).findall(".//DataSet")
+            times = [float(frame.get("timestep")) for frame in frames]
+            period = 1 / float(rows[number - 1]["frequency [Hz]"])
+            self.assertEqual(len(times), 3)
+            for frame, time in enumerate(times):
+                self.assertAlmostEqual(time, frame * period / 3, delta=1e-9 * period)
+            for frame in frames:
+                self.assertEqual(arrays(animation.parent / frame.get("file")), {"displacement"})
+        self.assertEqual(len(list((self.results / "modes").iterdir())), 2 * len(unstable))
+        self.assertEqual(len(list((self.results / "animations").glob("*.pvd"))), len(unstable))
+
+    def test_parameters_repeat_the_run(self):
+        again = self.run_scene("again", file="results/parameters.prm")
+        self.addCleanup(shutil.rmtree, again)
+        for name in [*TABLES, "parameters.prm", "mesh.msh"]:
+            self.assertEqual((again / name).read_bytes(), (self.results / name).read_bytes(), name)
+
+    def test_mesh_repeats_the_run(self):
+        again = self.run_scene("again", "Geometry/File=results/mesh.msh")
+        self.addCleanup(shutil.rmtree, again)
+        self.assert_same_eigenvalues(eigenvalues(again), eigenvalues(self.results))
+        for name in ("real_modes.csv", "component_modes.csv"):
+            self.assert_same_eigenvalues(real_frequencies(again, name), real_frequencies(self.results, name))
+            self.assertEqual([row["label"] for row in read_table(again / name)],
+                             [row["label"] for row in read_table(self.results / name)])
+
+
+def arrays(path):
+    """Names of the arrays on the points and cells of a .vtu."""
+    piece = xml.etree.ElementTree.parse(path).find(".//Piece")
+    names = {array.get("Name") for kind in ("PointData", "CellData") for array in piece.findall(f"{kind}/DataArray")}
+    # The numbers of the processes come with every volume.
+    return names - {"subdomain"}
