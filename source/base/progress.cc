@@ -10,12 +10,24 @@ namespace Squeal
 {
   namespace
   {
-    /// Peak resident memory of this process [byte].
-    double peak_memory()
+    rusage own_usage()
     {
       rusage usage;
       getrusage(RUSAGE_SELF, &usage);
-      return 1024. * usage.ru_maxrss;
+      return usage;
+    }
+
+    /// Peak resident memory of this process [byte].
+    double peak_memory()
+    {
+      return 1024. * own_usage().ru_maxrss;
+    }
+
+    /// Processor time of this process [s].
+    double cpu_time()
+    {
+      const rusage usage = own_usage();
+      return usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
     }
 
     constexpr const char *erase_line = "\r\033[K";
@@ -75,6 +87,7 @@ namespace Squeal
     const std::lock_guard<std::mutex> lock(mutex);
     current    = name;
     step_start = Clock::now();
+    cpu_step_start = cpu_time();
     state.clear();
   }
 
@@ -90,7 +103,7 @@ namespace Squeal
     if (current.empty())
       return;
     const double seconds = std::chrono::duration<double>(Clock::now() - step_start).count();
-    records.push_back({current, seconds, peak_memory(), summary});
+    records.push_back({current, seconds, cpu_time() - cpu_step_start, peak_memory(), summary});
     if (stream != nullptr)
       *stream << (live ? erase_line : "") << line_start(current, seconds) << (summary.empty() ? "" : "   ") << summary << std::endl;
     current.clear();

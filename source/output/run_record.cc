@@ -58,7 +58,7 @@ namespace Squeal
     tree["wall time [s]"] = progress.elapsed();
     for (const StepRecord &step : progress.steps())
       tree["steps"].push_back(
-        {{"name", step.name}, {"wall time [s]", step.seconds}, {"peak memory so far [byte]", step.peak_memory}, {"result", step.summary}});
+        {{"name", step.name}, {"wall time [s]", step.seconds}, {"CPU time [s]", step.cpu_seconds}, {"peak memory so far [byte]", step.peak_memory}, {"result", step.summary}});
     stream << tree.dump(2) << '\n';
   }
 } // namespace Squeal

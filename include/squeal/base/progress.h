@@ -15,6 +15,7 @@ namespace Squeal
   {
     std::string name;
     double      seconds;      ///< wall time [s]
+    double      cpu_seconds;  ///< processor time of this process [s]
     double      peak_memory;  ///< peak resident memory of this process so far [byte]
     std::string summary;      ///< what the step found, one phrase
   };
@@ -66,6 +67,7 @@ namespace Squeal
     std::ostream           *stream = nullptr;
     bool                    live   = false;
     Clock::time_point       start, step_start;
+    double                  cpu_step_start = 0.;
     std::string             current, state;
     std::vector<StepRecord> records;
 
