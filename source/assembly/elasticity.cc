@@ -1,4 +1,5 @@
 #include <squeal/assembly/elasticity.h>
+#include <squeal/base/exceptions.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
@@ -6,6 +7,7 @@
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <map>
+#include <sstream>
 
 namespace Squeal
 {
@@ -43,6 +45,20 @@ namespace Squeal
             values[j] = cell_matrix(dofs.local[i], dofs.local[j]);
           matrix.add(columns[i], columns, values);
         }
+    }
+
+    /// Refuses an element that is turned inside out, as curved edges can do where straight ones do not.
+    void check_orientation(const FEValues<3> &values, const std::string &component)
+    {
+      for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+        if (!(values.JxW(q) > 0.))
+          {
+            std::ostringstream where;
+            where << "component " << component << ", element with centre (" << values.get_cell()->center() << ") m";
+            throw MeshError("the element is inverted: its Jacobian is not positive everywhere", where.str(),
+                            "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
+                            "Geometry/Element size, or use Discretization/Degree = 1");
+          }
     }
 
     /// ∫ 2 G ε:ε + Λ div div and ∫ ρ φ·φ over one cell.
@@ -140,6 +156,7 @@ namespace Squeal
       if (cell->is_locally_owned())
         {
           values.reinit(cell);
+          check_orientation(values, model.component_names()[cell->material_id()]);
           integrate_cell(values, cell->material_id() == 0 ? materials.disc : materials.pin, K, M);
           for (const unsigned int f : cell->face_indices())
             if (const auto it = mounts.find(cell->face(f)->boundary_id()); cell->at_boundary(f) && it != mounts.end())

@@ -10,19 +10,20 @@ namespace Squeal
 {
   namespace
   {
-    /// Functions on a set of nodes, orthonormal in the mass-weighted inner product.
+    /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product.
     class Projection
     {
     public:
       /**
-       * @param functions  n_nodes × n_functions, replaced by orthonormal combinations
+       * @param functions  n_nodes × n_functions
        * @param weights    n_nodes
        */
       Projection(DenseMatrix functions, const std::vector<double> &weights)
         : basis(std::move(functions))
+        , combinations(identity(basis.n_columns()))
         , weights(weights)
       {
-        // Modified Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped.
+        // Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped
         for (int j = 0; j < basis.n_columns(); ++j)
           {
             const double before = std::sqrt(inner(basis.column(j), basis.column(j)));
@@ -30,17 +31,38 @@ namespace Squeal
               for (int i = 0; i < j; ++i)
                 {
                   const double s = inner(basis.column(i), basis.column(j));
-                  for (int k = 0; k < basis.n_rows(); ++k)
-                    basis(k, j) -= s * basis(k, i);
+                  subtract(basis, s, i, j);
+                  subtract(combinations, s, i, j);
                 }
             const double norm = std::sqrt(inner(basis.column(j), basis.column(j)));
-            for (int k = 0; k < basis.n_rows(); ++k)
-              basis(k, j) = norm > 1e-8 * before ? basis(k, j) / norm : 0.;
+            const double factor = norm > dependence * before ? 1. / norm : 0.;
+            scale(basis, factor, j);
+            scale(combinations, factor, j);
           }
       }
 
-      /// Coefficients of the projection of a field; their squares sum up to its energy.
+      /// Energy of the projection of a field: the sum of its squared orthonormal coefficients.
+      double energy(const std::vector<double> &field) const
+      {
+        const auto c = orthonormal_coefficients(field);
+        return std::inner_product(c.begin(), c.end(), c.begin(), 0.);
+      }
+
+      /// Factors of the functions in the projection of a field.
       std::vector<double> coefficients(const std::vector<double> &field) const
+      {
+        const auto          c = orthonormal_coefficients(field);
+        std::vector<double> result(c.size(), 0.);
+        for (std::size_t j = 0; j < c.size(); ++j)
+          for (std::size_t k = 0; k < c.size(); ++k)
+            result[k] += combinations(k, j) * c[j];
+        return result;
+      }
+
+    private:
+      static constexpr double dependence = 1e-8;
+
+      std::vector<double> orthonormal_coefficients(const std::vector<double> &field) const
       {
         std::vector<double> result(basis.n_columns());
         for (int j = 0; j < basis.n_columns(); ++j)
@@ -48,19 +70,6 @@ namespace Squeal
         return result;
       }
 
-      double energy(const std::vector<double> &field) const
-      {
-        const auto c = coefficients(field);
-        return std::inner_product(c.begin(), c.end(), c.begin(), 0.);
-      }
-
-      /// Values of the projection at node k.
-      const DenseMatrix &functions() const
-      {
-        return basis;
-      }
-
-    private:
       double inner(const double *u, const double *v) const
       {
         double sum = 0.;
@@ -69,7 +78,20 @@ namespace Squeal
         return sum;
       }
 
-      DenseMatrix         basis;
+      static void subtract(DenseMatrix &matrix, const double factor, const int i, const int j)
+      {
+        for (int k = 0; k < matrix.n_rows(); ++k)
+          matrix(k, j) -= factor * matrix(k, i);
+      }
+
+      static void scale(DenseMatrix &matrix, const double factor, const int j)
+      {
+        for (int k = 0; k < matrix.n_rows(); ++k)
+          matrix(k, j) *= factor;
+      }
+
+      DenseMatrix         basis;        ///< orthonormal combinations of the functions
+      DenseMatrix         combinations; ///< their factors, upper triangular
       std::vector<double> weights;
     };
 
@@ -155,7 +177,7 @@ namespace Squeal
        */
       int nodal_circles(const std::vector<double> &field, const int n) const
       {
-        // Profile a(r), b(r) of a cos nθ + b sin nθ by least squares on the powers themselves
+        // Profile a(r) cos nθ + b(r) sin nθ
         constexpr int n_samples = 41;
         const auto    profile   = radial_profile(field, n, n_samples);
 
@@ -190,31 +212,10 @@ namespace Squeal
       }
 
     private:
-      /// (a, b) at equidistant radii: solves the least-squares problem in the monomials s^k.
+      /// (a, b) at equidistant radii of the projection Σ_k s^k (a_k cos nθ + b_k sin nθ).
       std::vector<std::pair<double, double>> radial_profile(const std::vector<double> &field, const int n, const int n_samples) const
       {
-        const int   n_functions = (n == 0 ? 1 : 2) * n_radial_functions;
-        DenseMatrix normal(n_functions, n_functions), rhs(n_functions, 1);
-        std::vector<double> row(n_functions);
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-          {
-            const double theta = std::atan2(sines[i], cosines[i]);
-            const double s     = scaled_radius(std::hypot(nodes[i]->position[0], nodes[i]->position[1]));
-            for (int k = 0; k < n_radial_functions; ++k)
-              {
-                row[k] = std::pow(s, k) * std::cos(n * theta);
-                if (n > 0)
-                  row[n_radial_functions + k] = std::pow(s, k) * std::sin(n * theta);
-              }
-            for (int a = 0; a < n_functions; ++a)
-              {
-                for (int b = 0; b < n_functions; ++b)
-                  normal(a, b) += weights[i] * row[a] * row[b];
-                rhs(a, 0) += weights[i] * row[a] * field[i];
-              }
-          }
-        DenseLU(normal, "radial profile of a disc mode").solve(rhs);
-
+        const auto                             factors = harmonics[n].coefficients(field);
         std::vector<std::pair<double, double>> profile;
         for (int i = 0; i < n_samples; ++i)
           {
@@ -222,9 +223,9 @@ namespace Squeal
             double       a = 0., b = 0.;
             for (int k = 0; k < n_radial_functions; ++k)
               {
-                a += rhs(k, 0) * std::pow(s, k);
+                a += factors[k] * std::pow(s, k);
                 if (n > 0)
-                  b += rhs(n_radial_functions + k, 0) * std::pow(s, k);
+                  b += factors[n_radial_functions + k] * std::pow(s, k);
               }
             profile.emplace_back(a, b);
           }

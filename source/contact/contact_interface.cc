@@ -18,6 +18,9 @@ namespace Squeal
     /// Direction cosines below this are rounding errors of a plane face.
     constexpr double negligible_cosine = 1e-12;
 
+    /// Nodes closer to the axis have no sliding direction but that of rounding errors [m].
+    constexpr double smallest_axis_distance = 1e-9;
+
     /// A node of a contact surface with the area-weighted normal of the faces that meet there.
     struct SurfaceNode
     {
@@ -87,7 +90,7 @@ namespace Squeal
       normal /= normal.norm();
 
       const double r = node.axis_distance();
-      if (!(r > 0.))
+      if (!(r > smallest_axis_distance))
         throw MeshError("a contact node lies on the disc's axis, where nothing slides", "surface disc_contact",
                         "move the pins away from the axis");
       Tensor<1, 3> e_theta({-node.position[1] / r, node.position[0] / r, 0.});

@@ -67,8 +67,8 @@ namespace Squeal
     return *X;
   }
 
-  double UpdatedInverse::n_factor_entries() const
+  const Factorization &UpdatedInverse::frictionless() const
   {
-    return factor->n_factor_entries();
+    return *factor;
   }
 } // namespace Squeal

@@ -271,6 +271,97 @@ namespace Squeal
       return text.str();
     }
 
+    /// Q(λ_j) φ_j for some modes.
+    struct PencilImage
+    {
+      MultiVector         real, imaginary;
+      std::vector<double> stiffness_norms; ///< ‖Kφ‖₂
+
+      /// ‖Q(λ)φ‖₂ / ‖Kφ‖₂
+      std::vector<double> residuals() const
+      {
+        const std::vector<double> real_norms = column_norms(real), imaginary_norms = column_norms(imaginary);
+        std::vector<double>       result;
+        for (std::size_t j = 0; j < stiffness_norms.size(); ++j)
+          result.push_back(std::hypot(real_norms[j], imaginary_norms[j]) / std::max(stiffness_norms[j], std::numeric_limits<double>::min()));
+        return result;
+      }
+    };
+
+    PencilImage apply_pencil(const QuadraticPencil      &pencil,
+                             const std::vector<Complex> &values,
+                             const MultiVector          &real_part,
+                             const MultiVector          &imaginary_part)
+    {
+      const int   width = static_cast<int>(values.size());
+      PencilImage image{MultiVector(real_part.Map(), width), MultiVector(real_part.Map(), width), std::vector<double>(width, 0.)};
+      MultiVector product(real_part.Map(), width, false);
+      const std::vector<double> norms = column_norms(imaginary_part);
+      const bool is_real = std::all_of(norms.begin(), norms.end(), [](const double x) { return x == 0.; });
+      for (const bool imaginary_input : {false, true})
+        {
+          if (imaginary_input && is_real)
+            continue;
+          const MultiVector &input    = imaginary_input ? imaginary_part : real_part;
+          const auto         add_term = [&](const LinearOperator *matrix, const int power) {
+            if (matrix == nullptr)
+              return;
+            matrix->apply(input, product);
+            if (power == 0)
+              {
+                const std::vector<double> product_norms = column_norms(product);
+                for (int j = 0; j < width; ++j)
+                  image.stiffness_norms[j] = std::hypot(image.stiffness_norms[j], product_norms[j]);
+              }
+            for (int j = 0; j < width; ++j)
+              {
+                Complex factor = power == 2 ? values[j] * values[j] : power == 1 ? values[j] : Complex(1.);
+                if (imaginary_input)
+                  factor *= Complex(0., 1.);
+                image.real(j)->Update(factor.real(), *product(j), 1.);
+                image.imaginary(j)->Update(factor.imag(), *product(j), 1.);
+              }
+          };
+          add_term(pencil.stiffness, 0);
+          add_term(pencil.damping, 1);
+          add_term(pencil.mass, 2);
+        }
+      return image;
+    }
+
+    /**
+     * One step φ ← φ - Q(s)⁻¹ Q(λ) φ for the modes that miss the tolerance: a
+     * mode far below the others keeps rounding errors of high frequency, small
+     * in φ but large in Kφ, where Q(s)⁻¹ nearly inverts Q(λ). A step that does
+     * not lower the residual is not taken.
+     */
+    void correct(const QuadraticPencil &pencil, const LinearOperator &inverse, QuadraticModes &modes, const double tolerance)
+    {
+      for (std::size_t j = 0; j < modes.values.size(); ++j)
+        {
+          if (modes.residuals[j] <= tolerance)
+            continue;
+          const int         column = static_cast<int>(j);
+          MultiVector       re = view(*modes.real_part, column, 1), im = view(*modes.imaginary_part, column, 1);
+          const PencilImage before = apply_pencil(pencil, {modes.values[j]}, re, im);
+          MultiVector       new_re(re.Map(), 1), new_im(re.Map(), 1);
+          inverse.apply(before.real, new_re);
+          inverse.apply(before.imaginary, new_im);
+          new_re.Update(1., re, -1.);
+          new_im.Update(1., im, -1.);
+          const double norm = std::hypot(column_norms(new_re)[0], column_norms(new_im)[0]);
+          new_re.Scale(1. / norm);
+          new_im.Scale(1. / norm);
+          const double residual = apply_pencil(pencil, {modes.values[j]}, new_re, new_im).residuals()[0];
+          if (residual < modes.residuals[j])
+            {
+              *(*modes.real_part)(column)      = *new_re(0);
+              *(*modes.imaginary_part)(column) = *new_im(0);
+              modes.residuals[j]               = residual;
+            }
+        }
+    }
+
     /// Largest ratio of a residual to what is accepted: the tolerance or, where that is more, rounding errors of Kφ.
     double excess(const QuadraticPencil &pencil, const QuadraticModes &modes, const QuadraticModesOptions &options)
     {
@@ -462,6 +553,7 @@ namespace Squeal
         if (search.state.complete)
           {
             QuadraticModes modes = extract(pencil, search.transformation, search.krylov, search.ritz, options);
+            correct(pencil, inverse_at_shift, modes, options.tolerance);
             const double   excessive = excess(pencil, modes, options);
             if (excessive <= 1.)
               {
@@ -491,52 +583,16 @@ namespace Squeal
   {
     constexpr int             chunk = 16;
     const int                 k     = static_cast<int>(values.size());
-    const std::vector<double> imaginary_norms = column_norms(imaginary_part);
     std::vector<double>       result(k);
     for (int first = 0; first < k; first += chunk)
       {
-        const int  width   = std::min(chunk, k - first);
-        const bool is_real = std::all_of(imaginary_norms.begin() + first, imaginary_norms.begin() + first + width, [](const double x) {
-          return x == 0.;
-        });
-
-        // ------------------------------------------------- λ² M φ + λ C φ + K φ, real and imaginary part
-        MultiVector real(real_part.Map(), width), imaginary(real_part.Map(), width), product(real_part.Map(), width, false);
-        std::vector<double> stiffness_norms(width, 0.);
-        for (const bool imaginary_input : {false, true})
-          {
-            if (imaginary_input && is_real)
-              continue;
-            const MultiVector input = view(imaginary_input ? imaginary_part : real_part, first, width);
-            const auto        add_term = [&](const LinearOperator *matrix, const int power) {
-              if (matrix == nullptr)
-                return;
-              matrix->apply(input, product);
-              if (power == 0)
-                {
-                  const std::vector<double> norms = column_norms(product);
-                  for (int j = 0; j < width; ++j)
-                    stiffness_norms[j] = std::hypot(stiffness_norms[j], norms[j]);
-                }
-              for (int j = 0; j < width; ++j)
-                {
-                  const Complex lambda = values[first + j];
-                  Complex       factor = power == 2 ? lambda * lambda : power == 1 ? lambda : Complex(1.);
-                  if (imaginary_input)
-                    factor *= Complex(0., 1.);
-                  real(j)->Update(factor.real(), *product(j), 1.);
-                  imaginary(j)->Update(factor.imag(), *product(j), 1.);
-                }
-            };
-            add_term(pencil.stiffness, 0);
-            add_term(pencil.damping, 1);
-            add_term(pencil.mass, 2);
-          }
-
-        const std::vector<double> real_norms = column_norms(real), other_norms = column_norms(imaginary);
-        for (int j = 0; j < width; ++j)
-          result[first + j] = std::hypot(real_norms[j], other_norms[j]) /
-                              std::max(stiffness_norms[j], std::numeric_limits<double>::min());
+        const int         width = std::min(chunk, k - first);
+        const PencilImage image = apply_pencil(pencil,
+                                               {values.begin() + first, values.begin() + first + width},
+                                               view(real_part, first, width),
+                                               view(imaginary_part, first, width));
+        const std::vector<double> ratios = image.residuals();
+        std::copy(ratios.begin(), ratios.end(), result.begin() + first);
       }
     return result;
   }

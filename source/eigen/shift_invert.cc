@@ -2,8 +2,8 @@
 
 namespace Squeal
 {
-  ShiftInvert::ShiftInvert(const Factorization &factors, const SparseMatrix &M, const MultiVector *deflated)
-    : factors(factors)
+  ShiftInvert::ShiftInvert(const LinearOperator &inverse, const SparseMatrix &M, const MultiVector *deflated)
+    : inverse(inverse)
     , M(M)
     , deflated(deflated)
   {}
@@ -19,7 +19,7 @@ namespace Squeal
 
   void ShiftInvert::apply_to_image(const MultiVector &B, MultiVector &Y) const
   {
-    factors.apply(B, Y);
+    inverse.apply(B, Y);
     project(Y);
   }
 

@@ -18,7 +18,7 @@ namespace Squeal
   {
   public:
     /// @p deflated, M-orthonormal, may be null; all must outlive this object.
-    ShiftInvert(const Factorization &factors, const SparseMatrix &M, const MultiVector *deflated);
+    ShiftInvert(const LinearOperator &inverse, const SparseMatrix &M, const MultiVector *deflated);
 
     /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ M X.
     void apply(const MultiVector &X, MultiVector &Y) const;
@@ -32,9 +32,9 @@ namespace Squeal
     const SparseMatrix &mass() const;
 
   private:
-    const Factorization &factors;
-    const SparseMatrix  &M;
-    const MultiVector   *deflated;
+    const LinearOperator &inverse;
+    const SparseMatrix   &M;
+    const MultiVector    *deflated;
   };
 
   /// What is asked of a Krylov solver.

@@ -63,8 +63,10 @@ namespace Squeal
       }
 
     private:
-      const Factorization &factors()
+      const LinearOperator &inverse()
       {
+        if (options.inverse != nullptr)
+          return *options.inverse;
         if (factorization)
           return *factorization;
         if (options.shift == 0.)
@@ -137,7 +139,7 @@ namespace Squeal
       std::optional<MultiVector>
       krylov(const int n_wanted, const unsigned int attempt, const int n_vain, const std::optional<MultiVector> &deflated)
       {
-        const ShiftInvert A(factors(), M, deflated ? &*deflated : nullptr);
+        const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
         KrylovRequest     request;
         request.n_wanted   = n_wanted;
         request.tolerance  = 0.1 * options.tolerance;
@@ -211,7 +213,7 @@ namespace Squeal
         for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
           {
             MultiVector       W(pairs.vectors->Map(), pairs.vectors->NumVectors());
-            const ShiftInvert A(factors(), M, nullptr);
+            const ShiftInvert A(inverse(), M, nullptr);
             A.apply(*pairs.vectors, W);
             RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
             pairs.values = std::move(refined.values);

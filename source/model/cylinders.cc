@@ -98,7 +98,7 @@ namespace Squeal
           triangulation.set_manifold(id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), cylinder->axis_point));
         }
 
-    // Faces and edges of the cylinders; rims of the pins' contact faces are remembered
+    // Faces and edges of the cylinders; their rims are remembered
     std::map<std::array<long, 3>, types::manifold_id> curved_edges;
     for (const auto &cell : triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
@@ -115,11 +115,12 @@ namespace Squeal
                 }
             }
 
-    // The same rims on the disc
-    const types::boundary_id disc_contact = model.surface_id(PhysicalNames::disc_contact);
+    // The same rims on both sides of the contact: a pin's outline on the disc, the disc's rim or bore on a pad that ends there
+    const std::set<types::boundary_id> contact = {model.surface_id(PhysicalNames::disc_contact),
+                                                  model.surface_id(PhysicalNames::pin_contact)};
     for (const auto &cell : triangulation.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
-        if (face->at_boundary() && face->boundary_id() == disc_contact)
+        if (face->at_boundary() && contact.count(face->boundary_id()))
           for (unsigned int l = 0; l < face->n_lines(); ++l)
             {
               const auto line = face->line(l);

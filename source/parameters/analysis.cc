@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/number_parameter.h>
 
 namespace Squeal
 {
@@ -16,10 +17,10 @@ namespace Squeal
     prm.leave_subsection();
 
     prm.enter_subsection("Band");
-    prm.add_parameter("Maximum frequency", maximum_frequency,
-                      "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
-                      "meshes: results hold in a stated band. Units: Hz.",
-                      Double(0.));
+    add_number_parameter(prm, "Maximum frequency", maximum_frequency,
+                         "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
+                         "meshes: results hold in a stated band. Units: Hz.",
+                         Double(0.));
     prm.leave_subsection();
   }
 
@@ -34,7 +35,7 @@ namespace Squeal
   {
     prm.enter_subsection("Real modes");
     add_enum_parameter(prm, "Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
-    prm.add_parameter("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", Double(1e-14, 1e-4));
+    add_number_parameter(prm, "Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", Double(1e-14, 1e-4));
     prm.leave_subsection();
 
     prm.enter_subsection("Complex modes");
@@ -44,11 +45,11 @@ namespace Squeal
     add_enum_parameter(prm, "Shift inverse", shift_inverse,
                        "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
                        "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
-    prm.add_parameter("Tolerance", complex_tolerance,
-                      "Largest relative residual of a complex mode found by Krylov. Units: none.", Double(1e-13, 1e-4));
-    prm.add_parameter("Iteration tolerance", iteration_tolerance,
-                      "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.",
-                      Double(1e-12, 1e-2));
+    add_number_parameter(prm, "Tolerance", complex_tolerance,
+                         "Largest relative residual of a complex mode found by Krylov. Units: none.", Double(1e-13, 1e-4));
+    add_number_parameter(prm, "Iteration tolerance", iteration_tolerance,
+                         "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.",
+                         Double(1e-12, 1e-2));
     prm.add_parameter("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", Integer(1));
     prm.leave_subsection();
 

@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/number_parameter.h>
 
 #include <cmath>
 #include <filesystem>
@@ -106,38 +107,38 @@ namespace Squeal
                       "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below. "
                       "Units: none.",
                       Anything());
-    prm.add_parameter("Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
-    prm.add_parameter("Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
-    prm.add_parameter("Disc thickness", disc_thickness,
-                      "Thickness of the disc, half of it on each side of z = 0. Units: m.", Double(0.));
-    prm.add_parameter("Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", Double(0.));
-    prm.add_parameter("Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", Double(0.));
-    prm.add_parameter("Top pin radii", top.radii,
-                      "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
-                      "separated by commas; empty for none. Units: m.",
-                      List(Double(0.), 0));
-    prm.add_parameter("Top pin angles", top.angles,
-                      "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.",
-                      List(Double(), 0));
-    prm.add_parameter("Bottom pin radii", bottom.radii,
-                      "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
-                      "separated by commas; empty for none. Units: m.",
-                      List(Double(0.), 0));
-    prm.add_parameter("Bottom pin angles", bottom.angles,
-                      "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.",
-                      List(Double(), 0));
+    add_number_parameter(prm, "Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
+    add_number_parameter(prm, "Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
+    add_number_parameter(prm, "Disc thickness", disc_thickness,
+                         "Thickness of the disc, half of it on each side of z = 0. Units: m.", Double(0.));
+    add_number_parameter(prm, "Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", Double(0.));
+    add_number_parameter(prm, "Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", Double(0.));
+    add_number_parameter(prm, "Top pin radii", top.radii,
+                         "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
+                         "separated by commas; empty for none. Units: m.",
+                         List(Double(0.), 0));
+    add_number_parameter(prm, "Top pin angles", top.angles,
+                         "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.",
+                         List(Double(), 0));
+    add_number_parameter(prm, "Bottom pin radii", bottom.radii,
+                         "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
+                         "separated by commas; empty for none. Units: m.",
+                         List(Double(0.), 0));
+    add_number_parameter(prm, "Bottom pin angles", bottom.angles,
+                         "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.",
+                         List(Double(), 0));
     prm.add_parameter("Nodes per pin face", nodes_per_pin_face,
                       "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.",
                       Integer(1));
     prm.add_parameter("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.",
                       Integer(1));
     prm.add_parameter("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", Integer(1));
-    prm.add_parameter("Element size", element_size,
-                      "Length of the elements of the disc, in its plane and away from the pins. Units: m.", Double(0.));
-    prm.add_parameter("Pairing tolerance", pairing_tolerance,
-                      "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
-                      "Units: m.",
-                      Double(0.));
+    add_number_parameter(prm, "Element size", element_size,
+                         "Length of the elements of the disc, in its plane and away from the pins. Units: m.", Double(0.));
+    add_number_parameter(prm, "Pairing tolerance", pairing_tolerance,
+                         "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
+                         "Units: m.",
+                         Double(0.));
     prm.leave_subsection();
   }
 

@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/materials.h>
+#include <squeal/parameters/number_parameter.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -17,8 +18,8 @@ namespace Squeal
     {
       std::ostringstream text;
       for (const ElasticMount &mount : mounts)
-        text << (&mount == &mounts.front() ? "" : "; ") << mount.surface << ": " << mount.radial << ", " << mount.tangential << ", "
-             << mount.axial;
+        text << (&mount == &mounts.front() ? "" : "; ") << mount.surface << ": " << exact_text(mount.radial) << ", "
+             << exact_text(mount.tangential) << ", " << exact_text(mount.axial);
       return text.str();
     }
 
@@ -53,9 +54,9 @@ namespace Squeal
     {
       using dealii::Patterns::Double;
       prm.enter_subsection(section);
-      prm.add_parameter("Young modulus", material.young_modulus, "Young's modulus E. Units: Pa.", Double(0.));
-      prm.add_parameter("Poisson ratio", material.poisson_ratio, "Poisson's ratio. Units: none.", Double(-1., 0.5));
-      prm.add_parameter("Density", material.density, "Mass density. Units: kg/m^3.", Double(0.));
+      add_number_parameter(prm, "Young modulus", material.young_modulus, "Young's modulus E. Units: Pa.", Double(0.));
+      add_number_parameter(prm, "Poisson ratio", material.poisson_ratio, "Poisson's ratio. Units: none.", Double(-1., 0.5));
+      add_number_parameter(prm, "Density", material.density, "Mass density. Units: kg/m^3.", Double(0.));
       prm.leave_subsection();
     }
 

@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/number_parameter.h>
 #include <squeal/parameters/operation.h>
 
 namespace Squeal
@@ -8,10 +9,10 @@ namespace Squeal
   {
     using dealii::Patterns::Double;
     prm.enter_subsection("Operation");
-    prm.add_parameter("Friction coefficient", friction_coefficient, "Coulomb's coefficient mu. Units: none.", Double(0., 10.));
+    add_number_parameter(prm, "Friction coefficient", friction_coefficient, "Coulomb's coefficient mu. Units: none.", Double(0., 10.));
     add_enum_parameter(prm, "Rotation", rotation, "Sense of rotation about the z axis: the disc slides along +e_theta or -e_theta.");
-    prm.add_parameter("Rotation speed", rotation_speed, "Angular speed of the disc. Units: rad/s.", Double(0.));
-    prm.add_parameter("Load per side", load_per_side, "Normal force with which the pins of one side press. Units: N.", Double(0.));
+    add_number_parameter(prm, "Rotation speed", rotation_speed, "Angular speed of the disc. Units: rad/s.", Double(0.));
+    add_number_parameter(prm, "Load per side", load_per_side, "Normal force with which the pins of one side press. Units: N.", Double(0.));
     add_enum_parameter(prm, "Radial dissipation", radial_dissipation,
                        "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
                        "published, c_b = R_n0 / w_0 (as the paper prints it). R_n0: equal shares of the load. c_b in N s/m.");

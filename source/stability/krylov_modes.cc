@@ -56,6 +56,7 @@ namespace Squeal
     modes.real_part      = found.real_part;
     modes.imaginary_part = found.imaginary_part;
     modes.overdamped     = found.real_values;
+    modes.n_rigid_body   = found.n_zero_values / 2;
     modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
     finish_modes(system, mu, inverse, modes);
     return modes;

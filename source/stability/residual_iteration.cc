@@ -20,8 +20,8 @@ namespace Squeal
     constexpr double dependence_tolerance = 1e-8;
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
-    /// Where there are rigid-body modes, λ below this part of the band's end are theirs.
-    constexpr double rigid_fraction = 1e-4;
+    /// λ below this part of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
+    constexpr double zero_fraction = 1e-4;
 
     DenseMatrix real_part(const ComplexDenseMatrix &X)
     {
@@ -63,31 +63,6 @@ namespace Squeal
       return join(pointers);
     }
 
-    ComplexDenseMatrix columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen)
-    {
-      ComplexDenseMatrix result(X.n_rows(), chosen.size());
-      for (std::size_t j = 0; j < chosen.size(); ++j)
-        std::copy(X.column(chosen[j]), X.column(chosen[j] + 1), result.column(j));
-      return result;
-    }
-
-    /// The modes without those of a rigid body, of which rounding leaves some λ with a small imaginary part.
-    DenseQuadraticModes elastic_modes(const DenseQuadraticModes &pairs, const double largest_frequency)
-    {
-      DenseQuadraticModes result;
-      std::vector<int>    chosen;
-      for (std::size_t j = 0; j < pairs.values.size(); ++j)
-        if (std::abs(pairs.values[j]) > rigid_fraction * largest_frequency)
-          {
-            result.values.push_back(pairs.values[j]);
-            chosen.push_back(j);
-          }
-      result.right       = columns(pairs.right, chosen);
-      result.left        = columns(pairs.left, chosen);
-      result.real_values = pairs.real_values;
-      return result;
-    }
-
     /// ψᵀ A φ for complex columns j, no conjugate.
     Complex bilinear(const DenseMatrix &A, const ComplexDenseMatrix &psi, const ComplexDenseMatrix &phi, const int j)
     {
@@ -122,6 +97,41 @@ namespace Squeal
       const double limit   = compression_tolerance * compression_tolerance * squares.back();
       const int    first   = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
       return X * columns(axes, first, k - first);
+    }
+
+    /// Columns of X.
+    ComplexDenseMatrix selected(const ComplexDenseMatrix &X, const std::vector<int> &chosen)
+    {
+      ComplexDenseMatrix result(X.n_rows(), static_cast<int>(chosen.size()));
+      for (std::size_t j = 0; j < chosen.size(); ++j)
+        std::copy(X.column(chosen[j]), X.column(chosen[j]) + X.n_rows(), result.column(static_cast<int>(j)));
+      return result;
+    }
+
+    /// Takes values with |λ| ≤ @p limit out, those of rigid-body motions, and returns how many they are.
+    int remove_zeros(DenseQuadraticModes &modes, const double limit)
+    {
+      // With an oscillating value its conjugate is zero, too
+      std::vector<int>     others;
+      std::vector<Complex> values;
+      for (std::size_t j = 0; j < modes.values.size(); ++j)
+        if (std::abs(modes.values[j]) > limit)
+          {
+            others.push_back(static_cast<int>(j));
+            values.push_back(modes.values[j]);
+          }
+      int n_zeros = 2 * static_cast<int>(modes.values.size() - values.size());
+      if (n_zeros > 0)
+        {
+          modes.right  = selected(modes.right, others);
+          modes.left   = selected(modes.left, others);
+          modes.values = values;
+        }
+
+      const auto end = std::remove_if(modes.real_values.begin(), modes.real_values.end(), [limit](const double l) { return std::abs(l) <= limit; });
+      n_zeros += static_cast<int>(modes.real_values.end() - end);
+      modes.real_values.erase(end, modes.real_values.end());
+      return n_zeros;
     }
 
     struct Estimate
@@ -203,13 +213,12 @@ namespace Squeal
 
     for (int step = 0;; ++step)
       {
-        const ReducedPencil       pencil = reduced.at(mu);
+        const ReducedPencil pencil = reduced.at(mu);
         DenseQuadraticModes pairs =
           dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, options.largest_frequency);
-        if (options.n_rigid_body > 0)
-          pairs = elastic_modes(pairs, options.largest_frequency);
+        const int n_zeros = remove_zeros(pairs, zero_fraction * options.largest_frequency);
         if (pairs.values.empty())
-          throw SolverError("only modes of a rigid body lie in the band", "complex modes", "raise Band/Maximum frequency");
+          throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
         const Estimate estimate = estimate_errors(system, inverse, pencil, mu, pairs, reduced.basis());
         const double   worst    = *std::max_element(estimate.errors.begin(), estimate.errors.end());
 
@@ -224,6 +233,10 @@ namespace Squeal
             modes.estimated_errors = estimate.errors;
             modes.real_part        = std::make_shared<MultiVector>(reduced.basis() * real_part(pairs.right));
             modes.imaginary_part   = std::make_shared<MultiVector>(reduced.basis() * imaginary_part(pairs.right));
+            modes.n_rigid_body     = n_zeros / 2;
+            for (const double l : pairs.real_values)
+              if (std::abs(l) <= options.largest_frequency)
+                modes.overdamped.push_back(l);
             modes.summary          = state.str() + ", " + std::to_string(step) + " growths";
             finish_modes(system, mu, inverse, modes);
             return modes;

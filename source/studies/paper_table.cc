@@ -34,6 +34,9 @@ namespace Squeal
 
     constexpr auto none = std::nullopt;
 
+    /// Relative difference of frequencies beyond which two modes without a name are not taken for the same.
+    constexpr double largest_distance = 0.1;
+
     /// Frequencies in Hz, divergence rates in per cent; empty: not given or negligible.
     const std::vector<Row> &rows()
     {
@@ -113,9 +116,13 @@ namespace Squeal
           case Match::frequency:
             if (!paper_frequency)
               return {};
-            return *std::min_element(candidates.begin(), candidates.end(), [&](const std::size_t a, const std::size_t b) {
-              return std::abs(frequencies[a] - *paper_frequency) < std::abs(frequencies[b] - *paper_frequency);
-            });
+            {
+              const auto distance = [&](const std::size_t mode) { return std::abs(frequencies[mode] / *paper_frequency - 1.); };
+              const auto nearest  = *std::min_element(candidates.begin(), candidates.end(), [&](const std::size_t a, const std::size_t b) {
+                return distance(a) < distance(b);
+              });
+              return distance(nearest) < largest_distance ? std::make_optional(nearest) : std::nullopt;
+            }
         }
       return {};
     }
@@ -154,7 +161,9 @@ namespace Squeal
       {
         std::vector<Cell> cells = {std::string(row.name)};
         const auto add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum, unsigned int &n) {
-          const auto mode = paper ? find(match, labels, values, {}, paper) : std::nullopt;
+          std::optional<std::size_t> mode;
+          if (paper)
+            mode = find(match, labels, values, {}, paper);
           cells.push_back(to_cell(paper));
           cells.push_back(mode ? Cell(values[*mode]) : Cell());
           if (mode)

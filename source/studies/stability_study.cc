@@ -35,6 +35,9 @@ namespace Squeal
     /// Divergence rates below this are rounding errors of a neutral mode of the Krylov solver [-].
     constexpr double negligible_divergence = 1e-8;
 
+    /// Divergence rates that the least structural damping outweighs [-].
+    constexpr double weak_divergence = 1e-4;
+
     /// The estimated error of λ may be that much too small.
     constexpr double estimate_safety = 3.;
 
@@ -143,6 +146,31 @@ namespace Squeal
           result.push_back(modal_quantities(modes.lambda[j]).divergence_rate > uncertainty);
         }
       return result;
+    }
+
+    // ----------------------------------------------------------------- verdict
+
+    std::string verdict(const ComplexModes             &modes,
+                        const std::vector<bool>        &unstable,
+                        const std::vector<std::string> &labels,
+                        const Parameters               &parameters)
+    {
+      const double mu = parameters.operation.friction_coefficient;
+      std::size_t  n_unstable = 0, n_weak = 0, leading = 0;
+      for (std::size_t j = 0; j < labels.size(); ++j)
+        if (unstable[j])
+          {
+            const double rate = modal_quantities(modes.lambda[j]).divergence_rate;
+            if (n_unstable++ == 0 || rate > modal_quantities(modes.lambda[leading]).divergence_rate)
+              leading = j;
+            n_weak += rate < weak_divergence;
+          }
+      if (n_unstable == 0)
+        return text("  stable: no unstable mode below ", parameters.discretization.maximum_frequency, " Hz at mu = ", mu);
+      const ModalQuantities mode = modal_quantities(modes.lambda[leading]);
+      return text("  squeal: ", n_unstable, n_unstable == 1 ? " unstable mode" : " unstable modes", " at mu = ", mu, ", led by ",
+                  labels[leading], " at ", mode.frequency, " Hz with a divergence rate of ", 100. * mode.divergence_rate, " %",
+                  n_weak > 0 ? text("; ", n_weak, " below ", 100. * weak_divergence, " %") : "");
     }
 
     // ------------------------------------------------------------------ fields
@@ -341,11 +369,16 @@ namespace Squeal
     // ------------------------------------------------------ real coupled modes
     progress.begin("Factorisation");
     UpdatedInverse inverse(coupled, shift, parameters.solvers.library);
-    progress.finish(shift > 0. ? text("shifted: the disc can move as a rigid body") : text("K_c is positive definite"));
+    record.quantities.emplace_back("entries of the Cholesky factor", inverse.frictionless().n_factor_entries());
+    progress.finish(text(inverse.frictionless().n_factor_entries() / 1e6, " million entries",
+                         shift > 0. ? ", shifted: the disc can move as a rigid body" : ""));
 
     progress.begin("Real modes");
     real_options.what         = "real modes of the coupled system";
     real_options.shift        = shift * shift;
+    // The factor at hand serves here too, unless the shift brought damping into it.
+    if (shift == 0. || !coupled.frictionless.damping)
+      real_options.inverse = &inverse.frictionless();
     const SymmetricModes real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, limit, real_options);
     if (real.eigenvalues.empty())
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
@@ -366,7 +399,6 @@ namespace Squeal
         iteration.largest_frequency = omega_max;
         iteration.tolerance         = parameters.solvers.iteration_tolerance;
         iteration.maximum_basis     = parameters.solvers.maximum_basis;
-        iteration.n_rigid_body      = real.n_rigid_body;
         modes                       = residual_iteration(coupled, inverse, *real.vectors, mu, iteration, progress);
       }
     // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
@@ -434,8 +466,7 @@ namespace Squeal
     folder->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
     folder->commit();
 
-    progress.note(n_unstable > 0 ? text("  the system squeals: ", n_unstable, " unstable modes at mu = ", mu) :
-                                   text("  no unstable mode below ", parameters.discretization.maximum_frequency, " Hz at mu = ", mu));
+    progress.note(verdict(modes, unstable, complex_labels, parameters));
     progress.note(text("  results in ", folder->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
   }
 } // namespace Squeal

@@ -39,8 +39,8 @@ namespace Squeal
     /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
     const MultiVector &attachment_modes() const;
 
-    /// Entries of the Cholesky factor; 0 where the library does not tell.
-    double n_factor_entries() const;
+    /// S⁻¹ by itself.
+    const Factorization &frictionless() const;
 
   private:
     std::unique_ptr<Factorization>      factor;

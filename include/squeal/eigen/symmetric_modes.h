@@ -2,6 +2,7 @@
 
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
+#include <squeal/linear_algebra/factorization.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <memory>
@@ -27,6 +28,9 @@ namespace Squeal
      * shift spares the vain attempt for bodies that can move rigidly.
      */
     double shift = 0.;
+
+    /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
+    const LinearOperator *inverse = nullptr;
 
     FactorizationLibrary library = FactorizationLibrary::automatic;
 

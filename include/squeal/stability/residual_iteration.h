@@ -12,7 +12,6 @@ namespace Squeal
     double tolerance         = 1e-7; ///< on the estimated |δλ| / |λ| of every mode [-]
     int    maximum_basis     = 1500; ///< vectors
     int    maximum_steps     = 30;
-    int    n_rigid_body      = 0; ///< real modes at λ = 0, which friction leaves there
   };
 
   /**

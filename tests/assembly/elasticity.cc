@@ -1,0 +1,331 @@
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/component_modes.h>
+#include <squeal/linear_algebra/factorization.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  const std::vector<PolarPin> two_pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
+
+  /// Annulus and two pins, smoothly distorted in all directions so that faces are warped; boundaries keep polygons.
+  HexMesh distorted_mesh()
+  {
+    return mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
+      return Point3{{p[0] + 0.01 * std::sin(40. * p[1] + 60. * p[2]),
+                    p[1] + 0.01 * std::sin(30. * p[2] + 35. * p[0]),
+                    p[2] + 0.004 * std::sin(45. * p[0] - 30. * p[1])}};
+    });
+  }
+
+  class Elasticity : public ::testing::TestWithParam<unsigned int>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Degrees, Elasticity, ::testing::Values(1u, 2u));
+
+  double max_entry(const MultiVector &X)
+  {
+    double largest;
+    X.NormInf(&largest);
+    return largest;
+  }
+} // namespace
+
+
+
+TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
+{
+  const HexMesh            mesh      = distorted_mesh();
+  const MaterialParameters materials = mounted({});
+  const Model              model(mesh, GetParam(), MPI_COMM_WORLD);
+  const auto               system = assemble(model, materials);
+
+  // u = H x with every kind of strain
+  const double  H[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
+  const auto    linear  = [&](const Point3 &p) {
+    Point3 u{};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        u[i] += H[i][j] * p[j];
+    return u;
+  };
+  const MultiVector u = displacements(model, 0, linear);
+  const MultiVector f = *system.stiffness * u;
+
+  // Energy: V (G ε:ε + λ/2 (tr ε)²)
+  const double E = materials.disc.young_modulus, nu = materials.disc.poisson_ratio;
+  const double G = E / (2. * (1. + nu)), lame = E * nu / ((1. + nu) * (1. - 2. * nu));
+  double       squares = 0., trace = 0.;
+  for (int i = 0; i < 3; ++i)
+    {
+      trace += H[i][i];
+      for (int j = 0; j < 3; ++j)
+        squares += std::pow(0.5 * (H[i][j] + H[j][i]), 2);
+    }
+  const double energy = volume(mesh, 0) * (G * squares + 0.5 * lame * trace * trace);
+  EXPECT_NEAR(0.5 * gram(u, f)(0, 0) / energy, 1., 1e-12);
+
+  // No force inside: the boundary's support points are those on boundary faces
+  std::vector<bool>                            on_boundary(model.nodes().size(), false);
+  const auto                                  &fe = model.dof_handler().get_fe();
+  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
+  for (const auto &cell : model.dof_handler().active_cell_iterators())
+    for (const unsigned int face : cell->face_indices())
+      if (cell->at_boundary(face))
+        {
+          cell->get_dof_indices(dofs);
+          for (unsigned int i = 0; i < dofs.size(); ++i)
+            if (fe.has_support_on_face(i, face))
+              on_boundary[model.node_of_dof(dofs[i])] = true;
+        }
+  unsigned int n_inside = 0;
+  double       largest  = 0.;
+  for (unsigned int i = 0; i < on_boundary.size(); ++i)
+    if (model.nodes()[i].component == 0 && !on_boundary[i])
+      {
+        ++n_inside;
+        for (const int dof : model.nodes()[i].dofs)
+          if (const int local = f.Map().LID(dof); local >= 0)
+            largest = std::max(largest, std::abs(f[0][local]));
+      }
+  EXPECT_GT(n_inside, 10u);
+  EXPECT_LT(largest, 1e-12 * max_entry(f));
+}
+
+
+
+TEST_P(Elasticity, RigidBodyMotionsNeedNoForce)
+{
+  const Model model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
+  const auto  system = assemble(model, mounted({}));
+  const auto  motion = [](const int j) {
+    return [j](const Point3 &p) {
+      const double values[6][3] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}, {0., -p[2], p[1]}, {p[2], 0., -p[0]}, {-p[1], p[0], 0.}};
+      return Point3{{values[j][0], values[j][1], values[j][2]}};
+    };
+  };
+  for (int j = 0; j < 6; ++j)
+    {
+      const MultiVector u = displacements(model, 0, motion(j));
+      // Forces of one element's size would be entry of K times u
+      EXPECT_LT(max_entry(*system.stiffness * u), 1e-13 * max_norm(*system.stiffness) * max_entry(u)) << "motion " << j;
+      // A strain of order one is far from that.
+      const MultiVector strained = displacements(model, 0, [&](const Point3 &p) { return Point3{{p[1], p[0] + p[2], 0.}}; });
+      EXPECT_GT(max_entry(*system.stiffness * strained), 1e-4 * max_norm(*system.stiffness) * max_entry(strained));
+    }
+}
+
+
+
+TEST_P(Elasticity, MassOfEachBody)
+{
+  const HexMesh            mesh      = distorted_mesh();
+  const MaterialParameters materials = mounted({});
+  const Model              model(mesh, GetParam(), MPI_COMM_WORLD);
+  const auto               system = assemble(model, materials);
+  for (int k = 0; k < 3; ++k)
+    {
+      const MultiVector e = displacements(model, 0, [k](const Point3 &) { return Point3{{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.}}; });
+      EXPECT_NEAR(product(e, *system.mass, e) / (materials.disc.density * volume(mesh, 0)), 1., 1e-13);
+      // Directions and bodies do not couple.
+      const MultiVector other = displacements(model, 0, [k](const Point3 &) { return Point3{{k == 1 ? 1. : 0., k == 2 ? 1. : 0., k == 0 ? 1. : 0.}}; });
+      EXPECT_EQ(product(e, *system.mass, other), 0.);
+      for (unsigned int pin = 1; pin <= two_pins.size(); ++pin)
+        {
+          const MultiVector rest = displacements(model, pin, [](const Point3 &) { return Point3{{1., 1., 1.}}; });
+          EXPECT_GT(max_entry(*system.mass * rest), 0.);
+          EXPECT_EQ(product(e, *system.mass, rest), 0.);
+          EXPECT_EQ(product(e, *system.stiffness, rest), 0.);
+        }
+    }
+}
+
+
+
+TEST_P(Elasticity, PinsHaveTheirOwnMaterial)
+{
+  // Straight pins, moved in proportion to the distance from their clamp: ∫ρ s² dV = ρ V h² / 3, energy ½ G V per unit slope
+  const HexMesh            mesh      = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));
+  const MaterialParameters materials = mounted({});
+  const Model              model(mesh, GetParam(), MPI_COMM_WORLD);
+  const auto               system = assemble(model, materials);
+  const GeometryParameters geometry;
+  const double             h = geometry.pin_height, z_clamp = geometry.disc_thickness / 2. + h;
+  const double             G = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
+  for (unsigned int pin = 1; pin <= two_pins.size(); ++pin)
+    {
+      const MultiVector u = displacements(model, pin, [&](const Point3 &p) { return Point3{{z_clamp - std::abs(p[2]), 0., 0.}}; });
+      EXPECT_NEAR(product(u, *system.mass, u) / (materials.pin.density * volume(mesh, pin) * h * h / 3.), 1., 1e-12);
+      EXPECT_NEAR(product(u, *system.stiffness, u) / (G * volume(mesh, pin)), 1., 1e-12);
+    }
+}
+
+
+
+TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
+{
+  const Model model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
+  const auto  system = assemble(model, mounted({{"inner", 1e10, 2e10, 3e10}}));
+  EXPECT_EQ(system.damping, nullptr);
+  EXPECT_LT(symmetry_defect(*system.mass), 1e-15);
+  EXPECT_LT(symmetry_defect(*system.stiffness), 1e-14);
+  EXPECT_EQ(count_negative_eigenvalues(*system.mass, "mass"), 0);
+  EXPECT_EQ(count_negative_eigenvalues(*system.stiffness, "stiffness"), 0);
+}
+
+
+
+TEST_P(Elasticity, MountsResistInTheirDirections)
+{
+  const HexMesh mesh = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));
+  const Model   model(mesh, GetParam(), MPI_COMM_WORLD);
+
+  // Area of the polygonal bore and ∫r² dA, exactly
+  double        area = 0., r2_area = 0.;
+  const double  t = GeometryParameters().disc_thickness, side = 2. * 0.15 * std::sin(M_PI / 12.), apothem = 0.15 * std::cos(M_PI / 12.);
+  area    = 12. * side * t;
+  r2_area = area * (apothem * apothem + side * side / 12.);
+
+  const auto energy = [&](const ElasticMount &mount, const std::function<Point3(const Point3 &)> &motion) {
+    const auto        with = assemble(model, mounted({mount})), without = assemble(model, mounted({}));
+    const MultiVector u = displacements(model, 0, motion);
+    return 0.5 * product(u, *add(1., *with.stiffness, -1., *without.stiffness), u);
+  };
+  const double k          = 3e10;
+  const auto   axial      = [](const Point3 &) { return Point3{{0., 0., 1.}}; };
+  const auto   across     = [](const Point3 &) { return Point3{{0.6, 0.8, 0.}}; };
+  const auto   turning    = [](const Point3 &p) { return Point3{{-p[1], p[0], 0.}}; };
+  const auto   breathing  = [](const Point3 &p) { return Point3{{p[0], p[1], 0.}}; };
+  EXPECT_NEAR(energy({"inner", 0., 0., k}, axial) / (0.5 * k * area), 1., 1e-11);
+  EXPECT_NEAR(energy({"inner", 0., k, 0.}, turning) / (0.5 * k * r2_area), 1., 1e-11);
+  EXPECT_NEAR(energy({"inner", k, 0., 0.}, breathing) / (0.5 * k * r2_area), 1., 1e-11);
+  EXPECT_NEAR(energy({"inner", k, k, 0.}, across) / (0.5 * k * area), 1., 1e-11);
+  // e_r ⊗ e_r averages to one half over the circle.
+  EXPECT_NEAR(energy({"inner", k, 0., 0.}, across) / (0.25 * k * area), 1., 1e-11);
+  // A direction without stiffness resists nothing.
+  for (const auto &motion : {std::function<Point3(const Point3 &)>(turning), std::function<Point3(const Point3 &)>(axial)})
+    EXPECT_LT(std::abs(energy({"inner", k, 0., 0.}, motion)), 1e-15 * k * area);
+  EXPECT_LT(std::abs(energy({"inner", 0., k, 0.}, breathing)), 1e-15 * k * area);
+}
+
+
+
+TEST(Assembly, MountOnAMissingSurfaceNamesTheKnownOnes)
+{
+  const Model model(distorted_mesh(), 1, MPI_COMM_WORLD);
+  try
+    {
+      assemble(model, mounted({{"disc_bore", 1., 1., 1.}}));
+      FAIL() << "accepted a surface that does not exist";
+    }
+  catch (const MeshError &error)
+    {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("no surface named `disc_bore`"), std::string::npos) << message;
+      EXPECT_NE(message.find("inner"), std::string::npos) << message;
+    }
+}
+
+
+
+namespace
+{
+  /// Frequency [rad/s] of the mode of the clamped-free pin, contact at its lower face, that is most like @p shape.
+  double pin_frequency(const HexMesh                                &mesh,
+                       const MaterialParameters                     &materials,
+                       const unsigned int                            degree,
+                       const std::function<Point3(const Point3 &)> &shape,
+                       const double                                  limit)
+  {
+    const Model       model(mesh, degree, MPI_COMM_WORLD);
+    const auto        interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
+    const auto        system    = assemble(model, materials);
+    const auto        modes     = component_modes(model, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
+    const MultiVector u         = displacements(model, 1, shape);
+    const DenseMatrix shares    = gram(u, *system.mass * *modes.vectors);
+    int               best      = 0;
+    for (int j = 0; j < shares.n_columns(); ++j)
+      if (std::abs(shares(0, j)) > std::abs(shares(0, best)))
+        best = j;
+    EXPECT_GT(shares(0, best) * shares(0, best) / product(u, *system.mass, u), 0.95);
+    return std::sqrt(modes.eigenvalues[best]);
+  }
+
+  /// cos of the distance from the contact, a quarter of a wave over the height of a pin above the disc.
+  double quarter_wave(const double z)
+  {
+    const GeometryParameters geometry;
+    return std::cos(0.5 * M_PI * (z - geometry.disc_thickness / 2.) / geometry.pin_height);
+  }
+} // namespace
+
+TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
+{
+  // ν = 0: ω = π c / (2 L), c = √(E/ρ), whatever the cross-section; refined along the axis
+  MaterialParameters materials = mounted({});
+  materials.pin.poisson_ratio  = 0.;
+  const double length          = GeometryParameters().pin_height;
+  const double exact = 0.5 * M_PI / length * std::sqrt(materials.pin.young_modulus / materials.pin.density);
+  const auto   plan  = polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 1, 0, 1}}, "inner", "outer");
+
+  std::vector<double> errors;
+  for (const int n : {1, 2, 4, 8})
+    errors.push_back(pin_frequency(extrude(plan, layers(1, n)), materials, GetParam(), [](const Point3 &p) { return Point3{{0., 0., quarter_wave(p[2])}}; }, 1.5 * exact) / exact - 1.);
+  for (std::size_t i = 1; i < errors.size(); ++i)
+    {
+      const double order = std::log2(errors[i - 1] / errors[i]);
+      RecordProperty("order" + std::to_string(i), std::to_string(order));
+      EXPECT_GT(errors[i], 0.); // from above: a Rayleigh-Ritz method
+      EXPECT_NEAR(order, 2. * GetParam(), 0.1 + (i == 1 ? 0.3 : 0.)) << "error " << errors[i];
+    }
+}
+
+
+
+TEST(Assembly, TorsionOfACylinderOnCurvedElements)
+{
+  // ω = π c_s / (2 L), c_s = √(G/ρ), exactly for a circular cross-section; f = c_s / (4 L)
+  const MaterialParameters materials = mounted({});
+  const double             G         = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
+  const double             exact = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
+  const auto               error = [&](const unsigned int degree, const int n) {
+    const auto turning = [](const Point3 &p) { return Point3{{-p[1] * quarter_wave(p[2]), (p[0] - 0.2) * quarter_wave(p[2]), 0.}}; };
+    return pin_frequency(extrude(round_plan(0.2, 0.026, n), layers(1, 2 * n)), materials, degree, turning, 1.2 * exact) / exact - 1.;
+  };
+  // Degree 2: the order of the element, with geometry of the same order
+  const double coarse = error(2, 1), fine = error(2, 2);
+  RecordProperty("coarse", std::to_string(1e6 * coarse));
+  RecordProperty("fine", std::to_string(1e6 * fine));
+  EXPECT_LT(std::abs(fine), 1e-4);
+  EXPECT_GT(std::abs(coarse) / std::abs(fine), 12.);
+  // Degree 1: polygons, order 2
+  const double polygon_coarse = error(1, 2), polygon_fine = error(1, 4);
+  RecordProperty("polygon_coarse", std::to_string(1e6 * polygon_coarse));
+  RecordProperty("polygon_fine", std::to_string(1e6 * polygon_fine));
+  EXPECT_NEAR(std::log2(polygon_coarse / polygon_fine), 2., 0.15);
+}
+
+
+
+TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
+{
+  const MaterialParameters materials = mounted({});
+  std::vector<double>      errors;
+  for (const int n : {12, 24})
+    {
+      const auto        mesh = extrude(polar_plan(0.15, 0.3, 2, n, {{Plan::Side::top, 0, 1, 0, 1}}), layers(1, 1));
+      const Model       model(mesh, 2, MPI_COMM_WORLD);
+      const auto        system = assemble(model, materials);
+      const MultiVector e      = displacements(model, 0, [](const Point3 &) { return Point3{{1., 0., 0.}}; });
+      const double exact = materials.disc.density * GeometryParameters().disc_thickness * M_PI * (0.3 * 0.3 - 0.15 * 0.15);
+      errors.push_back(std::abs(product(e, *system.mass, e) / exact - 1.));
+    }
+  // Polygons of 24 sides would miss 1.1 %.
+  EXPECT_LT(errors[1], 1e-4);
+  EXPECT_NEAR(std::log2(errors[0] / errors[1]), 4., 0.2);
+}

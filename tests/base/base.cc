@@ -1,0 +1,150 @@
+#include <squeal/base/assignment.h>
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/progress.h>
+#include <squeal/base/real_solver.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <set>
+#include <sstream>
+
+using namespace Squeal;
+
+TEST(Conventions, OfAnOscillatingMode)
+{
+  const double omega = 2. * M_PI * 1234.5, R = 6.78;
+  const auto   mode  = modal_quantities({R, omega});
+  EXPECT_DOUBLE_EQ(mode.frequency, 1234.5);
+  EXPECT_DOUBLE_EQ(mode.growth_rate, R);
+  EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);
+  EXPECT_DOUBLE_EQ(mode.damping_ratio, -2. * R / omega);
+  EXPECT_DOUBLE_EQ(hertz(circular_frequency(567.8)), 567.8);
+  EXPECT_DOUBLE_EQ(circular_frequency(1.), 2. * M_PI);
+  // A growing mode is divergent and has a negative damping ratio.
+  EXPECT_GT(modal_quantities({1., 2.}).divergence_rate, 0.);
+  EXPECT_LT(modal_quantities({1., 2.}).damping_ratio, 0.);
+}
+
+TEST(Conventions, WithoutPeriod)
+{
+  const auto mode = modal_quantities({-3., 0.});
+  EXPECT_EQ(mode.frequency, 0.);
+  EXPECT_EQ(mode.growth_rate, -3.);
+  EXPECT_EQ(mode.divergence_rate, 0.);
+  EXPECT_EQ(mode.damping_ratio, 0.);
+}
+
+
+
+TEST(Assignment, AgreesWithTryingAll)
+{
+  std::mt19937                           random(7);
+  std::uniform_real_distribution<double> uniform(-1., 1.);
+  for (int n_columns = 1; n_columns <= 6; ++n_columns)
+    for (int n_rows = 1; n_rows <= n_columns; ++n_rows)
+      for (int trial = 0; trial < 20; ++trial)
+        {
+          // Every third matrix of small whole numbers, with ties
+          std::vector<std::vector<double>> gain(n_rows, std::vector<double>(n_columns));
+          for (auto &row : gain)
+            for (double &value : row)
+              value = trial % 3 == 0 ? std::round(2. * uniform(random)) : uniform(random);
+
+          std::vector<int> order(n_columns);
+          std::iota(order.begin(), order.end(), 0);
+          double best = -1e300;
+          do
+            {
+              double sum = 0.;
+              for (int i = 0; i < n_rows; ++i)
+                sum += gain[i][order[i]];
+              best = std::max(best, sum);
+            }
+          while (std::next_permutation(order.begin(), order.end()));
+
+          const auto found = best_assignment(n_rows, n_columns, [&](const int i, const int j) { return gain[i][j]; });
+          ASSERT_EQ(found.size(), static_cast<std::size_t>(n_rows));
+          EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), found.size());
+          double sum = 0.;
+          for (int i = 0; i < n_rows; ++i)
+            {
+              ASSERT_GE(found[i], 0);
+              ASSERT_LT(found[i], n_columns);
+              sum += gain[i][found[i]];
+            }
+          EXPECT_NEAR(sum, best, 1e-12);
+        }
+  EXPECT_TRUE(best_assignment(0, 3, [](int, int) { return 1.; }).empty());
+}
+
+
+
+TEST(EnumTables, NamesThereAndBack)
+{
+  EXPECT_EQ(enum_selection<RealSolver>(), "Anasazi|ARPACK");
+  for (const RealSolver solver : {RealSolver::anasazi, RealSolver::arpack})
+    EXPECT_EQ(enum_value<RealSolver>(to_string(solver)), solver);
+}
+
+
+
+TEST(Errors, SayWhatWhereAndWhatToChange)
+{
+  const std::string message = ParameterError("the load is zero", "parameter Operation/Load", "raise it").what();
+  EXPECT_EQ(message, "the load is zero\n  where:  parameter Operation/Load\n  change: raise it");
+  EXPECT_THROW(throw MeshError("a", "b", "c"), Error);
+}
+
+
+
+TEST(ProgressChannel, RecordsStepsInOrder)
+{
+  std::ostringstream stream;
+  {
+    Progress progress(stream, false);
+    progress.begin("Mesh");
+    progress.update("busy");
+    progress.finish("12 elements");
+    progress.begin("Matrices");
+    progress.begin("Modes"); // ends the step before
+    progress.finish();
+    progress.finish("nothing to end");
+    progress.note("a note");
+
+    ASSERT_EQ(progress.steps().size(), 3u);
+    EXPECT_EQ(progress.steps()[0].name, "Mesh");
+    EXPECT_EQ(progress.steps()[0].summary, "12 elements");
+    EXPECT_EQ(progress.steps()[1].name, "Matrices");
+    EXPECT_EQ(progress.steps()[2].name, "Modes");
+    double sum = 0.;
+    for (const StepRecord &step : progress.steps())
+      {
+        EXPECT_GE(step.seconds, 0.);
+        EXPECT_GT(step.peak_memory, 1e6);
+        sum += step.seconds;
+      }
+    EXPECT_LE(sum, progress.elapsed());
+  }
+  // One line per step and note, without control characters where there is no terminal
+  const std::string text = stream.str();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
+  EXPECT_EQ(text.find('\033'), std::string::npos);
+  EXPECT_EQ(text.find("busy"), std::string::npos);
+  EXPECT_NE(text.find("12 elements"), std::string::npos);
+  EXPECT_NE(text.find("a note"), std::string::npos);
+}
+
+TEST(ProgressChannel, WithoutAStreamItOnlyRecords)
+{
+  Progress progress;
+  progress.begin("Step");
+  progress.update("state");
+  progress.note("note");
+  progress.finish();
+  EXPECT_EQ(progress.steps().size(), 1u);
+}

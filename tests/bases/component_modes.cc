@@ -1,0 +1,308 @@
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/bases/component_modes.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/replicate.h>
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  const std::vector<PolarPin> two_pins = {{Plan::Side::top, -1, 2, 2, 2}, {Plan::Side::bottom, 7, 2, 1, 2}};
+
+  Scene disc_scene(const MaterialParameters &materials = mounted())
+  {
+    return Scene(extrude(polar_plan(0.15, 0.31, 6, 36, two_pins), layers(1, 3)), materials, operating());
+  }
+
+  DenseMatrix columns_of(const std::vector<MultiVector> &vectors)
+  {
+    std::vector<const MultiVector *> pointers;
+    for (const MultiVector &vector : vectors)
+      pointers.push_back(&vector);
+    return replicate(join(pointers));
+  }
+} // namespace
+
+
+
+TEST(NodalMasses, AddUpToTheMass)
+{
+  const Scene s      = disc_scene();
+  const auto  masses = nodal_masses(s.model, *s.system.mass);
+  double      disc   = 0.;
+  for (std::size_t i = 0; i < masses.size(); ++i)
+    {
+      disc += s.model.nodes()[i].component == 0 ? masses[i] : 0.;
+      EXPECT_GE(masses[i], 0.);
+    }
+  EXPECT_NEAR(disc / (MaterialParameters().disc.density * volume(s.mesh, 0)), 1., 1e-13);
+}
+
+
+
+TEST(DiscLabels, AnalyticFields)
+{
+  // Displacement along one direction, cos(π m s) over the radius (m sign changes), n waves around, pattern turned by an angle
+  const Scene              s      = disc_scene();
+  const auto               masses = nodal_masses(s.model, *s.system.mass);
+  std::vector<MultiVector> fields;
+  std::vector<std::string> expected;
+  for (const char family : {'A', 'R', 'C'})
+    for (int m = 0; m <= 2; ++m)
+      for (int n = 0; n <= 9; ++n)
+        {
+          const double turn = 0.4 * n;
+          fields.push_back(displacements(s.model, 0, [&](const Point3 &p) {
+            const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]);
+            const double value = std::cos(M_PI * m * (r - 0.15) / 0.16) * std::cos(n * theta + (n > 0 ? turn : 0.));
+            switch (family)
+              {
+                case 'A':
+                  return Point3{{0., 0., value}};
+                case 'R':
+                  return Point3{{value * p[0] / r, value * p[1] / r, 0.}};
+                default:
+                  return Point3{{-value * p[1] / r, value * p[0] / r, 0.}};
+              }
+          }));
+          expected.push_back(std::string(1, family) + std::to_string(m) + "-" + std::to_string(n));
+        }
+  EXPECT_EQ(disc_labels(s.model, masses, columns_of(fields)), expected);
+}
+
+
+
+TEST(DiscLabels, TheLargerPartDecides)
+{
+  // In-plane modes have radial and circumferential parts of the same harmonic.
+  const Scene s      = disc_scene();
+  const auto  masses = nodal_masses(s.model, *s.system.mass);
+  const auto  mixed  = [&](const double radial, const double around) {
+    return displacements(s.model, 0, [=](const Point3 &p) {
+      const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]);
+      const double u = radial * std::cos(3. * theta), v = around * std::sin(3. * theta);
+      return Point3{{(u * p[0] - v * p[1]) / r, (u * p[1] + v * p[0]) / r, 0.1 * std::cos(5. * theta)}};
+    });
+  };
+  EXPECT_EQ(disc_labels(s.model, masses, columns_of({mixed(1., 0.9), mixed(0.9, 1.)})), (std::vector<std::string>{"R0-3", "C0-3"}));
+}
+
+
+
+TEST(PinLabels, AnalyticFields)
+{
+  // Round pin, its axis at (0.2, 0); fields vanish at the clamp
+  const Scene              s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const auto               masses = nodal_masses(s.model, *s.system.mass);
+  const GeometryParameters geometry;
+  const auto               depth = [&](const Point3 &p) { return geometry.disc_thickness / 2. + geometry.pin_height - p[2]; };
+  const auto bending = [&](const double x, const double y) {
+    return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{x * depth(p) * depth(p), y * depth(p) * depth(p), -2. * depth(p) * (x * (p[0] - 0.2) + y * p[1])}}; });
+  };
+  const auto torsion = [&](const double factor) {
+    return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{-factor * p[1] * depth(p), factor * (p[0] - 0.2) * depth(p), 0.}}; });
+  };
+  const auto stretching = [&](const double contraction) {
+    return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{-contraction * (p[0] - 0.2), -contraction * p[1], depth(p)}}; });
+  };
+  // Two flexural modes share a number.
+  EXPECT_EQ(pin_labels(s.model, s.interface, masses, columns_of({bending(1., 0.), bending(-0.3, 1.), torsion(1.), bending(1., 1.), stretching(0.3), torsion(-2.), stretching(0.)})),
+            (std::vector<std::string>{"F1", "F1", "T1", "F2", "L1", "T2", "L2"}));
+}
+
+
+
+TEST(PinLabels, ModesOfRoundPinsInOrder)
+{
+  // Slender beams have flexural modes first; the numbers of every family ascend with frequency and count all pins.
+  const Scene s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  std::vector<double> torsion;
+  for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
+    {
+      const double limit = 2. * M_PI * 9000.;
+      const auto   modes = component_modes(s.model, s.interface, s.system, Component::pins, boundary, limit * limit, {});
+      ASSERT_GE(modes.labels.size(), 3u);
+      EXPECT_EQ((std::vector<std::string>(modes.labels.begin(), modes.labels.begin() + 2)), (std::vector<std::string>{"F1", "F1"}));
+      EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // the O-grid has a threefold axis
+      ASSERT_EQ(std::count(modes.labels.begin(), modes.labels.end(), "T1"), 1);
+      torsion.push_back(modes.eigenvalues[std::find(modes.labels.begin(), modes.labels.end(), "T1") - modes.labels.begin()]);
+      // Held at both ends a bar stretches at half a wave: twice the frequency, c / (2 L) = 12 kHz.
+      const auto longitudinal = std::count(modes.labels.begin(), modes.labels.end(), "L1");
+      EXPECT_EQ(longitudinal, boundary == ContactBoundary::free ? 1 : 0);
+
+      // Orthonormal in M, at rest on the disc, on the rigid face if sliding
+      EXPECT_LT(orthonormality_defect(*s.system.mass, *modes.vectors), 1e-12);
+      const DenseMatrix u       = replicate(*modes.vectors);
+      double            at_rest = 0.;
+      for (const Node &node : s.model.nodes())
+        for (const int dof : node.dofs)
+          for (int j = 0; j < u.n_columns() && node.component == 0; ++j)
+            at_rest = std::max(at_rest, std::abs(u(dof, j)));
+      EXPECT_EQ(at_rest, 0.);
+      const double normal_motion = max_norm(replicate(*s.contact.normal * *modes.vectors)) / max_norm(u);
+      EXPECT_EQ(normal_motion < 1e-14, boundary == ContactBoundary::sliding) << normal_motion;
+    }
+  // Torsion has no motion along the axis, so that the contact does not see it (but for the warping of a polygon).
+  EXPECT_NEAR(torsion.at(0) / torsion.at(1), 1., 2e-3);
+}
+
+
+
+TEST(MarkDoublets, PairsOnly)
+{
+  std::vector<std::string> labels = {"A0-2", "F1", "A0-2", "A0-0", "F1", "F1"};
+  mark_doublets(labels);
+  EXPECT_EQ(labels, (std::vector<std::string>{"A0-2 -", "F1", "A0-2 +", "A0-0", "F1", "F1"}));
+}
+
+
+
+namespace
+{
+  /// Component modes of the disc up to some kHz and of the pins, for identification.
+  struct References
+  {
+    Scene          s = disc_scene();
+    ComponentModes disc, pins;
+
+    References()
+    {
+      const double limit = 2. * M_PI * 4000.;
+      disc = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::free, limit * limit, {});
+      pins = component_modes(s.model, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
+    }
+
+    std::vector<ModeIdentity> identities(const MultiVector &re, const MultiVector *im = nullptr) const
+    {
+      return identify({&disc, &pins}, *s.system.mass, re, im);
+    }
+  };
+} // namespace
+
+TEST(Identify, ComponentModesAreThemselves)
+{
+  const References r;
+  ASSERT_GE(r.disc.labels.size(), 5u);
+  ASSERT_GE(r.pins.labels.size(), 2u);
+  std::vector<std::string> labels = r.disc.labels;
+  labels.insert(labels.end(), r.pins.labels.begin(), r.pins.labels.end());
+  const auto found = r.identities(join({r.disc.vectors.get(), r.pins.vectors.get()}));
+  ASSERT_EQ(found.size(), labels.size());
+  for (std::size_t j = 0; j < labels.size(); ++j)
+    {
+      EXPECT_EQ(found[j].label, labels[j]);
+      EXPECT_NEAR(found[j].share, 1., 1e-10);
+    }
+}
+
+
+
+TEST(Identify, SharesOfMixturesAndPhases)
+{
+  const References r;
+  // Two modes with different labels, and a pair with the same
+  const auto &labels = r.disc.labels;
+  int         pair = -1, single = -1;
+  for (int j = 0; j + 1 < static_cast<int>(labels.size()) && pair < 0; ++j)
+    if (labels[j] == labels[j + 1])
+      pair = j;
+  ASSERT_GE(pair, 0);
+  for (int j = 0; j < static_cast<int>(labels.size()) && single < 0; ++j)
+    if (labels[j] != labels[pair])
+      single = j;
+  ASSERT_GE(single, 0);
+  const MultiVector a = view(*r.disc.vectors, pair, 1), b = view(*r.disc.vectors, pair + 1, 1), c = view(*r.disc.vectors, single, 1);
+
+  // A turned doublet is wholly of its label, also with a complex factor; 3:4 gives shares 0.36 and 0.64 of any size.
+  MultiVector re(a.Map(), 2), im(a.Map(), 2);
+  re(0)->Update(0.6, *a(0), -0.8, *b(0), 0.);
+  im(0)->Update(2., *a(0), 1., *b(0), 0.);
+  re(1)->Update(3., *a(0), 0., *c(0), 0.);
+  im(1)->Update(0., *a(0), 4., *c(0), 0.);
+  const auto found = r.identities(re, &im);
+  EXPECT_EQ(found[0].label, labels[pair]);
+  EXPECT_NEAR(found[0].share, 1., 1e-10);
+  EXPECT_EQ(found[1].label, labels[single]);
+  EXPECT_NEAR(found[1].share, 0.64, 1e-10);
+}
+
+
+
+TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
+{
+  // Three vectors that all resemble a doublet most: the third gets its second label.
+  const References r;
+  const auto      &labels = r.disc.labels;
+  int              pair = -1, single = -1;
+  for (int j = 0; j + 1 < static_cast<int>(labels.size()) && pair < 0; ++j)
+    if (labels[j] == labels[j + 1])
+      pair = j;
+  ASSERT_GE(pair, 0);
+  for (int j = 0; j < static_cast<int>(labels.size()) && single < 0; ++j)
+    if (labels[j] != labels[pair])
+      single = j;
+  MultiVector re(r.disc.vectors->Map(), 3);
+  for (int j = 0; j < 3; ++j)
+    {
+      re(j)->Update(1., *(*r.disc.vectors)(pair), 0.2 * j, *(*r.disc.vectors)(pair + 1), 0.);
+      re(j)->Update(0.1 + 0.3 * (j == 1), *(*r.disc.vectors)(single), 1.);
+    }
+  const auto found = r.identities(re);
+  EXPECT_EQ(found[0].label, labels[pair]);
+  EXPECT_EQ(found[1].label, labels[single]);
+  EXPECT_EQ(found[2].label, labels[pair]);
+}
+
+
+
+TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
+{
+  const Scene           s     = disc_scene(mounted({}));
+  const double          omega = 2. * M_PI * 3000.;
+  const double          shift = stabilizing_shift(s.model, s.coupled, omega);
+  SymmetricModesOptions options;
+  EXPECT_GT(shift, 0.);
+  EXPECT_LT(shift, omega);
+  options.shift   = shift * shift;
+  const auto disc = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::free, omega * omega, options);
+  EXPECT_EQ(std::count(disc.labels.begin(), disc.labels.end(), "RB"), 6);
+  for (int j = 0; j < 6; ++j)
+    EXPECT_EQ(disc.eigenvalues[j], 0.);
+  EXPECT_GT(disc.eigenvalues.at(6), 0.);
+
+  // Its sliding modes: the faces keep the height, so only the motions in the plane are left.
+  const auto sliding = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
+  EXPECT_EQ(std::count(sliding.labels.begin(), sliding.labels.end(), "RB"), 3);
+
+  const auto coupled = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega * omega, options);
+  EXPECT_EQ(coupled.n_rigid_body, 3);
+
+  // Motions: x, y and about z meet no resistance, the others that of the pins.
+  const MultiVector X = rigid_disc_motions(s.model, s.coupled), KX = *s.coupled.frictionless.stiffness * X;
+  const auto        size = column_norms(X), force = column_norms(KX);
+  const double      K = max_norm(*s.coupled.frictionless.stiffness);
+  for (const int j : {0, 1, 5})
+    EXPECT_LT(force[j], 1e-13 * K * size[j]) << j;
+  for (const int j : {2, 3, 4})
+    EXPECT_GT(force[j], 1e-9 * K * size[j]) << j;
+}
+
+
+
+TEST(RigidBody, AMountedDiscNeedsNoShift)
+{
+  EXPECT_EQ(stabilizing_shift(disc_scene().model, disc_scene().coupled, 2. * M_PI * 3000.), 0.);
+  // Held against turning only
+  const Scene turning = disc_scene(mounted({{"disc_bore", 0., 7.8e10, 0.}}));
+  EXPECT_EQ(stabilizing_shift(turning.model, turning.coupled, 2. * M_PI * 3000.), 0.);
+  // Only axially: free to slide in its plane
+  const Scene axial = disc_scene(mounted({{"disc_bore", 0., 0., 1.88e10}}));
+  EXPECT_GT(stabilizing_shift(axial.model, axial.coupled, 2. * M_PI * 3000.), 0.);
+}

@@ -1,0 +1,290 @@
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/contact/updated_inverse.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/stability/krylov_modes.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// Contact faces and polynomial degree.
+  struct Case
+  {
+    const char  *name;
+    double       slope; ///< of the contact faces
+    unsigned int degree;
+  };
+  void PrintTo(const Case &c, std::ostream *stream)
+  {
+    *stream << c.name;
+  }
+
+  Scene scene(const Case &c, const RadialDissipation dissipation = RadialDissipation::consistent)
+  {
+    const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 0, 1}};
+    return Scene(mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)),
+                        [c](const Point3 &p) {
+                          // A cone, and some tilt about y so that no face is like another
+                          return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
+                        }),
+                 mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}}), operating(dissipation), c.degree);
+  }
+
+  class Contact : public ::testing::TestWithParam<Case>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Faces,
+                           Contact,
+                           ::testing::Values(Case{"flat, degree 1", 0., 1},
+                                             Case{"flat, degree 2", 0., 2},
+                                             Case{"cone, degree 1", 0.3, 1},
+                                             Case{"cone, degree 2", 0.3, 2},
+                                             Case{"steep cone, degree 1", 1.5, 1}));
+
+  double difference(const SparseMatrix &A, const SparseMatrix &B)
+  {
+    return max_norm(*add(1., A, -1., B)) / max_norm(B);
+  }
+} // namespace
+
+
+
+TEST_P(Contact, OperatorsAreOrthogonal)
+{
+  const Scene s   = scene(GetParam());
+  const auto &P_n = *s.contact.normal, &P_t = *s.contact.tangential, &P_b = *s.contact.radial;
+  const auto  two = Testing::diagonal(P_n.RowMap(), [](int) { return 2.; });
+  for (const SparseMatrix *P : {&P_n, &P_t, &P_b})
+    EXPECT_LT(difference(*multiply(*P, *P, false, true), *two), 1e-15);
+  for (const auto &[P, Q] : {std::make_pair(&P_n, &P_t), std::make_pair(&P_n, &P_b), std::make_pair(&P_t, &P_b)})
+    EXPECT_LT(max_norm(*multiply(*P, *Q, false, true)), 1e-15);
+}
+
+
+
+TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
+{
+  const Scene         s   = scene(GetParam());
+  const SparseMatrix &T_c = *s.contact.kernel;
+  EXPECT_EQ(T_c.NumGlobalRows(), s.model.free_map().NumGlobalElements());
+  EXPECT_EQ(T_c.NumGlobalCols(), T_c.NumGlobalRows() - static_cast<int>(s.interface.size()));
+  EXPECT_LT(max_norm(*multiply(*s.contact.normal, T_c)), 1e-15);
+
+  // Full rank, well conditioned: free dofs appear with 1, and a slave follows five others with |ratio| ≤ 1, 1 ≤ TᵀT ≤ 1 + 5.
+  const auto G    = multiply(T_c, T_c, true, false);
+  const auto unit = Testing::diagonal(G->RowMap(), [](int) { return 1.; });
+  EXPECT_EQ(count_negative_eigenvalues(*add(1., *G, -0.999, *unit), "TᵀT - 1"), 0);
+  EXPECT_EQ(count_negative_eigenvalues(*add(-1., *G, 6.001, *unit), "6 - TᵀT"), 0);
+
+  // A selection where n is a coordinate axis: one entry, a one, in every row
+  bool selection = true;
+  for (int i = 0; i < T_c.NumMyRows(); ++i)
+    {
+      int     n;
+      double *entries;
+      int    *columns;
+      T_c.ExtractMyRowView(i, n, entries, columns);
+      selection = selection && n == 1 && entries[0] == 1.;
+    }
+  int all, mine = selection;
+  T_c.Comm().MinAll(&mine, &all, 1);
+  EXPECT_EQ(all, GetParam().slope == 0.);
+
+  // Every displacement with P_n u = 0 is reached: u minus its projection on the columns vanishes.
+  MultiVector u = random_vectors(s.model.free_map(), 3);
+  multiply_add(-0.5, transpose_times(*s.contact.normal, *s.contact.normal * u), identity(3), 1., u);
+  EXPECT_LT(max_norm(replicate(*s.contact.normal * u)), 1e-14);
+  MultiVector coefficients(T_c.DomainMap(), 3);
+  factorize_positive_definite(*G, FactorizationLibrary::automatic, "TᵀT")->apply(transpose_times(T_c, u), coefficients);
+  MultiVector rest = T_c * coefficients;
+  rest.Update(1., u, -1.);
+  EXPECT_LT(max_norm(replicate(rest)), 1e-13);
+}
+
+
+
+TEST_P(Contact, ComponentKernels)
+{
+  const Scene       s = scene(GetParam());
+  const int         n = s.model.free_map().NumGlobalElements(), n_c = s.interface.size();
+  std::vector<bool> disc(3, false), pins(3, true);
+  disc[0] = true;
+  pins[0] = false;
+
+  const auto disc_free = component_kernel(s.model, s.interface, disc, ContactBoundary::free);
+  const auto pins_free = component_kernel(s.model, s.interface, pins, ContactBoundary::free);
+  EXPECT_EQ(disc_free->NumGlobalCols() + pins_free->NumGlobalCols(), n);
+  EXPECT_EQ(max_norm(*multiply(*disc_free, *pins_free, true, false)), 0.);
+
+  const auto pins_sliding = component_kernel(s.model, s.interface, pins, ContactBoundary::sliding);
+  EXPECT_EQ(pins_sliding->NumGlobalCols(), pins_free->NumGlobalCols() - n_c);
+  EXPECT_LT(max_norm(*multiply(*s.contact.normal, *pins_sliding)), 1e-15);
+  EXPECT_EQ(max_norm(*multiply(*disc_free, *pins_sliding, true, false)), 0.);
+  // The pins can slide in both directions.
+  EXPECT_GT(max_norm(*multiply(*s.contact.tangential, *pins_sliding)), 0.1);
+  EXPECT_GT(max_norm(*multiply(*s.contact.radial, *pins_sliding)), 0.1);
+}
+
+
+
+TEST_P(Contact, CoupledMatricesAreSymmetric)
+{
+  const Scene s = scene(GetParam());
+  EXPECT_LT(symmetry_defect(*s.coupled.frictionless.mass), 1e-14);
+  EXPECT_LT(symmetry_defect(*s.coupled.frictionless.stiffness), 1e-14);
+  EXPECT_LT(symmetry_defect(*s.coupled.frictionless.damping), 1e-14);
+  // The couplings are not empty words: friction is not symmetric.
+  EXPECT_GT(symmetry_defect(*with_friction(s.coupled, 0.4).stiffness), 1e-3);
+}
+
+
+
+TEST_P(Contact, FrictionIsThatOfTheUnreducedEquation)
+{
+  const Scene  s  = scene(GetParam());
+  const double mu = 0.37;
+  const auto  &T  = *s.contact.kernel;
+  const auto   P_t_P_n = multiply(*s.contact.tangential, *s.contact.normal, true, false);
+  const auto   expected = [&](const SparseMatrix &matrix) {
+    const auto with = add(1., matrix, -0.5 * mu, *multiply(*P_t_P_n, matrix));
+    return multiply(T, *multiply(*with, T), true, false);
+  };
+  const SecondOrderSystem found = with_friction(s.coupled, mu);
+  EXPECT_LT(difference(*found.stiffness, *expected(*s.system.stiffness)), 1e-14);
+  EXPECT_LT(difference(*found.mass, *expected(*s.system.mass)), 1e-14);
+
+  // C_b acts along b only, and dissipates.
+  const auto C_c = multiply(T, *multiply(*s.contact_damping, T), true, false);
+  EXPECT_LT(difference(*s.coupled.frictionless.damping, *C_c), 1e-14);
+  EXPECT_LT(max_norm(*multiply(*s.contact.tangential, *s.contact_damping)), 1e-14 * max_norm(*s.contact_damping));
+  EXPECT_LT(max_norm(*multiply(*s.contact.normal, *s.contact_damping)), 1e-14 * max_norm(*s.contact_damping));
+
+  // Without friction nothing is added.
+  EXPECT_EQ(with_friction(s.coupled, 0.).stiffness, s.coupled.frictionless.stiffness);
+}
+
+
+
+TEST_P(Contact, DampingTracesTheCoefficients)
+{
+  // trace C_b = Σ c_b ‖P_bᵀ row‖² = 2 Σ c_b
+  const Scene  s   = scene(GetParam());
+  const auto   c_b = radial_dissipation_of_equal_shares(s.interface, s.operation);
+  double       sum = 0.;
+  for (const double c : c_b)
+    sum += 2. * c;
+  Epetra_Vector diagonal(s.contact_damping->RowMap());
+  s.contact_damping->ExtractDiagonalCopy(diagonal);
+  double trace = 0., local = 0.;
+  for (int i = 0; i < diagonal.MyLength(); ++i)
+    local += diagonal[i];
+  diagonal.Comm().SumAll(&local, &trace, 1);
+  EXPECT_NEAR(trace / sum, 1., 1e-13);
+  EXPECT_EQ(contact_damping(s.contact, std::vector<double>(c_b.size(), 0.)), nullptr);
+}
+
+
+
+TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
+{
+  const Scene s = scene(GetParam());
+  for (const double shift : {0., 5000.})
+    {
+      UpdatedInverse    inverse(s.coupled, shift, FactorizationLibrary::automatic);
+      const MultiVector B = random_vectors(s.coupled.map(), 4);
+      for (const double mu : {0., 0.4, 1.3, 0.2})
+        {
+          const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+          auto Q = add(shift * shift, *matrices.mass, 1., *matrices.stiffness);
+          Q      = add(1., *Q, shift, *matrices.damping);
+          inverse.set_friction_coefficient(mu);
+          MultiVector X(B), Y(B);
+          inverse.apply(B, X);
+          factorize_general(*Q, FactorizationLibrary::automatic, "test matrix")->apply(B, Y);
+          MultiVector difference(X);
+          difference.Update(-1., Y, 1.);
+          for (int j = 0; j < 4; ++j)
+            EXPECT_LT(column_norms(difference)[j], 1e-10 * column_norms(Y)[j]) << "shift " << shift << ", mu " << mu;
+
+          // The frictionless inverse does not change.
+          inverse.apply_frictionless(B, Y);
+          auto S = add(shift * shift, *s.coupled.frictionless.mass, 1., *s.coupled.frictionless.stiffness);
+          S      = add(1., *S, shift, *s.coupled.frictionless.damping);
+          MultiVector R = *S * Y;
+          R.Update(-1., B, 1.);
+          EXPECT_LT(column_norms(R)[0], 1e-10 * column_norms(B)[0]);
+        }
+      // Attachment modes: S X = A
+      auto S = add(shift * shift, *s.coupled.frictionless.mass, 1., *s.coupled.frictionless.stiffness);
+      S      = add(1., *S, shift, *s.coupled.frictionless.damping);
+      EXPECT_LT(max_norm(add(replicate(*S * inverse.attachment_modes()), to_dense(*s.coupled.friction_forces), -1.)), 1e-10);
+    }
+}
+
+
+
+TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
+{
+  // M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n, P_n u = 0, with t the disc's direction relative to the pin
+  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+    {
+      const Scene      s     = scene(GetParam(), dissipation);
+      const double     mu    = 0.6;
+      SolverParameters solvers;
+      solvers.complex_tolerance = 1e-10;
+      UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
+      Progress       progress;
+      const auto     modes = krylov_modes(s.coupled, inverse, 0., mu, 2. * M_PI * 4000., 12, solvers, progress);
+      const int      k     = modes.lambda.size();
+      ASSERT_GT(k, 3);
+
+      DenseMatrix r_re, r_im;
+      normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part, r_re, r_im);
+      const auto         forces = [&](const DenseMatrix &r) {
+        const MultiVector distributed = distribute(r, s.contact.normal->RowMap());
+        MultiVector       F           = transpose_times(*s.contact.normal, distributed);
+        F.Update(mu, transpose_times(*s.contact.tangential, distributed), 1.);
+        return F;
+      };
+      const MultiVector u_re = *s.contact.kernel * *modes.real_part, u_im = *s.contact.kernel * *modes.imaginary_part;
+      EXPECT_LT(max_norm(replicate(*s.contact.normal * u_re)), 1e-14 * max_norm(replicate(u_re)));
+
+      const MultiVector K_re = *s.system.stiffness * u_re, K_im = *s.system.stiffness * u_im;
+      const MultiVector M_re = *s.system.mass * u_re, M_im = *s.system.mass * u_im;
+      const MultiVector f_re = forces(r_re), f_im = forces(r_im);
+      MultiVector       R_re(K_re), R_im(K_im);
+      R_re.Update(-1., f_re, 1.);
+      R_im.Update(-1., f_im, 1.);
+      MultiVector C_re(u_re), C_im(u_im);
+      C_re.PutScalar(0.);
+      C_im.PutScalar(0.);
+      if (s.contact_damping)
+        {
+          C_re = *s.contact_damping * u_re;
+          C_im = *s.contact_damping * u_im;
+        }
+      for (int j = 0; j < k; ++j)
+        {
+          const std::complex<double> l = modes.lambda[j], l2 = l * l;
+          R_re(j)->Update(l2.real(), *M_re(j), -l2.imag(), *M_im(j), 1.);
+          R_im(j)->Update(l2.real(), *M_im(j), l2.imag(), *M_re(j), 1.);
+          R_re(j)->Update(l.real(), *C_re(j), -l.imag(), *C_im(j), 1.);
+          R_im(j)->Update(l.real(), *C_im(j), l.imag(), *C_re(j), 1.);
+        }
+      const auto residual_re = column_norms(R_re), residual_im = column_norms(R_im);
+      const auto size_re = column_norms(K_re), size_im = column_norms(K_im), force_re = column_norms(f_re), force_im = column_norms(f_im);
+      int n_touching = 0;
+      for (int j = 0; j < k; ++j)
+        {
+          const double size = std::hypot(size_re[j], size_im[j]);
+          EXPECT_LT(std::hypot(residual_re[j], residual_im[j]), 1e-9 * size) << "mode " << j;
+          n_touching += std::hypot(force_re[j], force_im[j]) > 1e-2 * size;
+        }
+      // The reactions matter in the balance, but for modes of the disc in its plane.
+      EXPECT_GT(n_touching, k / 2);
+    }
+}

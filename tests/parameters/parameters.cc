@@ -1,0 +1,238 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/parameters.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace Squeal;
+
+namespace
+{
+  /// A parameter file that is removed at the end.
+  class File
+  {
+  public:
+    explicit File(const std::string &text)
+      : name((std::filesystem::temp_directory_path() / ("squeal_parameters_" + std::to_string(getpid()) + ".prm")).string())
+    {
+      std::ofstream(name) << text;
+    }
+    ~File()
+    {
+      std::filesystem::remove(name);
+    }
+    const std::string name;
+  };
+
+  Parameters read(const std::string &text, const std::vector<std::string> &overrides = {})
+  {
+    const File file(text);
+    return Parameters::read(file.name, overrides);
+  }
+
+  /// The message with which reading is refused.
+  std::string refusal(const std::string &text, const std::vector<std::string> &overrides = {})
+  {
+    try
+      {
+        read(text, overrides);
+      }
+    catch (const ParameterError &error)
+      {
+        return error.what();
+      }
+    return "accepted";
+  }
+
+  std::string in_section(const std::string &section, const std::string &line)
+  {
+    return "subsection " + section + "\n  " + line + "\nend\n";
+  }
+
+  std::string print(const Parameters &parameters)
+  {
+    std::ostringstream text;
+    parameters.print(text, false);
+    return text.str();
+  }
+
+  void expect_refused(const std::string &override_text, const std::string &name, const std::string &reason)
+  {
+    const std::string message = refusal("", {override_text});
+    EXPECT_NE(message.find(name), std::string::npos) << override_text << ": " << message;
+    EXPECT_NE(message.find(reason), std::string::npos) << override_text << ": " << message;
+  }
+} // namespace
+
+
+
+TEST(ParameterFiles, AnEmptyFileGivesTheDefaults)
+{
+  EXPECT_EQ(print(read("")), print(Parameters()));
+  EXPECT_NO_THROW(Parameters().check());
+}
+
+
+
+TEST(ParameterFiles, ValuesReachTheirMembers)
+{
+  const Parameters p = read(in_section("Operation", "set Friction coefficient = 0.25\n set Rotation = negative\n set Radial dissipation = published") +
+                            in_section("Mounts", "set Elastic mounts = disc_bore: 1, 2e3, 3e10; disc_rim: 0, 0, 5") +
+                            in_section("Geometry", "set Top pin radii = 0.2, 0.25\n set Top pin angles = -10, 12.5") +
+                            in_section("Complex modes", "set Solver = residual iteration"));
+  EXPECT_EQ(p.operation.friction_coefficient, 0.25);
+  EXPECT_EQ(p.operation.rotation, Rotation::negative);
+  EXPECT_EQ(p.operation.radial_dissipation, RadialDissipation::published);
+  EXPECT_EQ(p.geometry.top.radii, (std::vector<double>{0.2, 0.25}));
+  EXPECT_EQ(p.geometry.top.angles, (std::vector<double>{-10., 12.5}));
+  EXPECT_EQ(p.solvers.complex_solver, ComplexSolver::residual_iteration);
+  ASSERT_EQ(p.materials.mounts.size(), 2u);
+  EXPECT_EQ(p.materials.mounts[0].surface, "disc_bore");
+  EXPECT_EQ(p.materials.mounts[0].radial, 1.);
+  EXPECT_EQ(p.materials.mounts[0].tangential, 2e3);
+  EXPECT_EQ(p.materials.mounts[0].axial, 3e10);
+  EXPECT_EQ(p.materials.mounts[1].surface, "disc_rim");
+  EXPECT_EQ(p.materials.mounted_surfaces(), (std::vector<std::string>{"disc_bore", "disc_rim"}));
+  EXPECT_TRUE(read(in_section("Mounts", "set Elastic mounts =")).materials.mounts.empty());
+  const Parameters one_side = read(in_section("Geometry", "set Top pin radii =\n set Top pin angles ="));
+  EXPECT_TRUE(one_side.geometry.top.radii.empty());
+  EXPECT_EQ(one_side.geometry.bottom.radii, Parameters().geometry.bottom.radii);
+}
+
+
+
+TEST(ParameterFiles, OverridesComeLast)
+{
+  const std::string text = in_section("Operation", "set Friction coefficient = 0.25");
+  const Parameters  p    = read(text, {"Operation/Friction coefficient=0.3", "Band/Maximum frequency = 1234", "Operation/Friction coefficient=0.35"});
+  EXPECT_EQ(p.operation.friction_coefficient, 0.35);
+  EXPECT_EQ(p.discretization.maximum_frequency, 1234.);
+
+  EXPECT_NE(refusal("", {"Operation/Friction coefficient"}).find("an override has no `=`"), std::string::npos);
+  const std::string unknown = refusal("", {"Operation/Friction coeficient=0.3"});
+  EXPECT_NE(unknown.find("unknown parameter `Operation/Friction coeficient`"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("`Operation/Friction coefficient`"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("--set"), std::string::npos) << unknown;
+  const std::string wrong = refusal("", {"Operation/Friction coefficient=much"});
+  EXPECT_NE(wrong.find("much"), std::string::npos) << wrong;
+  EXPECT_NE(wrong.find("--set \"Operation/Friction coefficient=much\""), std::string::npos) << wrong;
+}
+
+
+
+TEST(ParameterFiles, UnknownNamesAreAnsweredWithTheNearest)
+{
+  const std::string misspelt = refusal(in_section("Operation", "set Rotaton speed = 3"));
+  EXPECT_NE(misspelt.find("unknown parameter `Operation/Rotaton speed`"), std::string::npos) << misspelt;
+  EXPECT_NE(misspelt.find("nearest known name is `Operation/Rotation speed`"), std::string::npos) << misspelt;
+  EXPECT_NE(misspelt.find("line 2"), std::string::npos) << misspelt;
+
+  const std::string section = refusal(in_section("Opertion", "set Rotation speed = 3"));
+  EXPECT_NE(section.find("unknown section `Opertion/`"), std::string::npos) << section;
+  EXPECT_NE(section.find("`Operation/`"), std::string::npos) << section;
+
+  // The right name in the wrong section
+  const std::string misplaced = refusal(in_section("Operation", "set Maximum frequency = 3000"));
+  EXPECT_NE(misplaced.find("`Band/Maximum frequency`"), std::string::npos) << misplaced;
+}
+
+
+
+TEST(ParameterFiles, WrongValuesAreNamed)
+{
+  const std::string number = refusal(in_section("Operation", "set Load per side = heavy"));
+  EXPECT_NE(number.find("heavy"), std::string::npos) << number;
+  const std::string choice = refusal(in_section("Operation", "set Rotation = clockwise"));
+  EXPECT_NE(choice.find("clockwise"), std::string::npos) << choice;
+  EXPECT_NE(choice.find("positive|negative"), std::string::npos) << choice;
+  EXPECT_NE(refusal(in_section("Operation", "set Friction coefficient = -0.1")), "accepted");
+  EXPECT_NE(refusal("subsection Operation\n"), "accepted"); // never closed
+  EXPECT_THROW(Parameters::read("/nonexistent.prm", {}), FileError);
+}
+
+
+
+TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
+{
+  const Parameters p = read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
+                                 "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
+                                 "Geometry/Element size=0.0123456789", "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
+  EXPECT_NE(print(p), print(Parameters()));
+  EXPECT_EQ(print(read(print(p))), print(p));
+  EXPECT_EQ(read(print(p)).geometry.element_size, 0.0123456789);
+  EXPECT_EQ(read(print(p)).geometry.bottom.angles, (std::vector<double>{1. / 3.}));
+
+  // Also with the documentation, which states a unit for every number
+  std::ostringstream documented;
+  p.print(documented, true);
+  EXPECT_EQ(print(read(documented.str())), print(p));
+  EXPECT_NE(documented.str().find("Units:"), std::string::npos);
+}
+
+
+
+TEST(ParameterFiles, DefaultsSurviveUnchanged)
+{
+  // Printing rounds nothing that matters: the values themselves come back.
+  const Parameters d, p = read(print(d));
+  EXPECT_EQ(p.materials.mounts[0].tangential, d.materials.mounts[0].tangential);
+  EXPECT_EQ(p.geometry.disc_outer_radius, d.geometry.disc_outer_radius);
+  EXPECT_EQ(p.solvers.complex_tolerance, d.solvers.complex_tolerance);
+  // More digits than a stream shows by itself
+  const Parameters fine = read("", {"Mounts/Elastic mounts=disc_bore: 1, 12345678.9, 3"});
+  EXPECT_EQ(read(print(fine)).materials.mounts[0].tangential, 12345678.9);
+}
+
+
+
+TEST(ParameterChecks, Operation)
+{
+  const std::string dissipation = "Operation/Radial dissipation=consistent";
+  const std::string speed       = refusal("", {dissipation, "Operation/Rotation speed=0"});
+  EXPECT_NE(speed.find("parameter Operation/Rotation speed"), std::string::npos) << speed;
+  const std::string load = refusal("", {dissipation, "Operation/Load per side=0"});
+  EXPECT_NE(load.find("parameter Operation/Load per side"), std::string::npos) << load;
+  // Without dissipation neither matters.
+  EXPECT_EQ(refusal("", {"Operation/Rotation speed=0", "Operation/Load per side=0"}), "accepted");
+}
+
+TEST(ParameterChecks, Band)
+{
+  expect_refused("Band/Maximum frequency=0", "parameter Band/Maximum frequency", "give a positive frequency");
+}
+
+TEST(ParameterChecks, Materials)
+{
+  expect_refused("Disc material/Young modulus=0", "parameter Disc material/Young modulus", "positive");
+  expect_refused("Pin material/Density=0", "parameter Pin material/Density", "positive");
+  expect_refused("Pin material/Poisson ratio=0.5", "parameter Pin material/Poisson ratio", "lock");
+  expect_refused("Disc material/Poisson ratio=-1", "parameter Disc material/Poisson ratio", "above -1");
+  expect_refused("Mounts/Elastic mounts=disc_bore: 1, 2", "Mounts/Elastic mounts", "is not an elastic mount");
+  expect_refused("Mounts/Elastic mounts=disc_bore", "Mounts/Elastic mounts", "is not an elastic mount");
+  expect_refused("Mounts/Elastic mounts=disc_bore: 1, two, 3", "surface disc_bore", "`two` is not a number");
+  expect_refused("Mounts/Elastic mounts=disc_bore: 1, -2, 3", "surface disc_bore", "not a finite value >= 0");
+  expect_refused("Mounts/Elastic mounts=: 1, 2, 3", "Mounts/Elastic mounts", "names no surface");
+  expect_refused("Mounts/Elastic mounts=disc_bore: 1, 2, 3; disc_bore: 1, 2, 3", "surface disc_bore", "mounted twice");
+}
+
+TEST(ParameterChecks, Solvers)
+{
+  const std::string message = refusal("", {"Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU"});
+  EXPECT_NE(message.find("parameter Linear algebra/Factorization"), std::string::npos) << message;
+  EXPECT_EQ(refusal("", {"Linear algebra/Factorization=CHOLMOD"}), "accepted");
+  EXPECT_EQ(refusal("", {"Linear algebra/Factorization=UMFPACK", "Complex modes/Shift inverse=sparse LU"}), "accepted");
+  // The residual iteration has no use for LU factors.
+  EXPECT_EQ(refusal("", {"Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU", "Complex modes/Solver=residual iteration"}),
+            "accepted");
+}
+
+TEST(ParameterChecks, Output)
+{
+  expect_refused("Output/Animation frames=-1", "Output/Animation frames", "-1");
+  expect_refused("Output/Mode shapes=some", "Output/Mode shapes", "some");
+}

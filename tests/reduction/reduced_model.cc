@@ -1,0 +1,127 @@
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/eigen/dense_quadratic.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/reduction/reduced_model.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+using Complex = std::complex<double>;
+
+namespace
+{
+  /// As few dofs as a disc between two pins can have.
+  Scene tiny_scene(const RadialDissipation dissipation)
+  {
+    const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
+    return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), mounted(), operating(dissipation));
+  }
+
+  MultiVector unit_vectors(const Epetra_Map &map)
+  {
+    MultiVector result(map, map.NumGlobalElements());
+    for (int i = 0; i < result.MyLength(); ++i)
+      result.ReplaceMyValue(i, map.GID(i), 1.);
+    return result;
+  }
+
+  double largest_difference(const std::vector<Complex> &values, std::vector<Complex> others)
+  {
+    if (values.size() != others.size())
+      return std::numeric_limits<double>::infinity();
+    double largest = 0.;
+    for (const Complex &value : values)
+      {
+        const auto nearest = std::min_element(others.begin(), others.end(), [&](const Complex &a, const Complex &b) {
+          return std::abs(a - value) < std::abs(b - value);
+        });
+        largest            = std::max(largest, std::abs(*nearest - value) / std::abs(value));
+        others.erase(nearest);
+      }
+    return largest;
+  }
+} // namespace
+
+
+
+TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
+{
+  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+    {
+      const Scene s = tiny_scene(dissipation);
+      const auto &M = *s.coupled.frictionless.mass;
+
+      // A basis of all directions, grown in uneven parts, not that of the dofs
+      const int         n = s.coupled.map().NumGlobalElements();
+      const MultiVector T = orthonormalize(M, nullptr, random_vectors(s.coupled.map(), n), 1e-13);
+      ASSERT_EQ(T.NumVectors(), n);
+      ReducedModel reduced(s.coupled);
+      reduced.extend(view(T, 0, 5));
+      reduced.extend(view(T, 5, n - 20));
+      reduced.extend(view(T, n - 15, 15));
+      ASSERT_EQ(reduced.size(), n);
+
+      // In the band; the far end of the spectrum of a random basis is known less well.
+      const double limit = 2. * M_PI * 20000.;
+      for (const double mu : {0., 0.6})
+        {
+          const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+          DenseMatrix             C;
+          if (matrices.damping)
+            C = to_dense(*matrices.damping);
+          const auto full = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness), limit);
+          const auto pencil = reduced.at(mu);
+          EXPECT_EQ(pencil.has_damping, matrices.damping != nullptr);
+          const auto small = dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, limit);
+          EXPECT_GT(full.values.size(), 20u);
+          EXPECT_LT(largest_difference(full.values, small.values), 1e-9);
+        }
+    }
+}
+
+
+
+TEST(ReducedModel, ProjectsEveryBlock)
+{
+  const Scene       s = tiny_scene(RadialDissipation::published);
+  const MultiVector X = random_vectors(s.coupled.map(), 9, 3);
+  ReducedModel      at_once(s.coupled), grown(s.coupled);
+  at_once.extend(X);
+  grown.extend(view(X, 0, 2));
+  grown.extend(view(X, 2, 6));
+  grown.extend(view(X, 8, 1));
+  for (const double mu : {0., 0.3, 1.1})
+    {
+      const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+      const DenseMatrix       M = gram(X, *matrices.mass * X), C = gram(X, *matrices.damping * X), K = gram(X, *matrices.stiffness * X);
+      for (const ReducedModel *model : {&at_once, &grown})
+        {
+          const ReducedPencil pencil = model->at(mu);
+          EXPECT_LT(max_norm(add(pencil.mass, M, -1.)), 1e-13 * max_norm(M));
+          EXPECT_LT(max_norm(add(pencil.damping, C, -1.)), 1e-13 * max_norm(C));
+          EXPECT_LT(max_norm(add(pencil.stiffness, K, -1.)), 1e-13 * max_norm(K));
+        }
+    }
+  EXPECT_LT(max_norm(add(replicate(grown.basis()), replicate(X), -1.)), 1e-16);
+}
+
+
+
+TEST(ReducedModel, LessThanAFullBasisIsNotExact)
+{
+  // The first test can fail: without one direction it would.
+  const Scene       s     = tiny_scene(RadialDissipation::none);
+  const int         n     = s.coupled.map().NumGlobalElements();
+  const MultiVector T     = unit_vectors(s.coupled.map());
+  const double      limit = 2. * M_PI * 20000., mu = 0.6;
+  ReducedModel      full(s.coupled), less(s.coupled);
+  full.extend(T);
+  less.extend(view(T, 0, n - 1));
+  const auto all = full.at(mu), some = less.at(mu);
+  EXPECT_GT(largest_difference(dense_quadratic_modes(all.mass, nullptr, all.stiffness, limit).values,
+                               dense_quadratic_modes(some.mass, nullptr, some.stiffness, limit).values),
+            1e-6);
+}

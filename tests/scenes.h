@@ -1,0 +1,230 @@
+#pragma once
+
+#include <squeal/assembly/elasticity.h>
+#include <squeal/contact/coupled_system.h>
+#include <squeal/geometry/extrusion.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/model/model.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace Squeal::Testing
+{
+  using Point3 = std::array<double, 3>;
+
+  // ------------------------------------------------------------------- plans
+
+  /// A pin over a block of sectors and rings of a polar plan.
+  struct PolarPin
+  {
+    Plan::Side side;
+    int        sector, n_sectors, ring, n_rings;
+  };
+
+  /**
+   * An annulus of @p n_rings × @p n_sectors quadrilaterals; sector 0 begins at
+   * the x axis, so that sector -1 - j is the mirror image of sector j about it.
+   * Boundary curves are called @p bore and @p rim: other names than disc_bore
+   * and disc_rim keep the polygons in degree 2.
+   */
+  inline Plan polar_plan(const double                 inner,
+                         const double                 outer,
+                         const int                    n_rings,
+                         const int                    n_sectors,
+                         const std::vector<PolarPin> &pins,
+                         const std::string           &bore = "disc_bore",
+                         const std::string           &rim  = "disc_rim")
+  {
+    Plan       plan;
+    const auto point = [&](const int ring, const int sector) {
+      return static_cast<unsigned int>(ring * n_sectors + (sector % n_sectors + n_sectors) % n_sectors);
+    };
+    const auto face = [&](const int ring, const int sector) { return point(ring, sector); };
+    for (int i = 0; i <= n_rings; ++i)
+      for (int j = 0; j < n_sectors; ++j)
+        {
+          // Mirror images to the last bit
+          const int    k     = std::min(j, n_sectors - j);
+          const double r     = inner + (outer - inner) * i / n_rings;
+          const double angle = 2. * M_PI * k / n_sectors;
+          plan.points.push_back({{r * std::cos(angle), (j == k ? r : -r) * std::sin(angle)}});
+        }
+    for (int i = 0; i < n_rings; ++i)
+      for (int j = 0; j < n_sectors; ++j)
+        plan.faces.push_back({{point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}});
+    for (const PolarPin &pin : pins)
+      {
+        Plan::Pin part{(pin.side == Plan::Side::top ? "pin_top_" : "pin_bottom_") + std::to_string(plan.pins.size() + 1), pin.side, {}, {{0., 0.}}};
+        for (int i = pin.ring; i < pin.ring + pin.n_rings; ++i)
+          for (int j = pin.sector; j < pin.sector + pin.n_sectors; ++j)
+            part.faces.push_back(face(i, j));
+        std::sort(part.faces.begin(), part.faces.end());
+        plan.pins.push_back(part);
+      }
+    Plan::Curve inside{bore, {}}, outside{rim, {}};
+    for (int j = 0; j < n_sectors; ++j)
+      {
+        inside.edges.push_back({{point(0, j + 1), point(0, j)}});
+        outside.edges.push_back({{point(n_rings, j), point(n_rings, j + 1)}});
+      }
+    plan.curves = {inside, outside};
+    return plan;
+  }
+
+  /// A circle of 6 k nodes filled with an O-grid: a plate and a pin on top of all of it, its axis at (@p distance, 0).
+  inline Plan round_plan(const double distance, const double radius, const int k)
+  {
+    Plan                      plan;
+    std::vector<unsigned int> loop;
+    Plan::Curve               rim{"disc_rim", {}};
+    for (int j = 0; j < 6 * k; ++j)
+      {
+        const double angle = M_PI * j / (3 * k);
+        plan.points.push_back({{distance + radius * std::cos(angle), radius * std::sin(angle)}});
+        loop.push_back(j);
+        rim.edges.push_back({{static_cast<unsigned int>(j), static_cast<unsigned int>((j + 1) % (6 * k))}});
+      }
+    plan.faces  = fill_with_o_grid(loop, plan.points);
+    plan.curves = {rim};
+    Plan::Pin pin{"pin_top_1", Plan::Side::top, {}, {{0., 0.}}};
+    for (unsigned int face = 0; face < plan.faces.size(); ++face)
+      pin.faces.push_back(face);
+    plan.pins = {pin};
+    return plan;
+  }
+
+  // ------------------------------------------------------------------ meshes
+
+  /// The mesh with all points moved.
+  inline HexMesh mapped(HexMesh mesh, const std::function<Point3(const Point3 &)> &map)
+  {
+    for (auto &point : mesh.points)
+      point = map(point);
+    return mesh;
+  }
+
+  /// The mirror image about the plane y = 0.
+  inline HexMesh mirrored(HexMesh mesh)
+  {
+    for (auto &point : mesh.points)
+      point[1] = -point[1];
+    for (auto &hexahedron : mesh.hexahedra)
+      {
+        std::swap(hexahedron.nodes[1], hexahedron.nodes[3]);
+        std::swap(hexahedron.nodes[5], hexahedron.nodes[7]);
+      }
+    for (auto &quadrilateral : mesh.quadrilaterals)
+      std::swap(quadrilateral.nodes[1], quadrilateral.nodes[3]);
+    return mesh;
+  }
+
+  /// Layers and heights of small scenes; the rest as in the default scene.
+  inline GeometryParameters layers(const int disc_layers, const int pin_layers)
+  {
+    GeometryParameters parameters;
+    parameters.disc_layers = disc_layers;
+    parameters.pin_layers  = pin_layers;
+    return parameters;
+  }
+
+  /// Volume of the trilinear hexahedra of one component, by Gauss' rule of two points, which is exact.
+  inline double volume(const HexMesh &mesh, const unsigned int component)
+  {
+    constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+    double        sum          = 0.;
+    for (const auto &hexahedron : mesh.hexahedra)
+      if (hexahedron.volume == component)
+        for (int q = 0; q < 8; ++q)
+          {
+            double x[3], J[3][3] = {};
+            for (int d = 0; d < 3; ++d)
+              x[d] = 0.5 + ((q >> d) & 1 ? 0.5 : -0.5) / std::sqrt(3.);
+            for (int v = 0; v < 8; ++v)
+              for (int e = 0; e < 3; ++e)
+                {
+                  double gradient = corner[v][e] ? 1. : -1.;
+                  for (int d = 0; d < 3; ++d)
+                    if (d != e)
+                      gradient *= corner[v][d] ? x[d] : 1. - x[d];
+                  for (int d = 0; d < 3; ++d)
+                    J[d][e] += mesh.points[hexahedron.nodes[v]][d] * gradient;
+                }
+            sum += (J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+                    J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0])) /
+                   8.;
+          }
+    return sum;
+  }
+
+  // ------------------------------------------------------------------ scenes
+
+  /// A mesh with all that is computed from it before any modes.
+  struct Scene
+  {
+    Scene(const HexMesh             &mesh,
+          const MaterialParameters  &materials,
+          const OperationParameters &operation,
+          const unsigned int         degree       = 1,
+          const MPI_Comm             communicator = MPI_COMM_WORLD)
+      : mesh(mesh)
+      , operation(operation)
+      , model(mesh, degree, communicator)
+      , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
+      , contact(contact_operators(model, interface))
+      , system(assemble(model, materials))
+      , contact_damping(Squeal::contact_damping(contact, radial_dissipation_of_equal_shares(interface, operation)))
+      , coupled(couple(system, contact, contact_damping))
+    {}
+
+    HexMesh                             mesh;
+    OperationParameters                 operation;
+    Model                               model;
+    ContactInterface                    interface;
+    ContactOperators                    contact;
+    SecondOrderSystem                   system;
+    std::shared_ptr<const SparseMatrix> contact_damping; ///< C_b
+    CoupledSystem                       coupled;
+  };
+
+  /// Materials of the default scene; mounts as given.
+  inline MaterialParameters mounted(const std::vector<ElasticMount> &mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}})
+  {
+    MaterialParameters materials;
+    materials.mounts = mounts;
+    return materials;
+  }
+
+  inline OperationParameters operating(const RadialDissipation dissipation = RadialDissipation::none,
+                                       const Rotation          rotation    = Rotation::positive)
+  {
+    OperationParameters operation;
+    operation.radial_dissipation = dissipation;
+    operation.rotation           = rotation;
+    return operation;
+  }
+
+  /// The free dofs of a displacement field, at rest on all components but the given one.
+  inline MultiVector displacements(const Model &model, const unsigned int component, const std::function<Point3(const Point3 &)> &u)
+  {
+    MultiVector result(model.free_map(), 1);
+    for (const Node &node : model.nodes())
+      if (node.component == component)
+        {
+          const Point3 value = u(node.position);
+          for (unsigned int k = 0; k < 3; ++k)
+            if (node.dofs[k] >= 0 && model.free_map().MyGID(node.dofs[k]))
+              result.ReplaceGlobalValue(node.dofs[k], 0, value[k]);
+        }
+    return result;
+  }
+
+  /// uᵀ A v of single vectors.
+  inline double product(const MultiVector &u, const SparseMatrix &A, const MultiVector &v)
+  {
+    return gram(u, A * v)(0, 0);
+  }
+} // namespace Squeal::Testing
