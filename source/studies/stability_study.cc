@@ -38,7 +38,7 @@ namespace Squeal
     /// Divergence rates that the least structural damping outweighs [-].
     constexpr double weak_divergence = 1e-4;
 
-    /// The estimated error of λ may be that much too small.
+    /// The largest of the estimated errors of λ may be that much too small.
     constexpr double estimate_safety = 3.;
 
     template <typename... Parts>
@@ -134,17 +134,19 @@ namespace Squeal
       return with_doublets(labels);
     }
 
-    /// Which modes grow beyond what their accuracy leaves open.
+    /**
+     * Which modes grow beyond what their accuracy leaves open. The largest of
+     * the estimated errors counts for all: that of a single mode can be much too
+     * small by chance.
+     */
     std::vector<bool> unstable_modes(const ComplexModes &modes)
     {
+      double uncertainty = negligible_divergence;
+      for (const double error : modes.estimated_errors)
+        uncertainty = std::max(uncertainty, estimate_safety * error);
       std::vector<bool> result;
-      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        {
-          double uncertainty = negligible_divergence;
-          if (!modes.estimated_errors.empty())
-            uncertainty = std::max(uncertainty, estimate_safety * modes.estimated_errors[j]);
-          result.push_back(modal_quantities(modes.lambda[j]).divergence_rate > uncertainty);
-        }
+      for (const auto &lambda : modes.lambda)
+        result.push_back(modal_quantities(lambda).divergence_rate > uncertainty);
       return result;
     }
 
