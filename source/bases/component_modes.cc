@@ -10,6 +10,12 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// A mode that has less than this of the component modes it would be named after bears no name [-].
+    constexpr double smallest_share = 0.1;
+  } // namespace
+
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
   {
     // Row sums of the x displacements: M e_x
@@ -84,7 +90,7 @@ namespace Squeal
     for (const ComponentModes *reference : references)
       names.insert(names.end(), reference->labels.begin(), reference->labels.end());
     const std::size_t n_names = names.size();
-    names.resize(std::max<std::size_t>(n_names, n_modes), "unnamed");
+    names.resize(std::max<std::size_t>(n_names, n_modes), no_label);
     const auto share = [&](const int mode, const int name) {
       const auto it = shares[mode].find(names[name]);
       return it != shares[mode].end() ? it->second : 0.;
@@ -92,7 +98,10 @@ namespace Squeal
     const std::vector<int>    assigned = best_assignment(n_modes, names.size(), share);
     std::vector<ModeIdentity> identities;
     for (int j = 0; j < n_modes; ++j)
-      identities.push_back({names[assigned[j]], share(j, assigned[j])});
+      {
+        const double assigned_share = share(j, assigned[j]);
+        identities.push_back({assigned_share < smallest_share ? no_label : names[assigned[j]], assigned_share});
+      }
     return identities;
   }
 } // namespace Squeal

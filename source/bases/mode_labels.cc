@@ -384,7 +384,7 @@ namespace Squeal
     for (std::size_t i = 0; i < labels.size(); ++i)
       places[labels[i]].push_back(i);
     for (const auto &[label, where] : places)
-      if (where.size() == 2)
+      if (where.size() == 2 && label != no_label)
         {
           labels[where[0]] += " -";
           labels[where[1]] += " +";

@@ -235,6 +235,24 @@ TEST(Identify, SharesOfMixturesAndPhases)
 
 
 
+TEST(Identify, ModesUnlikeAllAreUnnamed)
+{
+  // Noise has next to nothing of the lowest modes; two such modes are no doublet.
+  const References r;
+  const auto       found = r.identities(random_vectors(r.disc.vectors->Map(), 2));
+  std::vector<std::string> labels;
+  for (const ModeIdentity &identity : found)
+    {
+      EXPECT_LT(identity.share, 0.1);
+      labels.push_back(identity.label);
+    }
+  EXPECT_EQ(labels, std::vector<std::string>(2, no_label));
+  mark_doublets(labels);
+  EXPECT_EQ(labels, std::vector<std::string>(2, no_label));
+}
+
+
+
 TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
 {
   // Three vectors that all resemble a doublet most: the third gets its second label.

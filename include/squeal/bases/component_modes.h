@@ -53,7 +53,7 @@ namespace Squeal
    * mode it gets that one's label; where several compete (an A0-5 mode that
    * shakes the pins more than itself), the labels are distributed so that the
    * sum of all shares is largest and none is given more often than there are
-   * component modes of it.
+   * component modes of it. A share below a tenth gives no name.
    *
    * @param references  disc modes with contact free, pin modes with contact sliding
    * @param mass        M of the uncoupled bodies

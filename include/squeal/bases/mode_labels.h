@@ -34,6 +34,9 @@ namespace Squeal
                                       const std::vector<double> &nodal_masses,
                                       const DenseMatrix      &modes);
 
-  /// Suffix ` -` and ` +`, in order of appearance, to labels that occur exactly twice.
+  /// Label of a mode that resembles none of the component modes left for it.
+  inline constexpr const char *no_label = "unnamed";
+
+  /// Suffix ` -` and ` +`, in order of appearance, to labels that occur exactly twice; none to no_label.
   void mark_doublets(std::vector<std::string> &labels);
 } // namespace Squeal
