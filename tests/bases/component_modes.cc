@@ -239,7 +239,7 @@ TEST(Identify, ModesUnlikeAllAreUnnamed)
 {
   // Noise has next to nothing of the lowest modes; two such modes are no doublet.
   const References r;
-  const auto       found = r.identities(random_vectors(r.disc.vectors->Map(), 2));
+  const auto       found = r.identities(random_vectors(r.s.model.free_map(), 2));
   std::vector<std::string> labels;
   for (const ModeIdentity &identity : found)
     {
