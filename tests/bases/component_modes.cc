@@ -7,7 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
+#include <stdexcept>
+#include <utility>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
@@ -179,6 +182,19 @@ namespace
       pins = component_modes(s.model, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
     }
 
+    /// Numbers of the first of two disc modes with one label and of a mode with another.
+    std::pair<int, int> doublet_and_other() const
+    {
+      const auto &labels = disc.labels;
+      const auto  pair   = std::adjacent_find(labels.begin(), labels.end());
+      if (pair == labels.end())
+        throw std::runtime_error("no doublet among the modes of the disc");
+      const auto other = std::find_if(labels.begin(), labels.end(), [&](const std::string &label) { return label != *pair; });
+      if (other == labels.end())
+        throw std::runtime_error("only one label among the modes of the disc");
+      return {static_cast<int>(pair - labels.begin()), static_cast<int>(other - labels.begin())};
+    }
+
     std::vector<ModeIdentity> identities(const MultiVector &re, const MultiVector *im = nullptr) const
     {
       return identify({&disc, &pins}, *s.system.mass, re, im);
@@ -207,17 +223,8 @@ TEST(Identify, ComponentModesAreThemselves)
 TEST(Identify, SharesOfMixturesAndPhases)
 {
   const References r;
-  // Two modes with different labels, and a pair with the same
-  const auto &labels = r.disc.labels;
-  int         pair = -1, single = -1;
-  for (int j = 0; j + 1 < static_cast<int>(labels.size()) && pair < 0; ++j)
-    if (labels[j] == labels[j + 1])
-      pair = j;
-  ASSERT_GE(pair, 0);
-  for (int j = 0; j < static_cast<int>(labels.size()) && single < 0; ++j)
-    if (labels[j] != labels[pair])
-      single = j;
-  ASSERT_GE(single, 0);
+  const auto &labels         = r.disc.labels;
+  const auto [pair, single] = r.doublet_and_other();
   const MultiVector a = view(*r.disc.vectors, pair, 1), b = view(*r.disc.vectors, pair + 1, 1), c = view(*r.disc.vectors, single, 1);
 
   // A turned doublet is wholly of its label, also with a complex factor; 3:4 gives shares 0.36 and 0.64 of any size.
@@ -257,15 +264,8 @@ TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
 {
   // Three vectors that all resemble a doublet most: the third gets its second label.
   const References r;
-  const auto      &labels = r.disc.labels;
-  int              pair = -1, single = -1;
-  for (int j = 0; j + 1 < static_cast<int>(labels.size()) && pair < 0; ++j)
-    if (labels[j] == labels[j + 1])
-      pair = j;
-  ASSERT_GE(pair, 0);
-  for (int j = 0; j < static_cast<int>(labels.size()) && single < 0; ++j)
-    if (labels[j] != labels[pair])
-      single = j;
+  const auto &labels         = r.disc.labels;
+  const auto [pair, single] = r.doublet_and_other();
   MultiVector re(r.disc.vectors->Map(), 3);
   for (int j = 0; j < 3; ++j)
     {
