@@ -66,6 +66,16 @@ namespace Squeal
     return result;
   }
 
+  std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, const double shift)
+  {
+    if (shift == 0.)
+      return system.stiffness;
+    std::shared_ptr<const SparseMatrix> result = add(1., *system.stiffness, shift * shift, *system.mass);
+    if (system.damping)
+      result = add(1., *result, shift, *system.damping);
+    return result;
+  }
+
   void normal_reactions(const CoupledSystem                     &system,
                         const std::vector<std::complex<double>> &lambda,
                         const MultiVector                       &real_part,

@@ -18,16 +18,10 @@ namespace Squeal
 
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
   {
-    std::shared_ptr<const SparseMatrix> S = system.frictionless.stiffness;
-    V                                     = system.normal_stiffness;
+    V = system.normal_stiffness;
     if (shift != 0.)
-      {
-        S = add(1., *S, shift * shift, *system.frictionless.mass);
-        if (system.frictionless.damping)
-          S = add(1., *S, shift, *system.frictionless.damping);
-        V = add(1., *V, shift * shift, *system.normal_mass);
-      }
-    factor = factorize_positive_definite(*S, library, "stiffness of the coupled system without friction");
+      V = add(1., *V, shift * shift, *system.normal_mass);
+    factor = factorize_positive_definite(*pencil_at(system.frictionless, shift), library, "stiffness of the coupled system without friction");
 
     const MultiVector A = to_vectors(*system.friction_forces);
     X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());

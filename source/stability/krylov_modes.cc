@@ -1,6 +1,5 @@
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/matrix_operator.h>
-#include <squeal/linear_algebra/sparse.h>
 #include <squeal/stability/krylov_modes.h>
 
 #include <optional>
@@ -28,15 +27,8 @@ namespace Squeal
     std::unique_ptr<Factorization> lu;
     if (parameters.shift_inverse == ShiftInverse::sparse_lu)
       {
-        std::shared_ptr<const SparseMatrix> shifted = matrices.stiffness;
-        if (shift != 0.)
-          {
-            shifted = add(1., *shifted, shift * shift, *matrices.mass);
-            if (matrices.damping)
-              shifted = add(1., *shifted, shift, *matrices.damping);
-          }
         const auto library = parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library;
-        lu                 = factorize_general(*shifted, library, "stiffness of the coupled system with friction");
+        lu                 = factorize_general(*pencil_at(matrices, shift), library, "stiffness of the coupled system with friction");
       }
     else
       inverse.set_friction_coefficient(mu);

@@ -403,6 +403,8 @@ namespace Squeal
         iteration.maximum_basis     = parameters.solvers.maximum_basis;
         modes                       = residual_iteration(coupled, inverse, *real.vectors, mu, iteration, progress);
       }
+    if (modes.lambda.empty())
+      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
     // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
     modes.n_rigid_body = real.n_rigid_body;
 

@@ -44,6 +44,9 @@ namespace Squeal
   /// M_c − μ A V_M, C_c and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
   SecondOrderSystem with_friction(const CoupledSystem &system, double mu);
 
+  /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
+  std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, double shift);
+
   /**
    * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ² V_M u_c: normal contact
    * reactions [N] (compression negative) of complex modes, n_c × k each part.
