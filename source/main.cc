@@ -111,10 +111,11 @@ Decides whether a disc rubbed by friction pins squeals.
     options.output  = line.output.value_or("results/" + std::filesystem::path(line.parameter_file).stem().string());
     options.dry_run = line.dry_run;
     progress.note("squeal " + std::string(version) + ", " + line.parameter_file);
+    Run run(parameters, options, MPI_COMM_WORLD, progress, screen);
     switch (parameters.study)
       {
         case Study::stability:
-          run_stability_study(parameters, options, MPI_COMM_WORLD, progress, screen);
+          run_stability_study(run);
       }
   }
   /// Prints the one message of a failed run; returns the exit status.

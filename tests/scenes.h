@@ -176,7 +176,7 @@ namespace Squeal::Testing
       , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))
-      , contact_damping(Squeal::contact_damping(contact, radial_dissipation_of_equal_shares(interface, operation)))
+      , contact_damping(Squeal::contact_damping(contact, radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation)))
       , coupled(couple(system, contact, contact_damping))
     {}
 

@@ -200,21 +200,36 @@ namespace Squeal
     return interface;
   }
 
-  std::vector<double> radial_dissipation_of_equal_shares(const ContactInterface &interface, const OperationParameters &operation)
+  std::vector<double> equal_load_shares(const ContactInterface &interface, const double load_per_side)
+  {
+    std::map<int, unsigned int> nodes_per_side;
+    for (const ContactNode &node : interface)
+      ++nodes_per_side[node.side()];
+    std::vector<double> reactions;
+    for (const ContactNode &node : interface)
+      reactions.push_back(-load_per_side / nodes_per_side[node.side()]);
+    return reactions;
+  }
+
+  std::vector<double> radial_dissipation(const ContactInterface    &interface,
+                                         const std::vector<double> &reactions,
+                                         const OperationParameters &operation)
   {
     std::vector<double> c_b(interface.size(), 0.);
     if (operation.radial_dissipation == RadialDissipation::none)
       return c_b;
-
-    std::map<int, unsigned int> nodes_per_side;
-    for (const ContactNode &node : interface)
-      ++nodes_per_side[node.side()];
     const double factor = operation.radial_dissipation == RadialDissipation::consistent ? operation.friction_coefficient : 1.;
     for (unsigned int c = 0; c < interface.size(); ++c)
-      {
-        const double reaction = operation.load_per_side / nodes_per_side[interface[c].side()];
-        c_b[c]                = factor * reaction / (operation.rotation_speed * interface[c].axis_distance());
-      }
+      c_b[c] = factor * std::abs(reactions[c]) / (operation.rotation_speed * interface[c].axis_distance());
     return c_b;
+  }
+
+  std::vector<double> sliding_dissipation(const std::vector<double> &reactions, const OperationParameters &operation)
+  {
+    std::vector<double> c_t(reactions.size(), 0.);
+    if (operation.friction_slope != 0.)
+      for (unsigned int c = 0; c < reactions.size(); ++c)
+        c_t[c] = std::abs(reactions[c]) * operation.friction_slope;
+    return c_t;
   }
 } // namespace Squeal

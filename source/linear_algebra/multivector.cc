@@ -210,6 +210,16 @@ namespace Squeal
 
 
 
+  MultiVector unit_vectors(const Epetra_Map &map)
+  {
+    MultiVector result(map, map.NumGlobalElements());
+    for (int i = 0; i < map.NumMyElements(); ++i)
+      result.ReplaceMyValue(i, map.GID(i), 1.);
+    return result;
+  }
+
+
+
   MultiVector random_vectors(const Epetra_Map &map, const int n_vectors, const unsigned int seed)
   {
     MultiVector X(map, n_vectors, false);

@@ -155,6 +155,7 @@ namespace Squeal
       parameters.materials.add_parameters(prm);
       parameters.discretization.add_parameters(prm);
       parameters.operation.add_parameters(prm);
+      parameters.sliding.add_parameters(prm);
       parameters.solvers.add_parameters(prm);
       parameters.output.add_parameters(prm);
     }
@@ -243,6 +244,17 @@ namespace Squeal
     materials.check();
     discretization.check();
     operation.check();
+    sliding.check();
+    const bool has_contact_damping = operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0.;
+    const bool needs_load          = sliding.state == ContactState::equal_load ? has_contact_damping :
+                                                                                 sliding.control == BackplateControl::load_per_side;
+    if (needs_load && !(operation.load_per_side > 0.))
+      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero", "parameter Operation/Load per side",
+                           "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
+                           "Steady sliding/Contact state = equal load");
+    if (sliding.state == ContactState::steady_sliding && !(operation.rotation_speed > 0.))
+      throw ParameterError("the disc does not turn, so that nothing slides steadily", "parameter Operation/Rotation speed",
+                           "give a positive speed, or set Steady sliding/Contact state = equal load");
     solvers.check();
   }
 } // namespace Squeal

@@ -253,11 +253,11 @@ TEST(RadialDissipation, SharesTheLoadOfEachSide)
   operation.friction_coefficient = 0.37;
   operation.rotation_speed       = 3.;
   operation.load_per_side        = 500.;
-  const auto consistent          = radial_dissipation_of_equal_shares(interface, operation);
+  const auto consistent          = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
   operation.radial_dissipation   = RadialDissipation::published;
-  const auto published           = radial_dissipation_of_equal_shares(interface, operation);
+  const auto published           = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
   operation.radial_dissipation   = RadialDissipation::none;
-  const auto none                = radial_dissipation_of_equal_shares(interface, operation);
+  const auto none                = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
 
   // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published): their sums are μ N and N on each side.
   double sums[2][2] = {};

@@ -1,7 +1,7 @@
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/output/mode_fields.h>
+#include <squeal/output/fields.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 #include <squeal/output/table.h>
@@ -224,7 +224,7 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
     {
       const Scene  s(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), degree);
       ResultFolder folder(results, true);
-      const ModeFieldWriter writer(s.model, s.interface, folder);
+      const FieldWriter writer(s.model, s.interface, {}, folder);
       ModeField             mode{"complex_001_A0-2", {1., 1000.}, {}, {}};
       for (int i = 0; i < s.model.free_map().NumGlobalElements(); ++i)
         mode.displacement.emplace_back(std::cos(i), std::sin(i));

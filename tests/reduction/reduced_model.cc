@@ -20,14 +20,6 @@ namespace
     return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), mounted(), operating(dissipation));
   }
 
-  MultiVector unit_vectors(const Epetra_Map &map)
-  {
-    MultiVector result(map, map.NumGlobalElements());
-    for (int i = 0; i < result.MyLength(); ++i)
-      result.ReplaceMyValue(i, map.GID(i), 1.);
-    return result;
-  }
-
   double largest_difference(const std::vector<Complex> &values, std::vector<Complex> others)
   {
     if (values.size() != others.size())

@@ -3,13 +3,24 @@
 #include <squeal/contact/coupled_system.h>
 #include <squeal/model/model.h>
 
+#include <optional>
+
 namespace Squeal
 {
+  /// Displacements along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
+  MultiVector rigid_motions(const Model &model, unsigned int component);
+
   /**
    * The six rigid-body motions of the disc with the pins following where the
    * contact makes them, in coupled coordinates, n × 6.
    */
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
+
+  /**
+   * Rigid-body motions of the uncoupled disc that its mounts leave free
+   * (frequency below 10⁻⁴ of the band's end), M-orthonormal; nothing if they hold it.
+   */
+  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
   /**
    * A shift s ≥ 0 [rad/s] with which K_c + s² M_c is safely positive definite:

@@ -39,10 +39,17 @@ namespace Squeal
    */
   ContactInterface pair_contact_nodes(const Model &model, Rotation rotation, double tolerance);
 
+  /// R_n0 [N] ≤ 0 if every node of a side carries the same share of @p load_per_side [N].
+  std::vector<double> equal_load_shares(const ContactInterface &interface, double load_per_side);
+
   /**
-   * Viscous contact damping along b of each contact node [N s/m] if every node
-   * of a side carries the same share R_n0 of the load: μ R_n0 / w_0
-   * (consistent) or R_n0 / w_0 (published), w_0 = Ω r. Zeros for `none`.
+   * Viscous contact damping of each node [N s/m] in a state with reactions R_n0:
+   *
+   *   along b  c_b = μ |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω r;  zeros for `none`
+   *   along t  c_t = |R_n0| dμ/dw
    */
-  std::vector<double> radial_dissipation_of_equal_shares(const ContactInterface &interface, const OperationParameters &operation);
+  std::vector<double> radial_dissipation(const ContactInterface    &interface,
+                                         const std::vector<double> &reactions,
+                                         const OperationParameters &operation);
+  std::vector<double> sliding_dissipation(const std::vector<double> &reactions, const OperationParameters &operation);
 } // namespace Squeal

@@ -48,6 +48,9 @@ namespace Squeal
   /// Euclidean norms of the columns.
   std::vector<double> column_norms(const MultiVector &X);
 
+  /// The identity matrix as vectors, for maps of a few rows (contact nodes).
+  MultiVector unit_vectors(const Epetra_Map &map);
+
   /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
   MultiVector random_vectors(const Epetra_Map &map, int n_vectors, unsigned int seed = 1);
 

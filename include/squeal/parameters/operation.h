@@ -48,6 +48,7 @@ namespace Squeal
     double            rotation_speed       = 4.;    ///< Ω [rad/s]
     double            load_per_side        = 1000.; ///< [N]
     RadialDissipation radial_dissipation   = RadialDissipation::none;
+    double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
 
     void add_parameters(dealii::ParameterHandler &prm);
 

@@ -4,6 +4,7 @@
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
+#include <squeal/parameters/sliding.h>
 
 #include <iosfwd>
 #include <string>
@@ -19,6 +20,7 @@ namespace Squeal
     MaterialParameters       materials;
     DiscretizationParameters discretization;
     OperationParameters      operation;
+    SlidingParameters        sliding;
     SolverParameters         solvers;
     OutputParameters         output;
 

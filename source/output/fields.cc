@@ -1,4 +1,4 @@
-#include <squeal/output/mode_fields.h>
+#include <squeal/output/fields.h>
 
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/dofs/dof_tools.h>
@@ -44,12 +44,18 @@ namespace Squeal
     }
   } // namespace
 
-  ModeFieldWriter::ModeFieldWriter(const Model &model, const ContactInterface &interface, const ResultFolder &folder)
+  FieldWriter::FieldWriter(const Model                     &model,
+                           const ContactInterface          &interface,
+                           const std::vector<unsigned int> &closed_pairs,
+                           const ResultFolder              &folder)
     : model(model)
     , interface(interface)
     , folder(folder)
     , components(model.triangulation().n_active_cells())
+    , closed(interface.size(), 0.)
   {
+    for (const unsigned int c : closed_pairs)
+      closed[c] = 1.;
     for (const auto &cell : model.triangulation().active_cell_iterators())
       components(cell->active_cell_index()) = cell->material_id();
 
@@ -87,24 +93,33 @@ namespace Squeal
       contact_node_of_dof.push_back(numbers.at(position_key(p[0], p[1], p[2])));
   }
 
-  template <typename Function>
-  Vector<double> ModeFieldWriter::dof_vector(const ModeField &mode, const Function &value) const
+  template <typename Number, typename Function>
+  Vector<double> FieldWriter::dof_vector(const std::vector<Number> &displacement, const Function &value) const
   {
     Vector<double> result(model.n_dofs());
     for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
       if (const int free = model.free_dof(dof); free >= 0)
-        result(dof) = value(mode.displacement[free]);
+        result(dof) = value(displacement[free]);
     return result;
   }
 
-  void ModeFieldWriter::write_mode(const ModeField &mode) const
+  template <typename Number, typename Function>
+  Vector<double> FieldWriter::contact_vector(const std::vector<Number> &values, const Function &value) const
+  {
+    Vector<double> result(contact_dofs.n_dofs());
+    for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
+      result(dof) = value(values[contact_node_of_dof[dof]]);
+    return result;
+  }
+
+  void FieldWriter::write_mode(const ModeField &mode) const
   {
     using Complex      = std::complex<double>;
     const double scale = 1. / largest_amplitude(mode);
-    const auto   re    = dof_vector(mode, [&](const Complex &u) { return scale * u.real(); });
-    const auto   im    = dof_vector(mode, [&](const Complex &u) { return scale * u.imag(); });
-    const auto   mod   = dof_vector(mode, [&](const Complex &u) { return scale * std::abs(u); });
-    const auto   arg   = dof_vector(mode, [](const Complex &u) { return std::arg(u); });
+    const auto   re    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.real(); });
+    const auto   im    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.imag(); });
+    const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
+    const auto   arg   = dof_vector(mode.displacement, [](const Complex &u) { return std::arg(u); });
 
     DataOut<3> output;
     set_flags(output);
@@ -120,26 +135,62 @@ namespace Squeal
     write_contact(mode);
   }
 
-  void ModeFieldWriter::write_contact(const ModeField &mode) const
+  void FieldWriter::write_contact(const ModeField &mode) const
   {
-    const double   scale = 1. / largest_amplitude(mode);
-    Vector<double> re(contact_dofs.n_dofs()), im(contact_dofs.n_dofs());
-    for (unsigned int dof = 0; dof < re.size(); ++dof)
-      {
-        const auto &r = mode.reactions[contact_node_of_dof[dof]];
-        re(dof)       = scale * r.real();
-        im(dof)       = scale * r.imag();
-      }
+    using Complex      = std::complex<double>;
+    const double scale = 1. / largest_amplitude(mode);
     DataOut<2, 3> output;
     set_flags(output);
     output.attach_dof_handler(contact_dofs);
-    output.add_data_vector(re, "normal_reaction_real");
-    output.add_data_vector(im, "normal_reaction_imag");
+    output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.real(); }), "normal_reaction_real");
+    output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.imag(); }), "normal_reaction_imag");
+    output.add_data_vector(contact_vector(closed, [](const double c) { return c; }), "closed");
     output.build_patches();
     folder.write("modes/" + mode.name + "_contact.vtu", [&](std::ostream &stream) { output.write_vtu(stream); });
   }
 
-  void ModeFieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
+  void FieldWriter::write_contact_state(const ContactField &state) const
+  {
+    // Clamped dofs follow their backplate
+    Vector<double> u = dof_vector(state.displacement, [](const double value) { return value; });
+    std::vector<int> side(state.approach.size(), 0);
+    for (const ContactNode &node : interface)
+      side[node.pin] = node.side();
+    for (const auto dof : DoFTools::extract_dofs(model.dof_handler(), ComponentMask(std::vector<bool>{false, false, true})))
+      if (model.free_dof(dof) < 0)
+        {
+          const unsigned int component = model.nodes()[model.node_of_dof(dof)].component;
+          u(dof)                       = -side[component] * state.approach[component];
+        }
+
+    DataOut<3> bodies;
+    set_flags(bodies);
+    bodies.attach_dof_handler(model.dof_handler());
+    bodies.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
+    bodies.add_data_vector(components, "component", DataOut<3>::type_cell_data);
+    bodies.build_patches(model.mapping(), model.degree());
+    bodies.write_vtu_in_parallel(folder.path("sliding_state.vtu"), model.communicator());
+
+    std::vector<double> pressure;
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      pressure.push_back(-state.reactions[c] / interface[c].area);
+    const auto identity = [](const double value) { return value; };
+    const std::vector<std::pair<const std::vector<double> *, const char *>> fields = {{&pressure, "pressure"},
+                                                                                      {&state.reactions, "normal_reaction"},
+                                                                                      {&state.gaps, "gap"},
+                                                                                      {&closed, "closed"},
+                                                                                      {&state.radial_damping, "c_b"},
+                                                                                      {&state.sliding_damping, "c_t"}};
+    DataOut<2, 3> faces;
+    set_flags(faces);
+    faces.attach_dof_handler(contact_dofs);
+    for (const auto &[values, name] : fields)
+      faces.add_data_vector(contact_vector(*values, identity), name);
+    faces.build_patches();
+    folder.write("sliding_state_contact.vtu", [&](std::ostream &stream) { faces.write_vtu(stream); });
+  }
+
+  void FieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
   {
     const double scale  = 1. / largest_amplitude(mode);
     const double period = 2. * M_PI / mode.lambda.imag();
@@ -148,7 +199,7 @@ namespace Squeal
       {
         const double time = period * frame / n_frames;
         const auto   turn = std::polar(scale, mode.lambda.imag() * time);
-        const auto   u    = dof_vector(mode, [&](const std::complex<double> &value) { return (turn * value).real(); });
+        const auto   u    = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (turn * value).real(); });
 
         DataOut<3> output;
         set_flags(output);

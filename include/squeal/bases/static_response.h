@@ -1,0 +1,52 @@
+#pragma once
+
+#include <squeal/assembly/second_order_system.h>
+#include <squeal/linear_algebra/factorization.h>
+#include <squeal/model/model.h>
+
+#include <memory>
+
+namespace Squeal
+{
+  /**
+   * Static responses of the uncoupled bodies, K u = f, for blocks of forces:
+   * with f = P_nᵀ or P_tᵀ the normal and tangential attachment modes of disc and
+   * pins together (section 5.1 of the paper). K consists of one block for each
+   * component, so that one factorisation is that of every component.
+   *
+   * Where the mount leaves the disc some rigid-body motions N, the forces are
+   * relieved by inertia,
+   *
+   *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,
+   *
+   * solved with the factor of K + s² M and iterative refinement.
+   */
+  class StaticResponse
+  {
+  public:
+    /**
+     * @param largest_circular_frequency end of the band [rad/s]: a rigid-body
+     *        motion whose frequency is below 10⁻⁴ of it counts as free
+     *
+     * Throws SolverError if K (or K + s² M) is not positive definite.
+     */
+    StaticResponse(const Model             &model,
+                   const SecondOrderSystem &system,
+                   double                   largest_circular_frequency,
+                   FactorizationLibrary     library);
+
+    /// u for every column of @p forces.
+    MultiVector solve(const MultiVector &forces) const;
+
+    /// N, n × k, M-orthonormal; null if the mounts hold the disc.
+    const MultiVector *rigid_body_modes() const;
+
+    /// Entries of the factor; 0 where the library does not tell.
+    double n_factor_entries() const;
+
+  private:
+    SecondOrderSystem              system;
+    std::unique_ptr<MultiVector>   N, MN;
+    std::unique_ptr<Factorization> factor;
+  };
+} // namespace Squeal

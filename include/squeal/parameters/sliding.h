@@ -1,0 +1,79 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// The state about which the system is linearised.
+  enum class ContactState
+  {
+    equal_load,     ///< every node of a side carries the same share of the load, all are closed
+    steady_sliding  ///< quasi-static solution with unilateral contact and friction
+  };
+
+  template <>
+  struct EnumTable<ContactState>
+  {
+    static constexpr std::array<EnumName<ContactState>, 2> names = {
+      {{ContactState::equal_load, "equal load"}, {ContactState::steady_sliding, "steady sliding"}}};
+  };
+
+  /// What is prescribed at the rigid backplates, which move along the disc's axis.
+  enum class BackplateControl
+  {
+    load_per_side, ///< one backplate for each side, pressed with a given force
+    displacement,  ///< one backplate for each side, at a given displacement
+    load_per_pin   ///< every pin has an actuator of its own
+  };
+
+  template <>
+  struct EnumTable<BackplateControl>
+  {
+    static constexpr std::array<EnumName<BackplateControl>, 3> names = {{{BackplateControl::load_per_side, "load per side"},
+                                                                         {BackplateControl::displacement, "displacement"},
+                                                                         {BackplateControl::load_per_pin, "load per pin"}}};
+  };
+
+  /**
+   * Gap between the face of an unloaded pin and the disc, measured along the
+   * disc's axis before the backplates move:
+   *
+   *   gap + sliding taper · s_t + radial taper · s_r
+   *
+   * with the distances s_t along t and s_r outwards from the centre of the face.
+   */
+  struct PinGap
+  {
+    std::string pin;
+    double      gap;                ///< [m]
+    double      sliding_taper = 0.; ///< [-]
+    double      radial_taper  = 0.; ///< [-]
+  };
+
+  /// Force with which the actuator of a pin presses.
+  struct PinLoad
+  {
+    std::string pin;
+    double      load; ///< [N]
+  };
+
+  /// The steady sliding state (section `Steady sliding`).
+  struct SlidingParameters
+  {
+    ContactState         state        = ContactState::equal_load;
+    BackplateControl     control      = BackplateControl::load_per_side;
+    double               displacement = 0.; ///< of each backplate towards the disc [m]
+    std::vector<PinLoad> pin_loads;         ///< of pins that do not carry an equal share of the load of their side
+    std::vector<PinGap>  gaps;              ///< of pins that do not touch the disc at first
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+} // namespace Squeal

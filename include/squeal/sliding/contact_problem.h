@@ -1,0 +1,73 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_matrix.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Unilateral contact with Coulomb friction condensed to the contact nodes
+   * (eq. (2) of the paper at rest, sliding everywhere): find reactions r and
+   * motions z with
+   *
+   *   g = g_0 + G r + B z,   r ≤ 0,  g ≤ 0,  r_c g_c = 0,   L r = f
+   *
+   * G = F_nn + μ F_nt is the flexibility of disc and pins, nonsymmetric with
+   * friction; the columns of B are gaps of unit motions (backplates, free
+   * motions of the disc), and L r = f are their equations of balance.
+   */
+  struct ContactProblem
+  {
+    DenseMatrix         normal_flexibility;     ///< F_nn, n_c × n_c [m/N]
+    DenseMatrix         tangential_flexibility; ///< F_nt, n_c × n_c [m/N]
+    double              friction_coefficient;   ///< μ [-]
+    std::vector<double> initial_gap;            ///< g_0, n_c [m]; negative where open
+    DenseMatrix         motions;                ///< B, n_c × n_z
+    DenseMatrix         balance;                ///< L, n_z × n_c
+    std::vector<double> forces;                 ///< f, n_z [N]
+    std::vector<int>    held;                   ///< motions that are zero instead: their columns of B and rows of L vanish
+
+    /// G at friction coefficient @p mu.
+    DenseMatrix flexibility(double mu) const;
+  };
+
+  struct ContactSolution
+  {
+    std::vector<double> reactions; ///< r [N] ≤ 0
+    std::vector<double> gaps;      ///< g [m] ≤ 0; exactly zero at closed nodes
+    std::vector<double> motions;   ///< z [m]
+    std::vector<bool>   closed;
+    int                 n_steps;   ///< changes of the active set
+  };
+
+  /**
+   * Solves a contact problem by block principal pivoting (Júdice and Pires 1994),
+   * which is the semismooth Newton method on the active set with a safeguard:
+   * where flipping all violated nodes no longer reduces their number, single
+   * ones are flipped until it does. Started with all nodes closed; where that
+   * fails, from the solutions at smaller μ, then from random sets.
+   *
+   * Throws SolverError with the violation of the best iterate if none of them succeeds.
+   */
+  ContactSolution solve_contact(const ContactProblem &problem);
+
+  /// What is known about other solutions of a contact problem.
+  struct ContactUniqueness
+  {
+    double           unique_below; ///< every friction coefficient below has exactly one solution; 0: unknown
+    bool             is_certified; ///< μ lies below
+    unsigned int     n_searches;   ///< other starts tried where it is not certified
+    bool             found_other;  ///< one of them led to another solution
+    ContactSolution  other;        ///< that one
+  };
+
+  /**
+   * The solution is unique if Gᵀ + G is positive definite and L = −Bᵀ: two
+   * solutions would give (r − r')ᵀ G (r − r') ≤ 0. That holds for all
+   * μ < 1/λ_max, λ_max the largest eigenvalue of −½ (F_nt + F_ntᵀ) x = λ F_nn x.
+   * Beyond, the problem is solved again from @p n_searches random sets.
+   */
+  ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, unsigned int n_searches = 8);
+} // namespace Squeal

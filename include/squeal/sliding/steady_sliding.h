@@ -1,0 +1,106 @@
+#pragma once
+
+#include <squeal/bases/static_response.h>
+#include <squeal/contact/contact_operators.h>
+#include <squeal/parameters/operation.h>
+#include <squeal/parameters/sliding.h>
+#include <squeal/sliding/contact_problem.h>
+
+#include <memory>
+#include <vector>
+
+namespace Squeal
+{
+  /// How well a steady sliding state fulfils its equations, from the displacements of the full model.
+  struct SlidingCertificate
+  {
+    double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n‖ / ‖P_nᵀ r_n‖, all dofs [-]
+    double load;            ///< largest error of a prescribed load, relative; 0 where none is prescribed [-]
+    double tension;         ///< largest r_n over the load of a backplate; ≤ 0 where nothing pulls [-]
+    double overlap;         ///< largest g over the way of the backplates, g from P_n u [-]
+    double complementarity; ///< largest |r_n g| over load and way [-]
+    double force_balance;   ///< contact forces and forces of the supports of each component, over the load [-]
+    double moment_balance;  ///< the same of moments about the origin, over load × largest axis distance [-]
+  };
+
+  /// The quasi-static state about which the system is linearised.
+  struct SlidingState
+  {
+    std::vector<double>          reactions;    ///< R_n0 [N] ≤ 0, one for each contact node
+    std::vector<double>          gaps;         ///< g [m] ≤ 0
+    std::vector<bool>            closed;       ///< S_0
+    std::vector<double>          approach;     ///< way of the backplate of each component [m]; 0 for the disc
+    std::shared_ptr<MultiVector> displacement; ///< u [m], n × 1, elastic, relative to the moved backplates
+    std::shared_ptr<MultiVector> total_displacement; ///< u with the way of the backplates [m], n × 1
+    SlidingCertificate           certificate;
+    ContactUniqueness            uniqueness;
+    int                          n_steps; ///< of the active-set method
+  };
+
+  /**
+   * Quasi-static steady sliding, eqs. (1) to (3) of the paper with u̇ = 0:
+   *
+   *   K u = P_nᵀ r_n + P_tᵀ r_t,   r_t = μ r_n,   r_n ≤ 0,  g ≤ 0,  r_n g = 0
+   *   g = P_n u + a d − gap
+   *
+   * u is the elastic displacement relative to the backplates, rigid and guided
+   * along the disc's axis, which have moved towards the disc by d; a = |n_z|;
+   * the gaps of @p parameters are taken along the axis. Each load is the axial
+   * force on its backplate, −Σ (±n_z) r_n − Σ (±t_z) r_t. Friction acts along
+   * t at every closed node; a drive holds the disc against its moment.
+   *
+   * Solved on the contact nodes with the normal and tangential attachment
+   * modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.
+   *
+   * Throws ParameterError before any solve if a pin is unknown, a gap is larger
+   * than the pin is high or than the displacement can close; SolverError if no
+   * state was found, or the disc is free to slide in its plane.
+   */
+  SlidingState steady_sliding(const Model               &model,
+                              const ContactInterface    &interface,
+                              const ContactOperators    &contact,
+                              const SecondOrderSystem   &system,
+                              const StaticResponse      &response,
+                              const OperationParameters &operation,
+                              const SlidingParameters   &parameters);
+
+  /// Refuses parameters of the section `Steady sliding` that do not fit the pins; throws ParameterError.
+  void check_sliding(const Model               &model,
+                     const ContactInterface    &interface,
+                     const OperationParameters &operation,
+                     const SlidingParameters   &parameters);
+
+  /// The contact nodes that are closed, in their order, and their reactions.
+  ContactInterface    closed_nodes(const ContactInterface &interface, const SlidingState &state);
+  std::vector<double> closed_reactions(const SlidingState &state);
+
+  /// What a pin does in a state of contact.
+  struct PinContact
+  {
+    std::string  pin;
+    int          side;            ///< ±1
+    unsigned int n_nodes, n_open;
+    double       load;            ///< −Σ r_n [N]
+    double       sliding_offset;  ///< centre of pressure from the centre of the face along t [m]
+    double       radial_offset;   ///< outwards [m]
+    double       largest_pressure; ///< largest −r_n / area of the node [Pa]
+    double       sliding_speed;   ///< w_0 at the centre of pressure [m/s]
+    double       radial_damping;  ///< Σ c_b [N s/m]
+    double       sliding_damping; ///< Σ c_t [N s/m]
+    double       approach;        ///< way of the backplate [m]
+    double       largest_gap;     ///< of its nodes [m]
+  };
+
+  /**
+   * One entry for each pin from reactions and gaps of all contact nodes (open
+   * ones: no reaction); a pin without load has no centre of pressure, its
+   * offsets and speed are those of the centre of the face. @p approach and
+   * @p gaps may be empty.
+   */
+  std::vector<PinContact> pin_contacts(const Model               &model,
+                                       const ContactInterface    &interface,
+                                       const std::vector<double> &reactions,
+                                       const std::vector<double> &gaps,
+                                       const std::vector<double> &approach,
+                                       const OperationParameters &operation);
+} // namespace Squeal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <squeal/bases/component_modes.h>
+#include <squeal/contact/updated_inverse.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/studies/scene.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Modes without friction, and the inverse that serves them and every μ.
+  struct FrictionlessModes
+  {
+    ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
+    double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
+    std::unique_ptr<UpdatedInverse> inverse;
+    SymmetricModes                  real; ///< coupled, in the band
+    std::vector<ModeIdentity>       identities; ///< of the coupled modes
+    std::vector<std::string>        labels;
+  };
+
+  /// Component modes, the factorisation, and the real coupled modes of the band, as steps of the run.
+  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run);
+
+  /// Names of coupled modes after the component modes that they resemble; @p imaginary_part may be null.
+  std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
+                                             const Linearisation     &linearisation,
+                                             const FrictionlessModes &modes,
+                                             const MultiVector       &real_part,
+                                             const MultiVector       *imaginary_part);
+
+  /// Labels with the marks of doublets; the first @p n_rigid_body are `RB`.
+  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, int n_rigid_body = 0);
+
+  /// Component modes inside the band.
+  std::size_t n_in_band(const ComponentModes &modes, double largest_eigenvalue);
+} // namespace Squeal

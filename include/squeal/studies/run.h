@@ -1,0 +1,70 @@
+#pragma once
+
+#include <squeal/base/progress.h>
+#include <squeal/output/result_folder.h>
+#include <squeal/output/run_record.h>
+#include <squeal/output/table.h>
+#include <squeal/parameters/parameters.h>
+
+#include <mpi.h>
+
+#include <iomanip>
+#include <iosfwd>
+#include <memory>
+#include <sstream>
+#include <string>
+
+namespace Squeal
+{
+  /// What the command line adds to the parameters.
+  struct RunOptions
+  {
+    std::string command; ///< as typed, for the run record
+    std::string output;  ///< result folder
+    bool        dry_run = false;
+  };
+
+  /// What every study has at hand: its question, its processes, and where its answers go.
+  class Run
+  {
+  public:
+    /**
+     * @param screen where tables go; a null stream buffer on all processes but one
+     *
+     * Throws FileError if the result folder cannot be made; a dry run makes none.
+     */
+    Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
+
+    const Parameters &parameters;
+    const MPI_Comm    communicator;
+    Progress         &progress;
+    std::ostream     &screen;
+    const bool        is_dry, is_root;
+
+    /// Folder of the results; a dry run has none.
+    const ResultFolder &folder() const;
+
+    void count(const std::string &name, long value);
+    void measure(const std::string &name, double value);
+
+    /// Writes NAME.csv and shows the table.
+    void write_table(const std::string &name, const Table &table) const;
+
+    /// Writes the parameters as used and the run record, and gives the folder its name.
+    void finish();
+
+  private:
+    RunRecord                     record;
+    std::unique_ptr<ResultFolder> results;
+  };
+
+  /// One text from several parts; numbers with four digits.
+  template <typename... Parts>
+  std::string text(const Parts &...parts)
+  {
+    std::ostringstream stream;
+    stream << std::setprecision(4);
+    (stream << ... << parts);
+    return stream.str();
+  }
+} // namespace Squeal

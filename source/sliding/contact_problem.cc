@@ -1,0 +1,302 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/sliding/contact_problem.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <set>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Violations below this part of the largest reaction or gap are rounding errors.
+    constexpr double rounding = 1e-13;
+
+    /// Block steps that may pass without fewer violations before single nodes are flipped.
+    constexpr int patience = 8;
+
+    /// Friction coefficients on the way from 0 to μ, and random active sets, where a direct attempt fails.
+    constexpr int n_continuation_steps = 10;
+    constexpr int n_random_starts      = 40;
+
+    /// One linear problem with a given active set, and what it violates.
+    struct Iterate
+    {
+      ContactSolution  solution;
+      std::vector<int> violated;      ///< closed nodes that pull, open nodes that overlap
+      double           pull, overlap; ///< largest of each [N], [m]
+    };
+
+    /// Solutions for given active sets of one problem.
+    class ActiveSetSolver
+    {
+    public:
+      ActiveSetSolver(const ContactProblem &problem, const double mu)
+        : problem(problem)
+        , G(problem.flexibility(mu))
+      {
+        for (int i = 0; i < G.n_rows(); ++i)
+          unit += std::abs(G(i, i)) / G.n_rows();
+      }
+
+      /// Throws SolverError if the active set leaves the reactions undetermined.
+      Iterate solve(std::vector<bool> closed) const
+      {
+        const int        n_z = problem.forces.size();
+        std::vector<int> nodes;
+        for (int c = 0; c < G.n_rows(); ++c)
+          if (closed[c])
+            nodes.push_back(c);
+        const int n = nodes.size();
+
+        // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f]
+        DenseMatrix A(n + n_z, n + n_z), b(n + n_z, 1);
+        for (int i = 0; i < n; ++i)
+          {
+            for (int j = 0; j < n; ++j)
+              A(i, j) = G(nodes[i], nodes[j]) / unit;
+            for (int k = 0; k < n_z; ++k)
+              {
+                A(i, n + k) = problem.motions(nodes[i], k);
+                A(n + k, i) = problem.balance(k, nodes[i]);
+              }
+            b(i, 0) = -problem.initial_gap[nodes[i]] / unit;
+          }
+        for (int k = 0; k < n_z; ++k)
+          b(n + k, 0) = problem.forces[k];
+        for (const int k : problem.held)
+          A(n + k, n + k) = 1.;
+        const DenseMatrix rhs = b;
+        const DenseLU     lu(A, "steady sliding, equations of the closed contact nodes");
+        lu.solve(b);
+        // One step of refinement: the reactions are to balance the load to rounding.
+        DenseMatrix rest = add(rhs, multiply(A, b), -1.);
+        lu.solve(rest);
+        b = add(b, rest);
+
+        Iterate result{{std::vector<double>(G.n_rows(), 0.), problem.initial_gap, {}, std::move(closed), 0}, {}, 0., 0.};
+        auto   &[r, g, z, active, n_steps] = result.solution;
+        for (int i = 0; i < n; ++i)
+          r[nodes[i]] = b(i, 0);
+        for (int k = 0; k < n_z; ++k)
+          z.push_back(unit * b(n + k, 0));
+        double largest_reaction = 0., largest_gap = 0.;
+        for (int c = 0; c < G.n_rows(); ++c)
+          {
+            for (int k = 0; k < n_z; ++k)
+              g[c] += problem.motions(c, k) * z[k];
+            for (const int j : nodes)
+              g[c] += G(c, j) * r[j];
+            if (active[c])
+              g[c] = 0.;
+            largest_reaction = std::max(largest_reaction, std::abs(r[c]));
+            largest_gap      = std::max({largest_gap, std::abs(g[c]), unit * std::abs(r[c])});
+          }
+        for (int c = 0; c < G.n_rows(); ++c)
+          {
+            const double pull = r[c] > rounding * largest_reaction ? r[c] : 0., overlap = g[c] > rounding * largest_gap ? g[c] : 0.;
+            if (pull > 0. || overlap > 0.)
+              result.violated.push_back(c);
+            result.pull    = std::max(result.pull, pull);
+            result.overlap = std::max(result.overlap, overlap);
+            r[c]           = std::min(r[c], 0.);
+            g[c]           = std::min(g[c], 0.);
+          }
+        return result;
+      }
+
+      /// A backplate without a closed node has nothing to press on: its node nearest to the disc is closed.
+      void support_backplates(std::vector<bool> &closed, const std::vector<double> &gaps) const
+      {
+        for (int k = 0; k < problem.balance.n_rows(); ++k)
+          {
+            int nearest = -1;
+            for (int c = 0; c < problem.balance.n_columns(); ++c)
+              if (problem.balance(k, c) != 0.)
+                {
+                  if (closed[c])
+                    {
+                      nearest = -1;
+                      break;
+                    }
+                  if (nearest < 0 || gaps[c] > gaps[nearest])
+                    nearest = c;
+                }
+            if (nearest >= 0)
+              closed[nearest] = true;
+          }
+      }
+
+      double flexibility_unit() const
+      {
+        return unit;
+      }
+
+    private:
+      const ContactProblem &problem;
+      DenseMatrix           G;
+      double                unit = 0.; ///< mean diagonal entry of G [m/N]
+    };
+
+    /// The best iterate of an attempt; a solution if it violates nothing.
+    using Attempt = std::optional<Iterate>;
+
+    bool is_better(const Iterate &a, const Iterate &b, const double unit)
+    {
+      return std::max(a.pull, a.overlap / unit) < std::max(b.pull, b.overlap / unit);
+    }
+
+    Attempt pivot(const ActiveSetSolver &solver, std::vector<bool> closed, const std::vector<double> &initial_gap)
+    {
+      const int   most_steps = 30 + 2 * closed.size();
+      Attempt     best;
+      std::size_t fewest = closed.size() + 1;
+      int         left   = patience;
+      std::set<std::vector<bool>> seen; // by single flips: one of them twice is a cycle
+      solver.support_backplates(closed, initial_gap);
+      for (int step = 0; step <= most_steps; ++step)
+        {
+          Iterate iterate;
+          try
+            {
+              iterate = solver.solve(closed);
+            }
+          catch (const SolverError &)
+            {
+              return best;
+            }
+          iterate.solution.n_steps = step;
+          if (!best || iterate.violated.empty() || is_better(iterate, *best, solver.flexibility_unit()))
+            best = iterate;
+          if (iterate.violated.empty())
+            return best;
+
+          if (iterate.violated.size() < fewest)
+            {
+              fewest = iterate.violated.size();
+              left   = patience;
+            }
+          else
+            --left;
+          if (left < 0 && !seen.insert(closed).second)
+            return best;
+          if (left >= 0)
+            for (const int c : iterate.violated)
+              closed[c] = !closed[c];
+          else
+            closed[iterate.violated.back()] = !closed[iterate.violated.back()];
+          solver.support_backplates(closed, iterate.solution.gaps);
+        }
+      return best;
+    }
+
+    std::vector<bool> random_set(std::mt19937 &generator, const std::size_t size)
+    {
+      // Raw bits of the generator, so that every standard library gives the same sets
+      const auto        threshold = generator();
+      std::vector<bool> closed(size);
+      for (std::size_t c = 0; c < size; ++c)
+        closed[c] = generator() < threshold;
+      return closed;
+    }
+  } // namespace
+
+  DenseMatrix ContactProblem::flexibility(const double mu) const
+  {
+    return add(normal_flexibility, tangential_flexibility, mu);
+  }
+
+  ContactSolution solve_contact(const ContactProblem &problem)
+  {
+    const std::size_t     n  = problem.initial_gap.size();
+    const double          mu = problem.friction_coefficient;
+    const ActiveSetSolver solver(problem, mu);
+    Attempt               best;
+    const auto            succeeds = [&](const Attempt &attempt) {
+      if (attempt && (!best || is_better(*attempt, *best, solver.flexibility_unit())))
+        best = attempt;
+      return attempt && attempt->violated.empty();
+    };
+
+    const std::vector<bool> all(n, true);
+    if (succeeds(pivot(solver, all, problem.initial_gap)))
+      return best->solution;
+
+    // From the solution without friction, in steps of μ
+    std::vector<bool> closed = all;
+    for (int step = 0; step <= n_continuation_steps; ++step)
+      {
+        const bool    last    = step == n_continuation_steps;
+        const Attempt attempt = last ? pivot(solver, closed, problem.initial_gap) :
+                                       pivot(ActiveSetSolver(problem, mu * step / n_continuation_steps), closed, problem.initial_gap);
+        if (attempt)
+          closed = attempt->solution.closed;
+        if (last && succeeds(attempt))
+          return best->solution;
+      }
+
+    std::mt19937 generator(1);
+    for (int start = 0; start < n_random_starts; ++start)
+      if (succeeds(pivot(solver, random_set(generator, n), problem.initial_gap)))
+        return best->solution;
+
+    std::ostringstream text;
+    text << "no state of steady sliding was found at friction coefficient " << mu;
+    if (best)
+      text << ": of the best iterate " << best->violated.size() << " of " << n << " contact nodes violate the contact conditions, by "
+           << best->pull << " N of tension and " << best->overlap << " m of overlap";
+    else
+      text << ": with all nodes closed, the reactions are not determined";
+    throw SolverError(text.str(), "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
+  }
+
+  ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, const unsigned int n_searches)
+  {
+    const std::size_t n = problem.initial_gap.size();
+    ContactUniqueness result{0., false, 0, false, {}};
+
+    double asymmetry = 0., scale = 0.;
+    for (int k = 0; k < problem.motions.n_columns(); ++k)
+      for (int c = 0; c < problem.motions.n_rows(); ++c)
+        {
+          asymmetry = std::max(asymmetry, std::abs(problem.motions(c, k) + problem.balance(k, c)));
+          scale     = std::max(scale, std::abs(problem.motions(c, k)));
+        }
+    if (asymmetry <= 1e-10 * scale)
+      {
+        DenseMatrix S(n, n);
+        for (std::size_t i = 0; i < n; ++i)
+          for (std::size_t j = 0; j < n; ++j)
+            S(i, j) = -0.5 * (problem.tangential_flexibility(i, j) + problem.tangential_flexibility(j, i));
+        const double largest = symmetric_eigenvalues(S, problem.normal_flexibility).back();
+        result.unique_below  = largest > 0. ? 1. / largest : std::numeric_limits<double>::infinity();
+        result.is_certified  = problem.friction_coefficient < (1. - 1e-8) * result.unique_below;
+      }
+    if (result.is_certified)
+      return result;
+
+    const ActiveSetSolver solver(problem, problem.friction_coefficient);
+    std::mt19937          generator(2);
+    for (; result.n_searches < n_searches && !result.found_other; ++result.n_searches)
+      {
+        const Attempt attempt = pivot(solver, random_set(generator, n), problem.initial_gap);
+        if (attempt && attempt->violated.empty() && attempt->solution.closed != solution.closed)
+          {
+            // Nodes that just touch may count as closed or open: only other reactions are another solution.
+            double difference = 0., largest = 0.;
+            for (std::size_t c = 0; c < n; ++c)
+              {
+                difference = std::max(difference, std::abs(attempt->solution.reactions[c] - solution.reactions[c]));
+                largest    = std::max(largest, std::abs(solution.reactions[c]));
+              }
+            result.found_other = difference > 1e-8 * largest;
+            result.other       = attempt->solution;
+          }
+      }
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,106 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/studies/frictionless_modes.h>
+
+#include <algorithm>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
+    constexpr double label_band = 1.2;
+  } // namespace
+
+  std::size_t n_in_band(const ComponentModes &modes, const double largest_eigenvalue)
+  {
+    return std::upper_bound(modes.eigenvalues.begin(), modes.eigenvalues.end(), largest_eigenvalue) - modes.eigenvalues.begin();
+  }
+
+  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, const int n_rigid_body)
+  {
+    std::vector<std::string> labels;
+    for (const ModeIdentity &identity : identities)
+      labels.push_back(identity.label);
+    std::fill(labels.begin(), labels.begin() + n_rigid_body, "RB");
+    mark_doublets(labels);
+    return labels;
+  }
+
+  std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
+                                             const Linearisation     &linearisation,
+                                             const FrictionlessModes &modes,
+                                             const MultiVector       &real_part,
+                                             const MultiVector       *imaginary_part)
+  {
+    const SparseMatrix &T_c  = *linearisation.coupled.kernel;
+    const MultiVector   u_re = T_c * real_part;
+    const MultiVector   u_im = imaginary_part ? T_c * *imaginary_part : u_re;
+    return identify({&modes.disc, &modes.pins_sliding}, *scene.system.mass, u_re, imaginary_part ? &u_im : nullptr);
+  }
+
+  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run)
+  {
+    const Parameters     &parameters = run.parameters;
+    const CoupledSystem  &coupled    = linearisation.coupled;
+    const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
+    const double          limit      = omega_max * omega_max;
+    FrictionlessModes     result;
+    SymmetricModesOptions options;
+    options.solver    = parameters.solvers.real_solver;
+    options.tolerance = parameters.solvers.real_tolerance;
+    options.library   = parameters.solvers.library;
+    result.shift      = stabilizing_shift(*scene.model, coupled, omega_max);
+
+    // -------------------------------------------------------- component modes
+    const auto components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
+      SymmetricModesOptions component_options = options;
+      component_options.what                  = name;
+      run.progress.update(name);
+      component_options.shift = component == Component::disc ? result.shift * result.shift : 0.;
+      // Pins are alike: every mode of one comes once for each of them, bending modes twice, and a block finds the members
+      // of such a cluster together.
+      if (component == Component::pins)
+        component_options.block_size = std::max<int>(8, 2 * scene.n_pins());
+      return component_modes(*scene.model, linearisation.interface, scene.system, component, boundary, band * band * limit, component_options);
+    };
+    run.progress.begin("Component modes");
+    result.disc            = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
+    result.pins_free       = components(Component::pins, ContactBoundary::free, "modes of the free pins", 1.);
+    result.pins_sliding    = components(Component::pins, ContactBoundary::sliding, "modes of the sliding pins", label_band);
+    const auto n_disc      = n_in_band(result.disc, limit), n_free = n_in_band(result.pins_free, limit),
+               n_sliding   = n_in_band(result.pins_sliding, limit);
+    run.count("disc modes", n_disc);
+    run.count("free pin modes", n_free);
+    run.count("sliding pin modes", n_sliding);
+    run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
+                             parameters.discretization.maximum_frequency, " Hz"));
+
+    // ------------------------------------------------------ real coupled modes
+    run.progress.begin("Factorisation");
+    result.inverse = std::make_unique<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
+    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
+    run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
+                             result.shift > 0. ? ", shifted: the disc can move as a rigid body" : ""));
+
+    run.progress.begin("Real modes");
+    options.what  = "real modes of the coupled system";
+    options.shift = result.shift * result.shift;
+    // The factor at hand serves here too, unless the shift brought damping into it.
+    if (result.shift == 0. || !coupled.frictionless.damping)
+      options.inverse = &result.inverse->frictionless();
+    result.real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, limit, options);
+    if (result.real.eigenvalues.empty())
+      throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
+    run.count("real modes", result.real.eigenvalues.size());
+    run.count("rigid-body modes", result.real.n_rigid_body);
+    run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
+                             result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
+
+    result.identities = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);
+    result.labels     = labels_of(result.identities, result.real.n_rigid_body);
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,68 @@
+#include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/studies/run.h>
+
+#include <cmath>
+#include <ostream>
+
+namespace Squeal
+{
+  namespace
+  {
+    int rank(MPI_Comm communicator)
+    {
+      int result;
+      MPI_Comm_rank(communicator, &result);
+      return result;
+    }
+
+    int n_processes(MPI_Comm communicator)
+    {
+      int result;
+      MPI_Comm_size(communicator, &result);
+      return result;
+    }
+  } // namespace
+
+  Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
+    : parameters(parameters)
+    , communicator(communicator)
+    , progress(progress)
+    , screen(screen)
+    , is_dry(options.dry_run)
+    , is_root(rank(communicator) == 0)
+    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}}
+  {
+    if (!is_dry)
+      results = std::make_unique<ResultFolder>(options.output, is_root);
+  }
+
+  const ResultFolder &Run::folder() const
+  {
+    return *results;
+  }
+
+  void Run::count(const std::string &name, const long value)
+  {
+    record.counts.emplace_back(name, value);
+  }
+
+  void Run::measure(const std::string &name, const double value)
+  {
+    record.quantities.emplace_back(name, value);
+  }
+
+  void Run::write_table(const std::string &name, const Table &table) const
+  {
+    screen << "\n  " << name << ".csv\n\n";
+    table.print(screen);
+    results->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+  }
+
+  void Run::finish()
+  {
+    results->write("parameters.prm", [&](std::ostream &stream) { parameters.print(stream, false); });
+    results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
+    results->commit();
+    progress.note(text("  results in ", results->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
+  }
+} // namespace Squeal

@@ -1,0 +1,92 @@
+#include <squeal/assembly/elasticity.h>
+#include <squeal/base/conventions.h>
+#include <squeal/geometry/generate_mesh.h>
+#include <squeal/geometry/mesh_check.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/studies/scene.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace Squeal
+{
+  unsigned int Scene::n_pins() const
+  {
+    return mesh.volume_names.size() - 1;
+  }
+
+  Scene mesh_scene(Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    Scene             scene;
+    run.progress.begin("Mesh");
+    scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces());
+    const MeshQuality quality = check_mesh(scene.mesh);
+    run.count("elements", scene.mesh.hexahedra.size());
+    run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
+    run.progress.finish(text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ",
+                             quality.worst_scaled_jacobian));
+
+    run.progress.begin("Contact");
+    scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.degree, run.communicator);
+    scene.interface = pair_contact_nodes(*scene.model, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
+    scene.contact   = contact_operators(*scene.model, scene.interface);
+    check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
+    const int n = scene.model->free_map().NumGlobalElements(), n_coupled = scene.contact.kernel->NumGlobalCols();
+    run.count("dofs, clamped included", scene.model->n_dofs());
+    run.count("dofs", n);
+    run.count("contact nodes", scene.interface.size());
+    run.count("coupled dofs", n_coupled);
+    run.progress.finish(text(scene.interface.size(), " contact nodes, ", n, " dofs, ", n_coupled, " coupled"));
+    return scene;
+  }
+
+  void assemble_scene(Scene &scene, Run &run)
+  {
+    run.progress.begin("Assembly");
+    scene.system = assemble(*scene.model, run.parameters.materials);
+    run.progress.finish(text(scene.system.stiffness->NumGlobalNonzeros(), " entries in K"));
+  }
+
+  SlidingState
+  solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run)
+  {
+    run.progress.begin("Steady sliding");
+    const StaticResponse response(*scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency),
+                                  run.parameters.solvers.library);
+    SlidingState state = steady_sliding(*scene.model, scene.interface, scene.contact, scene.system, response, operation, sliding);
+    const auto   n_open = std::count(state.closed.begin(), state.closed.end(), false);
+    run.progress.finish(text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
+    return state;
+  }
+
+  Linearisation linearise(const Scene &scene, const SlidingState *state, const OperationParameters &operation)
+  {
+    Linearisation result;
+    if (state)
+      {
+        result.sliding   = *state;
+        result.reactions = state->reactions;
+        for (unsigned int c = 0; c < scene.interface.size(); ++c)
+          if (state->closed[c])
+            result.closed.push_back(c);
+      }
+    else
+      {
+        result.reactions = equal_load_shares(scene.interface, operation.load_per_side);
+        result.closed.resize(scene.interface.size());
+        std::iota(result.closed.begin(), result.closed.end(), 0u);
+      }
+    std::vector<double> reactions;
+    for (const unsigned int c : result.closed)
+      {
+        result.interface.push_back(scene.interface[c]);
+        reactions.push_back(result.reactions[c]);
+      }
+    const bool all         = result.closed.size() == scene.interface.size();
+    result.contact         = all ? scene.contact : contact_operators(*scene.model, result.interface);
+    result.contact_damping = contact_damping(result.contact, radial_dissipation(result.interface, reactions, operation));
+    result.coupled         = couple(scene.system, result.contact, result.contact_damping);
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,381 @@
+#include "scenes.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/sliding/steady_sliding.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double band = 2. * M_PI * 5000.;
+
+  /// Two pins on each side of a disc, opposite each other; mirror images about y = 0.
+  HexMesh four_pins()
+  {
+    return extrude(polar_plan(0.15, 0.3, 3, 12,
+                              {{Plan::Side::top, 1, 2, 1, 1},
+                               {Plan::Side::top, -3, 2, 1, 1},
+                               {Plan::Side::bottom, 1, 2, 1, 1},
+                               {Plan::Side::bottom, -3, 2, 1, 1}}),
+                   layers(1, 2));
+  }
+
+  struct SlidingScene : Scene
+  {
+    explicit SlidingScene(const HexMesh                   &mesh   = four_pins(),
+                          const std::vector<ElasticMount> &mounts = {{"disc_bore", 1e9, 7.80e10, 1.88e10}},
+                          const unsigned int               degree = 1)
+      : Scene(mesh, mounted(mounts), operating(), degree)
+      , response(model, system, band, FactorizationLibrary::automatic)
+    {}
+
+    SlidingState solve(const SlidingParameters &sliding = steady()) const
+    {
+      return steady_sliding(model, interface, contact, system, response, operation, sliding);
+    }
+
+    static SlidingParameters steady()
+    {
+      SlidingParameters sliding;
+      sliding.state = ContactState::steady_sliding;
+      return sliding;
+    }
+
+    std::vector<PinContact> pins(const SlidingState &state) const
+    {
+      return pin_contacts(model, interface, state.reactions, state.gaps, state.approach, operation);
+    }
+
+    StaticResponse response;
+  };
+
+  /// Everything that must hold of any state.
+  void check(const SlidingScene &s, const SlidingState &state)
+  {
+    EXPECT_LT(state.certificate.residual, 1e-10);
+    EXPECT_LT(state.certificate.load, 1e-10);
+    EXPECT_LE(state.certificate.tension, 0.);
+    EXPECT_LT(state.certificate.overlap, 1e-12);
+    EXPECT_LT(state.certificate.complementarity, 1e-12);
+    EXPECT_LT(state.certificate.force_balance, 1e-9);
+    EXPECT_LT(state.certificate.moment_balance, 1e-9);
+    for (std::size_t c = 0; c < s.interface.size(); ++c)
+      {
+        EXPECT_LE(state.reactions[c], 0.);
+        EXPECT_LE(state.gaps[c], 0.);
+        EXPECT_EQ(state.reactions[c] * state.gaps[c], 0.);
+        EXPECT_EQ(state.closed[c], state.reactions[c] < 0. || state.gaps[c] == 0.);
+      }
+
+    // K u = P_nᵀ r + μ P_tᵀ r from the definitions
+    MultiVector r(s.contact.normal->RowMap(), 1);
+    for (int i = 0; i < r.MyLength(); ++i)
+      r.ReplaceMyValue(i, 0, state.reactions[r.Map().GID(i)]);
+    MultiVector rest = *s.system.stiffness * *state.displacement;
+    rest.Update(-1., transpose_times(*s.contact.normal, r), -s.operation.friction_coefficient, transpose_times(*s.contact.tangential, r), 1.);
+    EXPECT_LT(column_norms(rest)[0], 1e-10 * s.operation.load_per_side);
+  }
+
+  double side_load(const SlidingScene &s, const SlidingState &state, const int side)
+  {
+    double sum = 0.;
+    for (std::size_t c = 0; c < s.interface.size(); ++c)
+      if (s.interface[c].side() == side)
+        sum -= state.reactions[c];
+    return sum;
+  }
+} // namespace
+
+
+
+TEST(SteadySliding, ReactionsBalanceTheLoadOfBothSides)
+{
+  for (const double mu : {0., 0.2, 0.4, 0.8})
+    {
+      SlidingScene s;
+      s.operation.friction_coefficient = mu;
+      const SlidingState state         = s.solve();
+      check(s, state);
+      EXPECT_NEAR(side_load(s, state, 1), 1000., 1e-7);
+      EXPECT_NEAR(side_load(s, state, -1), 1000., 1e-7);
+      EXPECT_TRUE(state.uniqueness.is_certified);
+    }
+}
+
+
+
+TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
+{
+  // Poisson's ratio zero, a pin of the same cross-section on both sides of a ring sector: far from bending the way of a
+  // backplate is that of a pin in compression, F h / (E A), plus the disc's share. A stiff disc on a stiff mount leaves the pin.
+  auto materials               = mounted({{"disc_bore", 1e18, 1e18, 1e18}});
+  materials.pin.poisson_ratio  = 0.;
+  materials.disc.young_modulus = 1e18;
+  auto operation               = operating();
+  operation.friction_coefficient = 0.;
+  const Scene          s(four_pins(), materials, operation);
+  const StaticResponse response(s.model, s.system, band, FactorizationLibrary::automatic);
+  const SlidingState   state = steady_sliding(s.model, s.interface, s.contact, s.system, response, operation, SlidingScene::steady());
+  double               area  = 0.;
+  for (const ContactNode &node : s.interface)
+    area += node.side() > 0 ? node.area : 0.;
+  const double expected = 1000. * layers(1, 2).pin_height / (materials.pin.young_modulus * area);
+  EXPECT_NEAR(state.approach[1], expected, 1e-6 * expected);
+}
+
+
+
+TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
+{
+  // ½ rᵀ F_nn r − gᵀ r over Σ r = −load, r ≤ 0, by projected gradients: another algorithm altogether
+  SlidingScene s;
+  s.operation.friction_coefficient = 0.;
+  SlidingParameters sliding        = SlidingScene::steady();
+  sliding.control                  = BackplateControl::displacement;
+  sliding.displacement             = 2e-6;
+  sliding.gaps                     = {{s.model.component_names()[1], 5e-7, 1e-4, -1e-4}, {s.model.component_names()[3], 1.5e-6}};
+  const SlidingState state         = s.solve(sliding);
+  check(s, state);
+  EXPECT_GT(std::count(state.closed.begin(), state.closed.end(), false), 0);
+
+  const int         n    = s.interface.size();
+  const DenseMatrix F_nn = replicate(*s.contact.normal * s.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->RowMap()))));
+  std::vector<double> r(n, 0.), gap(n);
+  for (int c = 0; c < n; ++c)
+    {
+      // What the state says of the gap, minus the elastic part
+      gap[c] = state.gaps[c];
+      for (int j = 0; j < n; ++j)
+        gap[c] -= F_nn(c, j) * state.reactions[j];
+    }
+  // Gauss-Seidel with projection converges for a symmetric positive definite matrix
+  for (int sweep = 0; sweep < 20000; ++sweep)
+    for (int c = 0; c < n; ++c)
+      {
+        double g = gap[c];
+        for (int j = 0; j < n; ++j)
+          g += F_nn(c, j) * r[j];
+        r[c] = std::min(0., r[c] - g / F_nn(c, c));
+      }
+  for (int c = 0; c < n; ++c)
+    EXPECT_NEAR(r[c], state.reactions[c], 1e-6 * side_load(s, state, 1));
+
+  // And friction comes in continuously
+  s.operation.friction_coefficient = 1e-7;
+  const SlidingState almost        = s.solve(sliding);
+  for (int c = 0; c < n; ++c)
+    EXPECT_NEAR(almost.reactions[c], state.reactions[c], 1e-5 * side_load(s, state, 1));
+}
+
+
+
+TEST(SteadySliding, EqualPinsCarryEqualLoadsOnlyWhereTheLayoutSaysSo)
+{
+  // Without friction the two pins of a side are mirror images; friction along e_theta breaks that symmetry, and the pins opposite
+  // each other stay alike.
+  SlidingScene s;
+  s.operation.friction_coefficient = 0.;
+  const auto without               = s.pins(s.solve());
+  EXPECT_NEAR(without[0].load, without[1].load, 1e-8 * without[0].load);
+  s.operation.friction_coefficient = 0.4;
+  const auto with                  = s.pins(s.solve());
+  EXPECT_GT(std::abs(with[0].load - with[1].load), 1e-6 * with[0].load);
+  EXPECT_NEAR(with[0].load, with[2].load, 1e-8 * with[0].load);
+  EXPECT_NEAR(with[1].load, with[3].load, 1e-8 * with[1].load);
+  // Friction presses the leading edge, where disc material enters
+  for (const PinContact &pin : with)
+    EXPECT_LT(pin.sliding_offset, 0.);
+
+  // The other sense of rotation is the mirror image
+  SlidingScene reversed;
+  reversed.operation.rotation = Rotation::negative;
+  reversed.interface          = pair_contact_nodes(reversed.model, Rotation::negative, 1e-6);
+  reversed.contact            = contact_operators(reversed.model, reversed.interface);
+  const auto mirrored_pins    = reversed.pins(reversed.solve());
+  EXPECT_NEAR(mirrored_pins[1].load, with[0].load, 1e-8 * with[0].load);
+  EXPECT_NEAR(mirrored_pins[0].load, with[1].load, 1e-8 * with[1].load);
+}
+
+
+
+TEST(SteadySliding, AShortPinOpens)
+{
+  const SlidingScene s;
+  SlidingParameters  sliding = SlidingScene::steady();
+  sliding.gaps               = {{s.model.component_names()[1], 1e-3}};
+  const SlidingState state   = s.solve(sliding);
+  check(s, state);
+  const auto pins = s.pins(state);
+  EXPECT_EQ(pins[0].n_open, pins[0].n_nodes);
+  EXPECT_EQ(pins[0].load, 0.);
+  EXPECT_NEAR(pins[1].load, 1000., 1e-6);
+  EXPECT_EQ(closed_nodes(s.interface, state).size(), s.interface.size() - pins[0].n_nodes);
+}
+
+
+
+TEST(SteadySliding, LoadsOfSinglePinsAndDisplacements)
+{
+  const SlidingScene s;
+  const auto        &names   = s.model.component_names();
+  SlidingParameters  sliding = SlidingScene::steady();
+  sliding.control            = BackplateControl::load_per_pin;
+  sliding.pin_loads          = {{names[1], 300.}, {names[4], 50.}};
+  sliding.gaps               = {{names[2], 2e-6}}; // an actuator follows
+  const SlidingState by_load = s.solve(sliding);
+  check(s, by_load);
+  const auto pins = s.pins(by_load);
+  for (const auto &[pin, load] : {std::make_pair(0, 300.), std::make_pair(1, 500.), std::make_pair(2, 500.), std::make_pair(3, 50.)})
+    EXPECT_NEAR(pins[pin].load, load, 1e-8 * load);
+
+  // Moved as far as the load moved it, a side carries that load.
+  const SlidingState loaded  = s.solve();
+  SlidingParameters  guided  = SlidingScene::steady();
+  guided.control             = BackplateControl::displacement;
+  guided.displacement        = loaded.approach[1];
+  ASSERT_NEAR(loaded.approach[1], loaded.approach[3], 1e-12 * loaded.approach[1]); // both sides alike
+  const SlidingState moved   = s.solve(guided);
+  check(s, moved);
+  EXPECT_NEAR(side_load(s, moved, 1), 1000., 1e-6);
+}
+
+
+
+TEST(SteadySliding, ScalesWithTheLoad)
+{
+  // Load and gaps doubled: everything doubles. Without gaps, load and speed together leave c_b alone.
+  SlidingScene      s;
+  SlidingParameters sliding = SlidingScene::steady();
+  sliding.gaps              = {{s.model.component_names()[2], 4e-7}};
+  const auto once           = s.solve(sliding);
+  s.operation.load_per_side *= 2.;
+  sliding.gaps[0].gap *= 2.;
+  const auto twice = s.solve(sliding);
+  for (std::size_t c = 0; c < s.interface.size(); ++c)
+    EXPECT_NEAR(twice.reactions[c], 2. * once.reactions[c], 1e-9 * 1000.);
+
+  s.operation                    = operating(RadialDissipation::consistent);
+  const auto before              = radial_dissipation(s.interface, s.solve().reactions, s.operation);
+  s.operation.load_per_side     *= 7.;
+  s.operation.rotation_speed    *= 7.;
+  const auto after               = radial_dissipation(s.interface, s.solve().reactions, s.operation);
+  for (std::size_t c = 0; c < s.interface.size(); ++c)
+    EXPECT_NEAR(after[c], before[c], 1e-10 * before[c]);
+}
+
+
+
+TEST(SteadySliding, RandomGapsAreSolvedOrRefused)
+{
+  std::mt19937                           generator(1);
+  std::uniform_real_distribution<double> gap(-2e-6, 2e-6), taper(-4e-5, 4e-5), mu(0., 1.5);
+  int                                    n_solved = 0, n_with_open_nodes = 0;
+  SlidingScene                           s;
+  for (int pattern = 0; pattern < 20; ++pattern)
+    {
+      SCOPED_TRACE(pattern);
+      SlidingParameters sliding = SlidingScene::steady();
+      for (std::size_t pin = 1; pin < s.model.component_names().size(); ++pin)
+        sliding.gaps.push_back({s.model.component_names()[pin], gap(generator), taper(generator), taper(generator)});
+      s.operation.friction_coefficient = mu(generator);
+      try
+        {
+          const SlidingState state = s.solve(sliding);
+          check(s, state);
+          ++n_solved;
+          n_with_open_nodes += std::count(state.closed.begin(), state.closed.end(), false) > 0;
+        }
+      catch (const SolverError &error)
+        {
+          EXPECT_NE(std::string(error.what()).find("no state of steady sliding"), std::string::npos);
+        }
+    }
+  EXPECT_GT(n_solved, 10);
+  EXPECT_GT(n_with_open_nodes, 5);
+}
+
+
+
+TEST(SteadySliding, ConesAndQuadraticElements)
+{
+  const auto cone = [](const double slope) {
+    return mapped(four_pins(), [slope](const Point3 &p) { return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * slope * p[1]}}; });
+  };
+  for (const unsigned int degree : {1u, 2u})
+    for (const double slope : {0., 0.3})
+      {
+        SCOPED_TRACE(slope);
+        const SlidingScene s(cone(slope), {{"disc_bore", 1e9, 7.80e10, 1.88e10}}, degree);
+        check(s, s.solve());
+      }
+}
+
+
+
+TEST(SteadySliding, FloatingDisc)
+{
+  // Free along its axis, the disc floats between the pins: equal loads hold it. Turning freely, a drive takes the moment.
+  for (const ElasticMount &mount : {ElasticMount{"disc_bore", 0., 7.80e10, 0.}, ElasticMount{"disc_bore", 1e10, 0., 1e10}})
+    {
+      const SlidingScene s(four_pins(), {mount});
+      ASSERT_NE(s.response.rigid_body_modes(), nullptr);
+      EXPECT_EQ(s.response.rigid_body_modes()->NumVectors(), 1);
+      const SlidingState state = s.solve();
+      EXPECT_LT(state.certificate.residual, 1e-9);
+      EXPECT_LT(state.certificate.load, 1e-10);
+      EXPECT_LT(state.certificate.overlap, 1e-10);
+      EXPECT_LT(state.certificate.complementarity, 1e-11);
+    }
+
+  // Without friction the floating disc is as far from both backplates
+  SlidingScene floating(four_pins(), {{"disc_bore", 0., 7.80e10, 0.}});
+  floating.operation.friction_coefficient = 0.;
+  const SlidingState state                = floating.solve();
+  EXPECT_NEAR(state.approach[1] / state.approach[3], 1., 1e-6);
+}
+
+
+
+TEST(SteadySliding, Refusals)
+{
+  const SlidingScene s;
+  const auto         message = [&](const SlidingParameters &sliding, const SlidingScene &scene) {
+    try
+      {
+        scene.solve(sliding);
+      }
+    catch (const Error &error)
+      {
+        return std::string(error.what());
+      }
+    return std::string("nothing was refused");
+  };
+  const auto contains = [](const std::string &text, const std::string &part) {
+    return text.find(part) != std::string::npos ? ::testing::AssertionSuccess() : ::testing::AssertionFailure() << text;
+  };
+
+  SlidingParameters sliding = SlidingScene::steady();
+  sliding.gaps              = {{"pin_upper", 1e-6}};
+  EXPECT_TRUE(contains(message(sliding, s), "there is no pin `pin_upper`"));
+  EXPECT_TRUE(contains(message(sliding, s), s.model.component_names()[1]));
+
+  sliding.gaps = {{s.model.component_names()[1], 10.}};
+  EXPECT_TRUE(contains(message(sliding, s), "is not smaller than the height of the pin"));
+
+  sliding              = SlidingScene::steady();
+  sliding.control      = BackplateControl::displacement;
+  sliding.displacement = 1e-6;
+  sliding.gaps         = {{s.model.component_names()[1], 2e-6}, {s.model.component_names()[2], 1e-6}};
+  EXPECT_TRUE(contains(message(sliding, s), "closes no gap on one side"));
+
+  const SlidingScene free(four_pins(), {});
+  EXPECT_TRUE(contains(message(SlidingScene::steady(), free), "nothing holds the disc in its plane"));
+}
