@@ -17,21 +17,22 @@ namespace
    * Two degrees of freedom with one contact (N. Hoffmann, M. Fischer, R.
    * Allgaier, L. Gaul, Mech. Res. Comm. 29 (2002) 197):
    *
-   *   ẍ + d ẋ + [ k11   k12 - μ k_c ] x = 0
-   *             [ k12   k22         ]
+   *   ẍ + (d + β K̃) ẋ + K̃ x = 0,   K̃ = [ k11   k12 - μ k_c ]
+   *                                     [ k12   k22         ]
    *
-   * The frequencies coalesce where (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0.
+   * The frequencies coalesce where (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0. β is
+   * structural damping, of which friction takes its part: V_C = β V_K.
    */
   struct Flutter
   {
-    double k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, damping = 0.;
+    double k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, damping = 0., beta = 0.;
 
     double threshold() const
     {
       return ((k11 - k22) * (k11 - k22) / (4. * k12) + k12) / k_c;
     }
 
-    /// λ² + d λ + κ = 0 for both eigenvalues κ of the stiffness; those with Im λ > 0.
+    /// λ² + (d + β κ) λ + κ = 0 for both eigenvalues κ of the stiffness; those with Im λ > 0.
     std::vector<Complex> lambda(const double mu) const
     {
       std::vector<Complex> result;
@@ -39,9 +40,10 @@ namespace
       for (const double sign : {-1., 1.})
         {
           const Complex kappa = 0.5 * (k11 + k22 + sign * root);
-          const Complex omega = std::sqrt(0.25 * damping * damping - kappa);
+          const Complex half  = 0.5 * (damping + beta * kappa);
+          const Complex omega = std::sqrt(half * half - kappa);
           for (const double other : {-1., 1.})
-            if (const Complex l = -0.5 * damping + other * omega; l.imag() > 0.)
+            if (const Complex l = -half + other * omega; l.imag() > 0.)
               result.push_back(l);
         }
       return result;
@@ -52,9 +54,11 @@ namespace
       const Epetra_Map map = rows(2), contact = rows(1);
       CoupledSystem    result;
       result.frictionless.mass = Testing::diagonal(map, [](int) { return 1.; });
-      if (damping != 0.)
-        result.frictionless.damping = Testing::diagonal(map, [this](int) { return damping; });
       result.frictionless.stiffness = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
+      if (damping != 0. || beta != 0.)
+        result.frictionless.damping = add(damping, *result.frictionless.mass, beta, *result.frictionless.stiffness);
+      if (beta != 0.)
+        result.normal_damping = sparse(contact, map, [this](int) { return Row{{1, beta * k_c}}; });
       result.friction_forces        = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
       result.normal_stiffness       = sparse(contact, map, [this](int) { return Row{{1, k_c}}; });
       result.normal_mass            = sparse(contact, map, [](int) { return Row{}; });
@@ -105,10 +109,11 @@ namespace
 
 TEST(Flutter, ClosedForm)
 {
-  Flutter flutter;
-  for (const double damping : {0., 0.02})
+  for (const auto &[damping, beta] : {std::make_pair(0., 0.), {0.02, 0.}, {0., 0.03}, {0.01, 0.02}})
     {
+      Flutter flutter;
       flutter.damping = damping;
+      flutter.beta    = beta;
       for (const double factor : {0., 0.5, 0.99, 1.01, 1.5, 2.})
         {
           const double mu = factor * flutter.threshold();
