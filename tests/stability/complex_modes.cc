@@ -19,6 +19,21 @@ namespace
   {
     return Scene(mesh_of(pins), mounted(), operating(dissipation, rotation), 1, communicator);
   }
+
+  /// Where energy is lost: in the contact, in the bodies.
+  struct Losses
+  {
+    RadialDissipation  contact;
+    MaterialParameters bodies;
+  };
+  const std::vector<Losses> all_losses = {{RadialDissipation::none, mounted()},
+                                          {RadialDissipation::consistent, mounted()},
+                                          {RadialDissipation::consistent, damped(mounted())}};
+
+  Scene scene(const Losses &losses)
+  {
+    return Scene(mesh_of(skewed_pins), losses.bodies, operating(losses.contact));
+  }
 } // namespace
 
 
@@ -59,45 +74,51 @@ TEST(ComplexModes, DampingAloneOnlyDampens)
 
 TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
 {
-  const Scene s = scene(RadialDissipation::consistent);
-  for (const ComplexModes &modes : {krylov(s.coupled, mu), iterated(s.coupled, mu, 1e-8)})
+  for (const Losses &losses : all_losses)
     {
-      const auto       &M = *s.coupled.frictionless.mass;
-      const MultiVector M_re = M * *modes.real_part, M_im = M * *modes.imaginary_part;
-      const MultiVector R = force_residuals(s.coupled, mu, modes.lambda, *modes.real_part, *modes.imaginary_part);
-
-      // Q(λ)φ with the sparse matrices at this μ
-      const SecondOrderSystem matrices = with_friction(s.coupled, mu);
-      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+      const Scene s = scene(losses);
+      for (const ComplexModes &modes : {krylov(s.coupled, mu), iterated(s.coupled, mu, 1e-8)})
         {
-          const MultiVector re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
-          EXPECT_NEAR(gram(re, view(M_re, j, 1))(0, 0) + gram(im, view(M_im, j, 1))(0, 0), 1., 1e-12);
-          EXPECT_LE(modes.lambda[j > 0 ? j - 1 : 0].imag(), modes.lambda[j].imag() * (1. + 1e-9));
+          const auto       &M = *s.coupled.frictionless.mass;
+          const MultiVector M_re = M * *modes.real_part, M_im = M * *modes.imaginary_part;
+          const MultiVector R = force_residuals(s.coupled, mu, modes.lambda, *modes.real_part, *modes.imaginary_part);
 
-          const Complex l = modes.lambda[j], l2 = l * l;
-          MultiVector   Q_re = *matrices.stiffness * re, Q_im = *matrices.stiffness * im;
-          const double  size = std::hypot(column_norms(*s.coupled.frictionless.stiffness * re)[0], column_norms(*s.coupled.frictionless.stiffness * im)[0]);
-          Q_re.Update(l2.real(), *matrices.mass * re, -l2.imag(), *matrices.mass * im, 1.);
-          Q_im.Update(l2.real(), *matrices.mass * im, l2.imag(), *matrices.mass * re, 1.);
-          Q_re.Update(l.real(), *matrices.damping * re, -l.imag(), *matrices.damping * im, 1.);
-          Q_im.Update(l.real(), *matrices.damping * im, l.imag(), *matrices.damping * re, 1.);
-          EXPECT_NEAR(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, modes.residuals[j], 1e-12 + 0.01 * modes.residuals[j]);
-          Q_re.Update(-1., view(R, j, 1), 1.);
-          Q_im.Update(-1., view(R, modes.lambda.size() + j, 1), 1.);
-          EXPECT_LT(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, 1e-11);
+          // Q(λ)φ with the sparse matrices at this μ
+          const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+          for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+            {
+              const MultiVector re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
+              EXPECT_NEAR(gram(re, view(M_re, j, 1))(0, 0) + gram(im, view(M_im, j, 1))(0, 0), 1., 1e-12);
+              EXPECT_LE(modes.lambda[j > 0 ? j - 1 : 0].imag(), modes.lambda[j].imag() * (1. + 1e-9));
 
-          // An entry of largest modulus (there may be several) is real and positive.
-          const DenseMatrix x = replicate(re), y = replicate(im);
-          double            modulus = 0., defect = 1.;
-          for (int i = 0; i < x.n_rows(); ++i)
-            modulus = std::max(modulus, std::hypot(x(i, 0), y(i, 0)));
-          for (int i = 0; i < x.n_rows(); ++i)
-            defect = std::min(defect, std::hypot(x(i, 0) - modulus, y(i, 0)) / modulus);
-          EXPECT_LT(defect, 1e-12);
-          EXPECT_GE(modes.energy_residuals[j], 0.);
+              const Complex l = modes.lambda[j], l2 = l * l;
+              MultiVector   Q_re = *matrices.stiffness * re, Q_im = *matrices.stiffness * im;
+              const double  size = std::hypot(column_norms(*s.coupled.frictionless.stiffness * re)[0], column_norms(*s.coupled.frictionless.stiffness * im)[0]);
+              Q_re.Update(l2.real(), *matrices.mass * re, -l2.imag(), *matrices.mass * im, 1.);
+              Q_im.Update(l2.real(), *matrices.mass * im, l2.imag(), *matrices.mass * re, 1.);
+              if (const auto &C = matrices.damping)
+                {
+                  Q_re.Update(l.real(), *C * re, -l.imag(), *C * im, 1.);
+                  Q_im.Update(l.real(), *C * im, l.imag(), *C * re, 1.);
+                }
+              EXPECT_NEAR(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, modes.residuals[j], 1e-12 + 0.01 * modes.residuals[j]);
+              Q_re.Update(-1., view(R, j, 1), 1.);
+              Q_im.Update(-1., view(R, modes.lambda.size() + j, 1), 1.);
+              EXPECT_LT(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, 1e-11);
+
+              // An entry of largest modulus (there may be several) is real and positive.
+              const DenseMatrix x = replicate(re), y = replicate(im);
+              double            modulus = 0., defect = 1.;
+              for (int i = 0; i < x.n_rows(); ++i)
+                modulus = std::max(modulus, std::hypot(x(i, 0), y(i, 0)));
+              for (int i = 0; i < x.n_rows(); ++i)
+                defect = std::min(defect, std::hypot(x(i, 0) - modulus, y(i, 0)) / modulus);
+              EXPECT_LT(defect, 1e-12);
+              EXPECT_GE(modes.energy_residuals[j], 0.);
+            }
+          EXPECT_TRUE(modes.overdamped.empty());
+          EXPECT_EQ(modes.n_rigid_body, 0);
         }
-      EXPECT_TRUE(modes.overdamped.empty());
-      EXPECT_EQ(modes.n_rigid_body, 0);
     }
 }
 
@@ -105,9 +126,9 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
 
 TEST(ComplexModes, BothInversesGiveTheSame)
 {
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+  for (const Losses &losses : all_losses)
     {
-      const Scene s = scene(dissipation);
+      const Scene s = scene(losses);
       EXPECT_LT(largest(distances(krylov(s.coupled, mu).lambda, krylov(s.coupled, mu, 1e-11, ShiftInverse::sparse_lu).lambda)), 1e-10);
     }
 }
@@ -116,9 +137,9 @@ TEST(ComplexModes, BothInversesGiveTheSame)
 
 TEST(ComplexModes, ResidualIterationKeepsItsPromise)
 {
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+  for (const Losses &losses : all_losses)
     {
-      const Scene s         = scene(dissipation);
+      const Scene s         = scene(losses);
       const auto  reference = krylov(s.coupled, mu);
       ASSERT_GT(n_unstable(reference), 0);
       for (const double tolerance : {1e-4, 1e-7})
@@ -199,9 +220,9 @@ TEST(ComplexModes, SenseOfRotation)
 TEST(ComplexModes, GrowthIsThePowerBalance)
 {
   // φᴴ Q(λ) φ = 0: m λ² + c λ + k = p, p = μ φᴴ A r_n; its imaginary part over ω: 2 R m + c = Im p / ω
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+  for (const Losses &losses : all_losses)
     {
-      const Scene s     = scene(dissipation);
+      const Scene s     = scene(losses);
       const auto  modes = krylov(s.coupled, mu);
       DenseMatrix r_re, r_im;
       normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part, r_re, r_im);

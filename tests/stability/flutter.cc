@@ -104,3 +104,31 @@ TEST(Flutter, InstabilityBeginsAtTheThreshold)
       EXPECT_NEAR(std::min(values[0].real(), values[1].real()) / R, -1., 1e-3);
     }
 }
+
+
+
+TEST(Flutter, UnequalDampingLowersTheThreshold)
+{
+  // λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0, a0 = k11 k22 - k12 (k12 - μ k_c), is stable up to a1 (a3 a2 - a1) = a3² a0 (Hurwitz).
+  const Flutter flutter;
+  const double  k11 = flutter.k11, k22 = flutter.k22, k12 = flutter.k12;
+  for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}})
+    {
+      const double a3 = d1 + d2, a2 = k11 + k22 + d1 * d2, a1 = d1 * k22 + d2 * k11;
+      const double a0        = a1 * (a3 * a2 - a1) / (a3 * a3);
+      const double threshold = (k12 - (k11 * k22 - a0) / k12) / flutter.k_c;
+      if (d1 == d2)
+        EXPECT_GT(threshold, flutter.threshold());
+      else
+        EXPECT_LT(threshold, 0.99 * flutter.threshold());
+
+      CoupledSystem system       = flutter.system();
+      system.frictionless.damping = Testing::diagonal(system.map(), [d1 = d1, d2 = d2](const int i) { return i == 0 ? d1 : d2; });
+      for (const double side : {-1., 1.})
+        for (const auto &values : Testing::solutions(system, threshold * (1. + 1e-4 * side)))
+          {
+            ASSERT_EQ(values.size(), 2u);
+            EXPECT_GT(side * std::max(values[0].real(), values[1].real()), 0.);
+          }
+    }
+}
