@@ -198,6 +198,16 @@ namespace Squeal::Testing
     return materials;
   }
 
+  /// The same materials with Rayleigh damping, unlike in disc and pins.
+  inline MaterialParameters damped(MaterialParameters materials)
+  {
+    materials.disc.rayleigh_alpha = 20.;
+    materials.disc.rayleigh_beta  = 1e-7;
+    materials.pin.rayleigh_alpha  = 50.;
+    materials.pin.rayleigh_beta   = 1e-6;
+    return materials;
+  }
+
   inline OperationParameters operating(const RadialDissipation dissipation = RadialDissipation::none,
                                        const Rotation          rotation    = Rotation::positive)
   {

@@ -127,11 +127,16 @@ namespace Squeal
     for (const ElasticMount &mount : materials.mounts)
       mounts[model.surface_id(mount.surface)] = mount;
 
-    // Sparsity of the free dofs
+    const auto material_of = [&materials](const types::material_id component) -> const Material & {
+      return component == 0 ? materials.disc : materials.pin;
+    };
+    const bool damped = materials.disc.is_damped() || materials.pin.is_damped();
+
+    // Sparsity of the free dofs; that of the damping holds only what is damped
     IndexSet owned(map.NumGlobalElements());
     if (map.NumMyElements() > 0)
       owned.add_range(map.MinMyGID(), map.MaxMyGID() + 1);
-    TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator());
+    TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator()), damping_pattern(owned, model.communicator());
     std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
     FreeDofs                             free;
     for (const auto &cell : dof_handler.active_cell_iterators())
@@ -140,24 +145,42 @@ namespace Squeal
           cell->get_dof_indices(cell_dofs);
           free.reinit(model, cell_dofs);
           for (const auto row : free.numbers)
-            pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
+            {
+              pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
+              if (material_of(cell->material_id()).is_damped())
+                damping_pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
+            }
         }
     pattern.compress();
-    TrilinosWrappers::SparseMatrix stiffness, mass;
+    TrilinosWrappers::SparseMatrix stiffness, mass, damping;
     stiffness.reinit(pattern);
     mass.reinit(pattern);
+    if (damped)
+      {
+        damping_pattern.compress();
+        damping.reinit(damping_pattern);
+      }
 
     // Cells and their mounted faces
     FEValues<3>        values(model.mapping(), fe, QGauss<3>(model.degree() + 1), update_values | update_gradients | update_JxW_values);
     FEFaceValues<3>    face_values(model.mapping(), fe, QGauss<2>(model.degree() + 1),
                                    update_values | update_quadrature_points | update_JxW_values);
-    FullMatrix<double> K(fe.n_dofs_per_cell(), fe.n_dofs_per_cell()), M(K), K_mount(K);
+    FullMatrix<double> K(fe.n_dofs_per_cell(), fe.n_dofs_per_cell()), M(K), C(K), K_mount(K);
     for (const auto &cell : dof_handler.active_cell_iterators())
       if (cell->is_locally_owned())
         {
           values.reinit(cell);
           check_orientation(values, model.component_names()[cell->material_id()]);
-          integrate_cell(values, cell->material_id() == 0 ? materials.disc : materials.pin, K, M);
+          const Material &material = material_of(cell->material_id());
+          integrate_cell(values, material, K, M);
+          cell->get_dof_indices(cell_dofs);
+          free.reinit(model, cell_dofs);
+          // Before the mounts join the stiffness
+          if (material.is_damped())
+            {
+              C.equ(material.rayleigh_alpha, M, material.rayleigh_beta, K);
+              add_to(damping, free, C);
+            }
           for (const unsigned int f : cell->face_indices())
             if (const auto it = mounts.find(cell->face(f)->boundary_id()); cell->at_boundary(f) && it != mounts.end())
               {
@@ -165,15 +188,17 @@ namespace Squeal
                 integrate_mount(face_values, it->second, K_mount);
                 K.add(1., K_mount);
               }
-          cell->get_dof_indices(cell_dofs);
-          free.reinit(model, cell_dofs);
           add_to(stiffness, free, K);
           add_to(mass, free, M);
         }
     stiffness.compress(VectorOperation::add);
     mass.compress(VectorOperation::add);
+    if (damped)
+      damping.compress(VectorOperation::add);
 
-    return {std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(mass.trilinos_matrix())), nullptr,
-            std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(stiffness.trilinos_matrix()))};
+    const auto copy = [](const TrilinosWrappers::SparseMatrix &matrix) {
+      return std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(matrix.trilinos_matrix()));
+    };
+    return {copy(mass), damped ? copy(damping) : nullptr, copy(stiffness)};
   }
 } // namespace Squeal

@@ -51,7 +51,9 @@ namespace Squeal
       return V;
     };
     coupled.normal_stiffness = half_reaction(*system.stiffness);
-    coupled.normal_mass      = half_reaction(*system.mass);
+    if (system.damping)
+      coupled.normal_damping = half_reaction(*system.damping);
+    coupled.normal_mass = half_reaction(*system.mass);
     return coupled;
   }
 
@@ -61,8 +63,10 @@ namespace Squeal
     if (mu == 0.)
       return result;
     const auto friction = [&](const SparseMatrix &V) { return multiply(*system.friction_forces, V, false, false); };
-    result.stiffness    = add(1., *system.frictionless.stiffness, -mu, *friction(*system.normal_stiffness));
-    result.mass         = add(1., *system.frictionless.mass, -mu, *friction(*system.normal_mass));
+    result.stiffness = add(1., *system.frictionless.stiffness, -mu, *friction(*system.normal_stiffness));
+    if (system.normal_damping)
+      result.damping = add(1., *system.frictionless.damping, -mu, *friction(*system.normal_damping));
+    result.mass = add(1., *system.frictionless.mass, -mu, *friction(*system.normal_mass));
     return result;
   }
 
@@ -83,17 +87,26 @@ namespace Squeal
                         DenseMatrix                             &reaction_real,
                         DenseMatrix                             &reaction_imaginary)
   {
+    using Complex = std::complex<double>;
+
     const DenseMatrix K_re = replicate(*system.normal_stiffness * real_part), K_im = replicate(*system.normal_stiffness * imaginary_part);
     const DenseMatrix M_re = replicate(*system.normal_mass * real_part), M_im = replicate(*system.normal_mass * imaginary_part);
+    DenseMatrix       C_re, C_im;
+    if (system.normal_damping)
+      {
+        C_re = replicate(*system.normal_damping * real_part);
+        C_im = replicate(*system.normal_damping * imaginary_part);
+      }
     reaction_real      = K_re;
     reaction_imaginary = K_im;
     for (int j = 0; j < K_re.n_columns(); ++j)
       {
-        const std::complex<double> square = lambda[j] * lambda[j];
+        const Complex square = lambda[j] * lambda[j];
         for (int i = 0; i < K_re.n_rows(); ++i)
           {
-            const std::complex<double> r =
-              std::complex<double>(K_re(i, j), K_im(i, j)) + square * std::complex<double>(M_re(i, j), M_im(i, j));
+            Complex r = Complex(K_re(i, j), K_im(i, j)) + square * Complex(M_re(i, j), M_im(i, j));
+            if (system.normal_damping)
+              r += lambda[j] * Complex(C_re(i, j), C_im(i, j));
             reaction_real(i, j)      = r.real();
             reaction_imaginary(i, j) = r.imag();
           }

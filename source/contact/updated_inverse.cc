@@ -18,9 +18,7 @@ namespace Squeal
 
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
   {
-    V = system.normal_stiffness;
-    if (shift != 0.)
-      V = add(1., *V, shift * shift, *system.normal_mass);
+    V      = pencil_at({system.normal_mass, system.normal_damping, system.normal_stiffness}, shift);
     factor = factorize_positive_definite(*pencil_at(system.frictionless, shift), library, "stiffness of the coupled system without friction");
 
     const MultiVector A = to_vectors(*system.friction_forces);

@@ -34,6 +34,20 @@ namespace Squeal
       map.Comm().ScanSum(&n, &n_upto_mine, 1);
       return n_upto_mine - n_mine;
     }
+
+    /// The unit matrix on a map.
+    SparseMatrix unit_matrix(const Epetra_Map &map)
+    {
+      SparseMatrix result(Copy, map, 1);
+      const double one = 1.;
+      for (int i = 0; i < map.NumMyElements(); ++i)
+        {
+          const int row = map.GID(i);
+          result.InsertGlobalValues(row, 1, &one, &row);
+        }
+      result.FillComplete();
+      return result;
+    }
   } // namespace
 
 
@@ -41,6 +55,10 @@ namespace Squeal
   std::shared_ptr<SparseMatrix>
   multiply(const SparseMatrix &A, const SparseMatrix &B, const bool transpose_A, const bool transpose_B)
   {
+    // Where three processes share the rows Epetra's product of two transposed matrices loses entries: (B A)ᵀ I instead
+    if (transpose_A && transpose_B)
+      return multiply(*multiply(B, A), unit_matrix(B.RangeMap()), true, false);
+
     const Epetra_Map &rows    = transpose_A ? A.DomainMap() : A.RangeMap();
     const Epetra_Map &columns = transpose_B ? B.RangeMap() : B.DomainMap();
     auto              C       = std::make_shared<SparseMatrix>(Copy, rows, 0);

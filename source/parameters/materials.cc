@@ -57,6 +57,14 @@ namespace Squeal
       add_number_parameter(prm, "Young modulus", material.young_modulus, "Young's modulus E. Units: Pa.", Double(0.));
       add_number_parameter(prm, "Poisson ratio", material.poisson_ratio, "Poisson's ratio. Units: none.", Double(-1., 0.5));
       add_number_parameter(prm, "Density", material.density, "Mass density. Units: kg/m^3.", Double(0.));
+      add_number_parameter(prm, "Rayleigh alpha", material.rayleigh_alpha,
+                           "Damping in proportion to the mass, C = alpha M + beta K: modes of omega are damped by the ratio "
+                           "alpha / (2 omega). Units: 1/s.",
+                           Double(0.));
+      add_number_parameter(prm, "Rayleigh beta", material.rayleigh_beta,
+                           "Damping in proportion to the stiffness of the material, mounts excluded: modes of omega are damped by the "
+                           "ratio beta omega / 2. Units: s.",
+                           Double(0.));
       prm.leave_subsection();
     }
 
@@ -71,8 +79,19 @@ namespace Squeal
       if (!(material.density > 0.))
         throw ParameterError("the density is " + std::to_string(material.density) + " kg/m^3", "parameter " + section + "/Density",
                              "give a positive value");
+      if (!(material.rayleigh_alpha >= 0.) || !std::isfinite(material.rayleigh_alpha))
+        throw ParameterError("the damping in proportion to the mass is " + exact_text(material.rayleigh_alpha) + " 1/s",
+                             "parameter " + section + "/Rayleigh alpha", "give a finite value >= 0");
+      if (!(material.rayleigh_beta >= 0.) || !std::isfinite(material.rayleigh_beta))
+        throw ParameterError("the damping in proportion to the stiffness is " + exact_text(material.rayleigh_beta) + " s",
+                             "parameter " + section + "/Rayleigh beta", "give a finite value >= 0");
     }
   } // namespace
+
+  bool Material::is_damped() const
+  {
+    return rayleigh_alpha != 0. || rayleigh_beta != 0.;
+  }
 
   void MaterialParameters::add_parameters(dealii::ParameterHandler &prm)
   {

@@ -50,6 +50,11 @@ namespace Squeal
     V_M        = append_columns(V_M, replicate(*system.normal_mass * vectors));
     friction_K = multiply(A, V_K, true);
     friction_M = multiply(A, V_M, true);
+    if (system.normal_damping)
+      {
+        V_C        = append_columns(V_C, replicate(*system.normal_damping * vectors));
+        friction_C = multiply(A, V_C, true);
+      }
   }
 
   int ReducedModel::size() const
@@ -64,6 +69,6 @@ namespace Squeal
 
   ReducedPencil ReducedModel::at(const double mu) const
   {
-    return {add(M, friction_M, -mu), C, add(K, friction_K, -mu), C.n_rows() > 0};
+    return {add(M, friction_M, -mu), system.normal_damping ? add(C, friction_C, -mu) : C, add(K, friction_K, -mu), C.n_rows() > 0};
   }
 } // namespace Squeal

@@ -91,7 +91,7 @@ namespace Squeal
     if (matrices.damping)
       add_scaled(R, lambda, *matrices.damping * X);
 
-    // Friction: −μ A (V_K + λ² V_M) φ, or its transpose −μ (V_K + λ² V_M)ᵀ Aᵀ φ
+    // Friction: −μ A (V_K + λ V_C + λ² V_M) φ, or its transpose −μ (V_K + λ V_C + λ² V_M)ᵀ Aᵀ φ
     if (mu != 0.)
       {
         if (left)
@@ -99,12 +99,16 @@ namespace Squeal
             const MultiVector a = transpose_times(*system.friction_forces, X);
             MultiVector       F = transpose_times(*system.normal_stiffness, a);
             add_scaled(F, square, transpose_times(*system.normal_mass, a));
+            if (system.normal_damping)
+              add_scaled(F, lambda, transpose_times(*system.normal_damping, a));
             R.Update(-mu, F, 1.);
           }
         else
           {
             MultiVector r = *system.normal_stiffness * X;
             add_scaled(r, square, *system.normal_mass * X);
+            if (system.normal_damping)
+              add_scaled(r, lambda, *system.normal_damping * X);
             R.Update(-mu, *system.friction_forces * r, 1.);
           }
       }

@@ -22,6 +22,8 @@ namespace Squeal
     constexpr double compression_tolerance = 0.02;
     /// λ below this part of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
     constexpr double zero_fraction = 1e-4;
+    /// Im λ below this part of the largest frequency counts as zero: a multiple real λ splits into pairs by rounding.
+    constexpr double real_fraction = 1e-7;
 
     DenseMatrix real_part(const ComplexDenseMatrix &X)
     {
@@ -108,20 +110,29 @@ namespace Squeal
       return result;
     }
 
-    /// Takes values with |λ| ≤ @p limit out, those of rigid-body motions, and returns how many they are.
-    int remove_zeros(DenseQuadraticModes &modes, const double limit)
+    /**
+     * Leaves only oscillating modes among the values: real ones join the
+     * others of their kind, zeros, those of rigid-body motions, are taken out.
+     * Returns how many zeros there are.
+     */
+    int separate_real(DenseQuadraticModes &modes, const double largest_frequency)
     {
-      // With an oscillating value its conjugate is zero, too
+      // What holds for an oscillating value holds for its conjugate, too
+      const double         limit = zero_fraction * largest_frequency;
       std::vector<int>     others;
       std::vector<Complex> values;
+      int                  n_zeros = 0;
       for (std::size_t j = 0; j < modes.values.size(); ++j)
-        if (std::abs(modes.values[j]) > limit)
+        if (const Complex l = modes.values[j]; std::abs(l) <= limit)
+          n_zeros += 2;
+        else if (std::abs(l.imag()) <= real_fraction * largest_frequency)
+          modes.real_values.insert(modes.real_values.end(), 2, l.real());
+        else
           {
             others.push_back(static_cast<int>(j));
-            values.push_back(modes.values[j]);
+            values.push_back(l);
           }
-      int n_zeros = 2 * static_cast<int>(modes.values.size() - values.size());
-      if (n_zeros > 0)
+      if (values.size() < modes.values.size())
         {
           modes.right  = selected(modes.right, others);
           modes.left   = selected(modes.left, others);
@@ -131,6 +142,7 @@ namespace Squeal
       const auto end = std::remove_if(modes.real_values.begin(), modes.real_values.end(), [limit](const double l) { return std::abs(l) <= limit; });
       n_zeros += static_cast<int>(modes.real_values.end() - end);
       modes.real_values.erase(end, modes.real_values.end());
+      std::sort(modes.real_values.begin(), modes.real_values.end());
       return n_zeros;
     }
 
@@ -216,7 +228,7 @@ namespace Squeal
         const ReducedPencil pencil = reduced.at(mu);
         DenseQuadraticModes pairs =
           dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, options.largest_frequency);
-        const int n_zeros = remove_zeros(pairs, zero_fraction * options.largest_frequency);
+        const int n_zeros = separate_real(pairs, options.largest_frequency);
         if (pairs.values.empty())
           throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
         const Estimate estimate = estimate_errors(system, inverse, pencil, mu, pairs, reduced.basis());

@@ -180,6 +180,43 @@ TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
 
 
 
+TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
+{
+  // On displacements of one component: α M + β K, without what the mount adds to K
+  const Model        model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
+  MaterialParameters materials = mounted({{"inner", 1e10, 2e10, 3e10}});
+  const auto         undamped = assemble(model, materials), unmounted = assemble(model, mounted({}));
+  materials.disc.rayleigh_alpha = 3.;
+  materials.disc.rayleigh_beta  = 2e-7;
+  materials.pin.rayleigh_beta   = 5e-6;
+  const auto system             = assemble(model, materials);
+  EXPECT_EQ(max_norm(*add(1., *system.stiffness, -1., *undamped.stiffness)), 0.);
+  EXPECT_EQ(max_norm(*add(1., *system.mass, -1., *undamped.mass)), 0.);
+  ASSERT_NE(system.damping, nullptr);
+  EXPECT_LT(symmetry_defect(*system.damping), 1e-14);
+
+  for (unsigned int component = 0; component <= two_pins.size(); ++component)
+    {
+      const Material   &material = component == 0 ? materials.disc : materials.pin;
+      const MultiVector u        = displacements(model, component, [](const Point3 &p) {
+        return Point3{{std::sin(30. * p[1]) + 0.2, std::cos(20. * p[0]), p[2] * std::sin(15. * p[0])}};
+      });
+      const double expected = material.rayleigh_alpha * product(u, *unmounted.mass, u) + material.rayleigh_beta * product(u, *unmounted.stiffness, u);
+      EXPECT_NEAR(product(u, *system.damping, u) / expected, 1., 1e-12);
+    }
+
+  // What is not damped has no entries.
+  materials.disc.rayleigh_alpha = 0.;
+  materials.disc.rayleigh_beta  = 0.;
+  const auto pins_only          = assemble(model, materials);
+  ASSERT_NE(pins_only.damping, nullptr);
+  EXPECT_LT(pins_only.damping->NumGlobalNonzeros(), system.damping->NumGlobalNonzeros() / 2);
+  const MultiVector disc = displacements(model, 0, [](const Point3 &p) { return p; });
+  EXPECT_EQ(max_entry(*pins_only.damping * disc), 0.);
+}
+
+
+
 TEST_P(Elasticity, MountsResistInTheirDirections)
 {
   const HexMesh mesh = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));

@@ -24,15 +24,23 @@ namespace
     *stream << c.name;
   }
 
-  Scene scene(const Case &c, const RadialDissipation dissipation = RadialDissipation::consistent)
+  /// Whether the materials have Rayleigh damping.
+  enum class Bodies
   {
+    undamped,
+    damped
+  };
+
+  Scene scene(const Case &c, const RadialDissipation dissipation = RadialDissipation::consistent, const Bodies bodies = Bodies::undamped)
+  {
+    const MaterialParameters    materials = mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}});
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 0, 1}};
     return Scene(mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)),
                         [c](const Point3 &p) {
                           // A cone, and some tilt about y so that no face is like another
                           return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
                         }),
-                 mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}}), operating(dissipation), c.degree);
+                 bodies == Bodies::damped ? damped(materials) : materials, operating(dissipation), c.degree);
   }
 
   class Contact : public ::testing::TestWithParam<Case>
@@ -137,6 +145,8 @@ TEST_P(Contact, CoupledMatricesAreSymmetric)
   EXPECT_LT(symmetry_defect(*s.coupled.frictionless.mass), 1e-14);
   EXPECT_LT(symmetry_defect(*s.coupled.frictionless.stiffness), 1e-14);
   EXPECT_LT(symmetry_defect(*s.coupled.frictionless.damping), 1e-14);
+  EXPECT_EQ(s.coupled.normal_damping, nullptr);
+  EXPECT_LT(symmetry_defect(*scene(GetParam(), RadialDissipation::consistent, Bodies::damped).coupled.frictionless.damping), 1e-14);
   // The couplings are not empty words: friction is not symmetric.
   EXPECT_GT(symmetry_defect(*with_friction(s.coupled, 0.4).stiffness), 1e-3);
 }
@@ -163,8 +173,30 @@ TEST_P(Contact, FrictionIsThatOfTheUnreducedEquation)
   EXPECT_LT(max_norm(*multiply(*s.contact.tangential, *s.contact_damping)), 1e-14 * max_norm(*s.contact_damping));
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, *s.contact_damping)), 1e-14 * max_norm(*s.contact_damping));
 
-  // Without friction nothing is added.
+  // Without friction nothing is added, and without damping of the bodies friction leaves C_b alone.
   EXPECT_EQ(with_friction(s.coupled, 0.).stiffness, s.coupled.frictionless.stiffness);
+  EXPECT_EQ(found.damping, s.coupled.frictionless.damping);
+}
+
+
+
+TEST_P(Contact, FrictionTakesItsPartOfTheDampingOfTheBodies)
+{
+  // C̃ = T_cᵀ (C − μ/2 P_tᵀ P_n C + C_b) T_c
+  const double mu = 0.37;
+  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+    {
+      const Scene s       = scene(GetParam(), dissipation, Bodies::damped);
+      const auto &T       = *s.contact.kernel;
+      const auto  P_t_P_n = multiply(*s.contact.tangential, *s.contact.normal, true, false);
+      auto        C       = add(1., *s.system.damping, -0.5 * mu, *multiply(*P_t_P_n, *s.system.damping));
+      if (s.contact_damping)
+        C = add(1., *C, 1., *s.contact_damping);
+      const auto expected = multiply(T, *multiply(*C, T), true, false);
+      EXPECT_LT(difference(*with_friction(s.coupled, mu).damping, *expected), 1e-14);
+      EXPECT_GT(symmetry_defect(*expected), 1e-3);
+      EXPECT_EQ(with_friction(s.coupled, 0.).damping, s.coupled.frictionless.damping);
+    }
 }
 
 
@@ -191,9 +223,9 @@ TEST_P(Contact, DampingTracesTheCoefficients)
 
 TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 {
-  const Scene s = scene(GetParam());
-  for (const double shift : {0., 5000.})
+  for (const auto &[bodies, shift] : {std::make_pair(Bodies::undamped, 0.), {Bodies::undamped, 5000.}, {Bodies::damped, 5000.}})
     {
+      const Scene       s = scene(GetParam(), RadialDissipation::consistent, bodies);
       UpdatedInverse    inverse(s.coupled, shift, FactorizationLibrary::automatic);
       const MultiVector B = random_vectors(s.coupled.map(), 4);
       for (const double mu : {0., 0.4, 1.3, 0.2})
@@ -230,9 +262,12 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 {
   // M ü + C u̇ + K u = P_nᵀ r_n + μ P_tᵀ r_n, P_n u = 0, with t the disc's direction relative to the pin
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+  for (const auto &[dissipation, bodies] : {std::make_pair(RadialDissipation::none, Bodies::undamped),
+                                            {RadialDissipation::consistent, Bodies::undamped},
+                                            {RadialDissipation::none, Bodies::damped},
+                                            {RadialDissipation::consistent, Bodies::damped}})
     {
-      const Scene      s     = scene(GetParam(), dissipation);
+      const Scene      s     = scene(GetParam(), dissipation, bodies);
       const double     mu    = 0.6;
       SolverParameters solvers;
       solvers.complex_tolerance = 1e-10;
@@ -262,11 +297,12 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
       MultiVector C_re(u_re), C_im(u_im);
       C_re.PutScalar(0.);
       C_im.PutScalar(0.);
-      if (s.contact_damping)
-        {
-          C_re = *s.contact_damping * u_re;
-          C_im = *s.contact_damping * u_im;
-        }
+      for (const auto &C : {s.contact_damping, s.system.damping})
+        if (C)
+          {
+            C_re.Update(1., *C * u_re, 1.);
+            C_im.Update(1., *C * u_im, 1.);
+          }
       for (int j = 0; j < k; ++j)
         {
           const std::complex<double> l = modes.lambda[j], l2 = l * l;

@@ -48,6 +48,18 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   EXPECT_LT(max_norm(add(to_dense(*multiply(*B, *C, false, true)), multiply(b, c, false, true), -1.)), 1e-12);
   EXPECT_LT(max_norm(add(to_dense(*multiply(*B, *A, true, true)), multiply(b, a, true, true), -1.)), 1e-12);
 
+  // Few entries, each of which matters: rows and columns of one index need not live together.
+  for (const int n : {3, 7, 20})
+    {
+      const Epetra_Map  many = rows(n, GetParam()), fewer = rows(n - 1, GetParam()), few = rows(std::max(1, n / 5), GetParam());
+      const auto        S    = sparse(many, fewer, [n](const int i) { return Row{{(3 * i + 1) % (n - 1), 1. + i}}; });
+      const auto        P    = sparse(few, many, [n](const int i) { return Row{{n - 1 - 2 * i, -1. - i}}; });
+      const DenseMatrix s = to_dense(*S), p = to_dense(*P);
+      EXPECT_EQ(max_norm(add(to_dense(*multiply(*S, *P, true, true)), multiply(s, p, true, true), -1.)), 0.) << n;
+      EXPECT_EQ(max_norm(add(to_dense(*multiply(*P, *S)), multiply(p, s), -1.)), 0.) << n;
+      EXPECT_EQ(max_norm(add(to_dense(*multiply(*S, *multiply(*S, *P, true, true))), multiply(s, multiply(s, p, true, true)), -1.)), 0.) << n;
+    }
+
   const auto T = congruence(*A, *B);
   EXPECT_TRUE(T->RowMap().SameAs(B->DomainMap()));
   EXPECT_TRUE(T->DomainMap().SameAs(B->DomainMap()));

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 
 using namespace Squeal;
@@ -84,7 +85,12 @@ TEST(ParameterFiles, ValuesReachTheirMembers)
   const Parameters p = read(in_section("Operation", "set Friction coefficient = 0.25\n set Rotation = negative\n set Radial dissipation = published") +
                             in_section("Mounts", "set Elastic mounts = disc_bore: 1, 2e3, 3e10; disc_rim: 0, 0, 5") +
                             in_section("Geometry", "set Top pin radii = 0.2, 0.25\n set Top pin angles = -10, 12.5") +
+                            in_section("Disc material", "set Rayleigh alpha = 2.5") + in_section("Pin material", "set Rayleigh beta = 3e-7") +
                             in_section("Complex modes", "set Solver = residual iteration"));
+  EXPECT_EQ(p.materials.disc.rayleigh_alpha, 2.5);
+  EXPECT_EQ(p.materials.disc.rayleigh_beta, 0.);
+  EXPECT_EQ(p.materials.pin.rayleigh_alpha, 0.);
+  EXPECT_EQ(p.materials.pin.rayleigh_beta, 3e-7);
   EXPECT_EQ(p.operation.friction_coefficient, 0.25);
   EXPECT_EQ(p.operation.rotation, Rotation::negative);
   EXPECT_EQ(p.operation.radial_dissipation, RadialDissipation::published);
@@ -161,10 +167,11 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
 {
   const Parameters p = read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
                                  "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
-                                 "Geometry/Element size=0.0123456789", "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
+                                 "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7", "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
   EXPECT_NE(print(p), print(Parameters()));
   EXPECT_EQ(print(read(print(p))), print(p));
   EXPECT_EQ(read(print(p)).geometry.element_size, 0.0123456789);
+  EXPECT_EQ(read(print(p)).materials.pin.rayleigh_beta, 1.2345678e-7);
   EXPECT_EQ(read(print(p)).geometry.bottom.angles, (std::vector<double>{1. / 3.}));
 
   // Also with the documentation, which states a unit for every number
@@ -212,6 +219,16 @@ TEST(ParameterChecks, Materials)
   expect_refused("Pin material/Density=0", "parameter Pin material/Density", "positive");
   expect_refused("Pin material/Poisson ratio=0.5", "parameter Pin material/Poisson ratio", "lock");
   expect_refused("Disc material/Poisson ratio=-1", "parameter Disc material/Poisson ratio", "above -1");
+  expect_refused("Disc material/Rayleigh alpha=-1", "Rayleigh alpha", "-1");
+  expect_refused("Pin material/Rayleigh beta=-1e-9", "Rayleigh beta", "-1e-9");
+  expect_refused("Pin material/Rayleigh beta=little", "Rayleigh beta", "little");
+  MaterialParameters damped;
+  damped.disc.rayleigh_alpha = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(damped.check(), ParameterError);
+  damped.disc.rayleigh_alpha = 1.;
+  EXPECT_NO_THROW(damped.check());
+  damped.pin.rayleigh_beta = -1e-9;
+  EXPECT_THROW(damped.check(), ParameterError);
   expect_refused("Mounts/Elastic mounts=disc_bore: 1, 2", "Mounts/Elastic mounts", "is not an elastic mount");
   expect_refused("Mounts/Elastic mounts=disc_bore", "Mounts/Elastic mounts", "is not an elastic mount");
   expect_refused("Mounts/Elastic mounts=disc_bore: 1, two, 3", "surface disc_bore", "`two` is not a number");

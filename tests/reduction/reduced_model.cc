@@ -14,10 +14,10 @@ using Complex = std::complex<double>;
 namespace
 {
   /// As few dofs as a disc between two pins can have.
-  Scene tiny_scene(const RadialDissipation dissipation)
+  Scene tiny_scene(const RadialDissipation dissipation, const MaterialParameters &materials = mounted())
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
-    return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), mounted(), operating(dissipation));
+    return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), materials, operating(dissipation));
   }
 
   double largest_difference(const std::vector<Complex> &values, std::vector<Complex> others)
@@ -41,9 +41,11 @@ namespace
 
 TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
 {
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+  for (const auto &[dissipation, materials] : {std::make_pair(RadialDissipation::none, mounted()),
+                                               {RadialDissipation::consistent, mounted()},
+                                               {RadialDissipation::consistent, damped(mounted())}})
     {
-      const Scene s = tiny_scene(dissipation);
+      const Scene s = tiny_scene(dissipation, materials);
       const auto &M = *s.coupled.frictionless.mass;
 
       // A basis of all directions, grown in uneven parts, not that of the dofs
@@ -78,26 +80,29 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
 
 TEST(ReducedModel, ProjectsEveryBlock)
 {
-  const Scene       s = tiny_scene(RadialDissipation::published);
-  const MultiVector X = random_vectors(s.coupled.map(), 9, 3);
-  ReducedModel      at_once(s.coupled), grown(s.coupled);
-  at_once.extend(X);
-  grown.extend(view(X, 0, 2));
-  grown.extend(view(X, 2, 6));
-  grown.extend(view(X, 8, 1));
-  for (const double mu : {0., 0.3, 1.1})
+  for (const MaterialParameters &materials : {mounted(), damped(mounted())})
     {
-      const SecondOrderSystem matrices = with_friction(s.coupled, mu);
-      const DenseMatrix       M = gram(X, *matrices.mass * X), C = gram(X, *matrices.damping * X), K = gram(X, *matrices.stiffness * X);
-      for (const ReducedModel *model : {&at_once, &grown})
+      const Scene       s = tiny_scene(RadialDissipation::published, materials);
+      const MultiVector X = random_vectors(s.coupled.map(), 9, 3);
+      ReducedModel      at_once(s.coupled), grown(s.coupled);
+      at_once.extend(X);
+      grown.extend(view(X, 0, 2));
+      grown.extend(view(X, 2, 6));
+      grown.extend(view(X, 8, 1));
+      for (const double mu : {0., 0.3, 1.1})
         {
-          const ReducedPencil pencil = model->at(mu);
-          EXPECT_LT(max_norm(add(pencil.mass, M, -1.)), 1e-13 * max_norm(M));
-          EXPECT_LT(max_norm(add(pencil.damping, C, -1.)), 1e-13 * max_norm(C));
-          EXPECT_LT(max_norm(add(pencil.stiffness, K, -1.)), 1e-13 * max_norm(K));
+          const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+          const DenseMatrix       M = gram(X, *matrices.mass * X), C = gram(X, *matrices.damping * X), K = gram(X, *matrices.stiffness * X);
+          for (const ReducedModel *model : {&at_once, &grown})
+            {
+              const ReducedPencil pencil = model->at(mu);
+              EXPECT_LT(max_norm(add(pencil.mass, M, -1.)), 1e-13 * max_norm(M));
+              EXPECT_LT(max_norm(add(pencil.damping, C, -1.)), 1e-13 * max_norm(C));
+              EXPECT_LT(max_norm(add(pencil.stiffness, K, -1.)), 1e-13 * max_norm(K));
+            }
         }
+      EXPECT_LT(max_norm(add(replicate(grown.basis()), replicate(X), -1.)), 1e-16);
     }
-  EXPECT_LT(max_norm(add(replicate(grown.basis()), replicate(X), -1.)), 1e-16);
 }
 
 

@@ -1,15 +1,9 @@
-#include "matrices.h"
-
-#include <squeal/eigen/dense_quadratic.h>
-#include <squeal/linear_algebra/sparse.h>
-#include <squeal/stability/krylov_modes.h>
-#include <squeal/stability/residual_iteration.h>
+#include "solutions.h"
 
 #include <gtest/gtest.h>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
-using Complex = std::complex<double>;
 
 namespace
 {
@@ -17,21 +11,22 @@ namespace
    * Two degrees of freedom with one contact (N. Hoffmann, M. Fischer, R.
    * Allgaier, L. Gaul, Mech. Res. Comm. 29 (2002) 197):
    *
-   *   ẍ + d ẋ + [ k11   k12 - μ k_c ] x = 0
-   *             [ k12   k22         ]
+   *   ẍ + (d + β K̃) ẋ + K̃ x = 0,   K̃ = [ k11   k12 - μ k_c ]
+   *                                     [ k12   k22         ]
    *
-   * The frequencies coalesce where (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0.
+   * The frequencies coalesce where (k11 - k22)² + 4 k12 (k12 - μ k_c) = 0. β is
+   * structural damping, of which friction takes its part: V_C = β V_K.
    */
   struct Flutter
   {
-    double k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, damping = 0.;
+    double k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, damping = 0., beta = 0.;
 
     double threshold() const
     {
       return ((k11 - k22) * (k11 - k22) / (4. * k12) + k12) / k_c;
     }
 
-    /// λ² + d λ + κ = 0 for both eigenvalues κ of the stiffness; those with Im λ > 0.
+    /// λ² + (d + β κ) λ + κ = 0 for both eigenvalues κ of the stiffness; those with Im λ > 0.
     std::vector<Complex> lambda(const double mu) const
     {
       std::vector<Complex> result;
@@ -39,9 +34,10 @@ namespace
       for (const double sign : {-1., 1.})
         {
           const Complex kappa = 0.5 * (k11 + k22 + sign * root);
-          const Complex omega = std::sqrt(0.25 * damping * damping - kappa);
+          const Complex half  = 0.5 * (damping + beta * kappa);
+          const Complex omega = std::sqrt(half * half - kappa);
           for (const double other : {-1., 1.})
-            if (const Complex l = -0.5 * damping + other * omega; l.imag() > 0.)
+            if (const Complex l = -half + other * omega; l.imag() > 0.)
               result.push_back(l);
         }
       return result;
@@ -52,9 +48,11 @@ namespace
       const Epetra_Map map = rows(2), contact = rows(1);
       CoupledSystem    result;
       result.frictionless.mass = Testing::diagonal(map, [](int) { return 1.; });
-      if (damping != 0.)
-        result.frictionless.damping = Testing::diagonal(map, [this](int) { return damping; });
       result.frictionless.stiffness = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
+      if (damping != 0. || beta != 0.)
+        result.frictionless.damping = add(damping, *result.frictionless.mass, beta, *result.frictionless.stiffness);
+      if (beta != 0.)
+        result.normal_damping = sparse(contact, map, [this](int) { return Row{{1, beta * k_c}}; });
       result.friction_forces        = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
       result.normal_stiffness       = sparse(contact, map, [this](int) { return Row{{1, k_c}}; });
       result.normal_mass            = sparse(contact, map, [](int) { return Row{}; });
@@ -63,41 +61,9 @@ namespace
     }
   };
 
-  void expect_same(std::vector<Complex> values, const std::vector<Complex> &expected, const double tolerance)
-  {
-    ASSERT_EQ(values.size(), expected.size());
-    for (const Complex &x : expected)
-      {
-        const auto nearest = std::min_element(values.begin(), values.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - x) < std::abs(b - x); });
-        EXPECT_LT(std::abs(*nearest - x), tolerance * std::abs(x)) << x;
-        values.erase(nearest);
-      }
-  }
-
-  /// By each of the three solvers.
   std::vector<std::vector<Complex>> solutions(const Flutter &flutter, const double mu)
   {
-    const CoupledSystem system = flutter.system();
-    Progress            progress;
-    UpdatedInverse      inverse(system, 0., FactorizationLibrary::automatic);
-    SolverParameters    solvers;
-    solvers.complex_tolerance = 1e-13;
-    const auto krylov         = krylov_modes(system, inverse, 0., mu, 10., 2, solvers, progress);
-
-    ResidualIterationOptions options;
-    options.largest_frequency = 10.;
-    options.tolerance         = 1e-12;
-    MultiVector units(system.map(), 2);
-    for (int i = 0; i < units.MyLength(); ++i)
-      units.ReplaceMyValue(i, system.map().GID(i), 1.);
-    const auto iterated = residual_iteration(system, inverse, units, mu, options, progress);
-
-    const SecondOrderSystem matrices = with_friction(system, mu);
-    DenseMatrix             C;
-    if (matrices.damping)
-      C = to_dense(*matrices.damping);
-    const auto dense = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness));
-    return {krylov.lambda, iterated.lambda, dense.values};
+    return Testing::solutions(flutter.system(), mu);
   }
 } // namespace
 
@@ -105,15 +71,16 @@ namespace
 
 TEST(Flutter, ClosedForm)
 {
-  Flutter flutter;
-  for (const double damping : {0., 0.02})
+  for (const auto &[damping, beta] : {std::make_pair(0., 0.), {0.02, 0.}, {0., 0.03}, {0.01, 0.02}})
     {
+      Flutter flutter;
       flutter.damping = damping;
+      flutter.beta    = beta;
       for (const double factor : {0., 0.5, 0.99, 1.01, 1.5, 2.})
         {
           const double mu = factor * flutter.threshold();
           for (const auto &values : solutions(flutter, mu))
-            expect_same(values, flutter.lambda(mu), 1e-12);
+            EXPECT_LT(largest(distances(values, flutter.lambda(mu))), 1e-12);
         }
     }
 }
@@ -135,5 +102,33 @@ TEST(Flutter, InstabilityBeginsAtTheThreshold)
       ASSERT_EQ(values.size(), 2u);
       EXPECT_NEAR(std::max(values[0].real(), values[1].real()) / R, 1., 1e-3);
       EXPECT_NEAR(std::min(values[0].real(), values[1].real()) / R, -1., 1e-3);
+    }
+}
+
+
+
+TEST(Flutter, UnequalDampingLowersTheThreshold)
+{
+  // λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0, a0 = k11 k22 - k12 (k12 - μ k_c), is stable up to a1 (a3 a2 - a1) = a3² a0 (Hurwitz).
+  const Flutter flutter;
+  const double  k11 = flutter.k11, k22 = flutter.k22, k12 = flutter.k12;
+  for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}})
+    {
+      const double a3 = d1 + d2, a2 = k11 + k22 + d1 * d2, a1 = d1 * k22 + d2 * k11;
+      const double a0        = a1 * (a3 * a2 - a1) / (a3 * a3);
+      const double threshold = (k12 - (k11 * k22 - a0) / k12) / flutter.k_c;
+      if (d1 == d2)
+        EXPECT_GT(threshold, flutter.threshold());
+      else
+        EXPECT_LT(threshold, 0.99 * flutter.threshold());
+
+      CoupledSystem system       = flutter.system();
+      system.frictionless.damping = Testing::diagonal(system.map(), [d1 = d1, d2 = d2](const int i) { return i == 0 ? d1 : d2; });
+      for (const double side : {-1., 1.})
+        for (const auto &values : Testing::solutions(system, threshold * (1. + 1e-4 * side)))
+          {
+            ASSERT_EQ(values.size(), 2u);
+            EXPECT_GT(side * std::max(values[0].real(), values[1].real()), 0.);
+          }
     }
 }

@@ -4,7 +4,6 @@
 #include <squeal/contact/contact_operators.h>
 
 #include <complex>
-#include <complex>
 #include <vector>
 
 namespace Squeal
@@ -14,16 +13,19 @@ namespace Squeal
    * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
    * compression and t the direction of the disc's motion relative to the pin):
    *
-   *   (λ² (M_c − μ A V_M) + λ C_c + K_c − μ A V_K) φ_c = 0
+   *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
    *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + P_bᵀ diag(c_b) P_b) T_c
-   *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_M = ½ P_n M T_c
+   *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_C = ½ P_n C T_c,  V_M = ½ P_n M T_c
+   *
+   * C is the damping of the bodies. That of the contact has no part in V_C: P_n P_bᵀ = 0.
    */
   struct CoupledSystem
   {
     SecondOrderSystem                   frictionless;      ///< M_c, C_c (null: no damping), K_c; n × n
     std::shared_ptr<const SparseMatrix> friction_forces;   ///< A, n × n_c
     std::shared_ptr<const SparseMatrix> normal_stiffness;  ///< V_K, n_c × n
+    std::shared_ptr<const SparseMatrix> normal_damping;    ///< V_C, n_c × n; null: the bodies have no damping
     std::shared_ptr<const SparseMatrix> normal_mass;       ///< V_M, n_c × n
     std::shared_ptr<const SparseMatrix> kernel;            ///< T_c, n_uncoupled × n
 
@@ -41,16 +43,15 @@ namespace Squeal
                        const ContactOperators                    &contact,
                        const std::shared_ptr<const SparseMatrix> &contact_damping);
 
-  /// M_c − μ A V_M, C_c and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
+  /// M_c − μ A V_M, C_c − μ A V_C and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
   SecondOrderSystem with_friction(const CoupledSystem &system, double mu);
 
   /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
   std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, double shift);
 
   /**
-   * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ² V_M u_c: normal contact
-   * reactions [N] (compression negative) of complex modes, n_c × k each part.
-   * Damping along b has no part in them.
+   * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
+   * contact reactions [N] (compression negative) of complex modes, n_c × k each part.
    */
   void normal_reactions(const CoupledSystem                     &system,
                         const std::vector<std::complex<double>> &lambda,

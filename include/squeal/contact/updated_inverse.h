@@ -10,7 +10,7 @@ namespace Squeal
   /**
    * Inverse of the pencil with friction at a real shift s ≥ 0,
    *
-   *   Q(s) = S − μ A V,   S = K_c + s C_c + s² M_c,   V = V_K + s² V_M,
+   *   Q(s) = S − μ A V,   S = K_c + s C_c + s² M_c,   V = V_K + s V_C + s² V_M,
    *
    * from one Cholesky factor of the frictionless S (the Sherman-Morrison-
    * Woodbury formula with the coupled tangential attachment modes X = S⁻¹ A):

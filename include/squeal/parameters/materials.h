@@ -7,12 +7,16 @@
 
 namespace Squeal
 {
-  /// Isotropic linear elasticity.
+  /// Isotropic linear elasticity with Rayleigh damping α M + β K.
   struct Material
   {
-    double young_modulus; ///< E [Pa]
-    double poisson_ratio; ///< ν [-]
-    double density;       ///< ρ [kg/m³]
+    double young_modulus;       ///< E [Pa]
+    double poisson_ratio;       ///< ν [-]
+    double density;             ///< ρ [kg/m³]
+    double rayleigh_alpha = 0.; ///< α [1/s]
+    double rayleigh_beta  = 0.; ///< β [s]
+
+    bool is_damped() const;
   };
 
   /**

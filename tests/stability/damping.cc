@@ -1,0 +1,218 @@
+#include "solutions.h"
+
+#include <squeal/bases/rigid_body.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double mu = 0.6;
+
+  /// The disc held at its rim like the pins at their outer faces.
+  HexMesh with_clamped_rim(HexMesh mesh)
+  {
+    const auto number = [&](const char *name) {
+      return static_cast<unsigned int>(std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin());
+    };
+    for (auto &quadrilateral : mesh.quadrilaterals)
+      if (quadrilateral.surface == number(PhysicalNames::disc_rim))
+        quadrilateral.surface = number(PhysicalNames::pin_clamp);
+    return mesh;
+  }
+
+  /// Disc and pins of one material with C = α M + β K.
+  MaterialParameters proportional(const double alpha, const double beta, const std::vector<ElasticMount> &mounts = {})
+  {
+    MaterialParameters materials  = mounted(mounts);
+    materials.disc.rayleigh_alpha = alpha;
+    materials.disc.rayleigh_beta  = beta;
+    materials.pin                 = materials.disc;
+    return materials;
+  }
+
+  /// λ with Im λ > 0 of real modes, each damped by itself: λ² + c(ω) λ + ω² = 0.
+  std::vector<Complex> damped_oscillators(const SymmetricModes &real, const std::function<double(double)> &c)
+  {
+    std::vector<Complex> result;
+    for (std::size_t j = real.n_rigid_body; j < real.eigenvalues.size(); ++j)
+      {
+        const double half = 0.5 * c(std::sqrt(real.eigenvalues[j]));
+        result.emplace_back(-half, std::sqrt(real.eigenvalues[j] - half * half));
+      }
+    return result;
+  }
+
+  /**
+   * A body below (dof 0, along n) and one above (dofs 1 along n, 2 along t), pressed
+   * upon each other; friction moves the upper one. With P_n and P_t as they stand in
+   * the equations, so that nothing but couple() makes the coupled matrices.
+   */
+  struct TwoBodies
+  {
+    Epetra_Map        map = rows(3), nodes = rows(1), coordinates = rows(2);
+    ContactOperators  contact;
+    SecondOrderSystem system;
+
+    TwoBodies()
+    {
+      const auto symmetric = [this](const double a00, const double a11, const double a12, const double a22) {
+        return sparse(map, map, [=](const int i) {
+          return i == 0 ? Row{{0, a00}} : i == 1 ? Row{{1, a11}, {2, a12}} : Row{{1, a12}, {2, a22}};
+        });
+      };
+      system             = {symmetric(1.2, 0.9, 0.05, 1.), symmetric(0.02, 0.06, 0.01, 0.03), symmetric(1., 4., 0.8, 2.3)};
+      contact.normal     = sparse(nodes, map, [](int) { return Row{{0, 1.}, {1, -1.}}; });
+      contact.tangential = sparse(nodes, map, [](int) { return Row{{2, -1.}}; });
+      contact.radial     = sparse(nodes, map, [](int) { return Row{}; });
+      contact.kernel     = sparse(map, coordinates, [](const int i) { return Row{{i == 2 ? 1 : 0, 1.}}; });
+    }
+
+    /// A − μ/2 P_tᵀ P_n A between the columns of T_c.
+    DenseMatrix with_friction(const SparseMatrix &matrix, const double mu) const
+    {
+      const DenseMatrix A = to_dense(matrix), T = to_dense(*contact.kernel);
+      const DenseMatrix friction = multiply(to_dense(*contact.tangential), multiply(to_dense(*contact.normal), A), true);
+      return multiply(T, multiply(add(A, friction, -0.5 * mu), T), true);
+    }
+
+    /// Eigenvalues with Im λ > 0 of [0 I; −M̃⁻¹K̃ −M̃⁻¹C̃].
+    std::vector<Complex> lambda(const double mu) const
+    {
+      DenseMatrix   K = with_friction(*system.stiffness, mu), C = with_friction(*system.damping, mu);
+      const DenseLU M(with_friction(*system.mass, mu), "mass");
+      M.solve(K);
+      M.solve(C);
+      const int   n = K.n_rows();
+      DenseMatrix companion(2 * n, 2 * n);
+      for (int j = 0; j < n; ++j)
+        {
+          companion(j, n + j) = 1.;
+          for (int i = 0; i < n; ++i)
+            {
+              companion(n + i, j)     = -K(i, j);
+              companion(n + i, n + j) = -C(i, j);
+            }
+        }
+      std::vector<Complex> result;
+      for (const Complex &l : eigenpairs(companion).values)
+        if (l.imag() > 0.)
+          result.push_back(l);
+      return result;
+    }
+  };
+} // namespace
+
+
+
+TEST(RayleighDamping, ProportionalDampingOfEveryMode)
+{
+  // C = α M + β K: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); the elastic mount, which has no damping, allows α only.
+  struct Case
+  {
+    HexMesh                   mesh;
+    double                    alpha, beta;
+    std::vector<ElasticMount> mounts;
+  };
+  const HexMesh mesh = mesh_of(skewed_pins);
+  for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}},
+                                                  Case{with_clamped_rim(mesh), 0., 5e-6, {}},
+                                                  Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
+    {
+      const Scene s(mesh, proportional(alpha, beta, mounts), operating());
+      const auto  real     = real_modes(s.coupled);
+      const auto  expected = damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
+      ASSERT_GT(expected.size(), 3u);
+      EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
+      EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
+    }
+}
+
+
+
+TEST(RayleighDamping, ADiscThatMovesFreely)
+{
+  // The same about a shift, with damping in the factor and in the reactions: λ = 0 and −α besides.
+  constexpr double alpha = 20., beta = 1e-6;
+  const Scene      s(mesh_of(skewed_pins), proportional(alpha, beta), operating());
+  const double     shift = stabilizing_shift(s.model, s.coupled, omega_max);
+  ASSERT_GT(shift, 0.);
+  SymmetricModesOptions real_options;
+  real_options.shift = shift * shift;
+  const auto real    = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, real_options);
+  ASSERT_EQ(real.n_rigid_body, 3);
+  const auto expected = damped_oscillators(real, [](const double omega) { return alpha + beta * omega * omega; });
+
+  SolverParameters solvers;
+  solvers.complex_tolerance = 1e-10;
+  ResidualIterationOptions options;
+  options.largest_frequency = omega_max;
+  options.tolerance         = 1e-9;
+  UpdatedInverse inverse(s.coupled, shift, FactorizationLibrary::automatic);
+  Progress       progress;
+  for (const double friction : {0., mu})
+    {
+      const auto modes = krylov_modes(s.coupled, inverse, shift, friction, omega_max, real.eigenvalues.size(), solvers, progress);
+      const auto other = residual_iteration(s.coupled, inverse, *real.vectors, friction, options, progress);
+      EXPECT_LT(largest(distances(other.lambda, modes.lambda)), 2e-9);
+      for (const ComplexModes &found : {modes, other})
+        {
+          ASSERT_EQ(found.overdamped.size(), 3u);
+          for (const double l : found.overdamped)
+            EXPECT_NEAR(l, -alpha, 1e-6);
+        }
+      if (friction == 0.)
+        {
+          EXPECT_LT(largest(distances(modes.lambda, expected)), 1e-9);
+        }
+    }
+}
+
+
+
+TEST(RayleighDamping, TwoBodiesFromTheEquations)
+{
+  const TwoBodies two;
+  CoupledSystem   coupled = couple(two.system, two.contact, nullptr);
+  bool            stable = false, unstable = false;
+  for (const double friction : {0., 0.3, 0.9, 1.5})
+    {
+      const auto expected = two.lambda(friction);
+      const bool grows    = std::any_of(expected.begin(), expected.end(), [](const Complex &l) { return l.real() > 0.01; });
+      (grows ? unstable : stable) = true;
+      for (const auto &values : solutions(coupled, friction))
+        EXPECT_LT(largest(distances(values, expected)), 1e-12) << "mu " << friction;
+    }
+  EXPECT_TRUE(stable && unstable);
+
+  // The reaction to the damping matters.
+  coupled.normal_damping = nullptr;
+  EXPECT_GT(largest(distances(solutions(coupled, 0.9).front(), two.lambda(0.9))), 1e-3);
+}
+
+
+
+TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
+{
+  const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent));
+  const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
+  const MultiVector          X = random_vectors(s.coupled.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
+  const MultiVector          L = force_residuals(s.coupled, mu, lambda, re, im, true);
+  const auto                 matrices = with_friction(s.coupled, mu);
+  const MultiVector          K = transpose_times(*matrices.stiffness, X), C = transpose_times(*matrices.damping, X), M = transpose_times(*matrices.mass, X);
+  for (int j = 0; j < 2; ++j)
+    for (const double part : {0., 1.})
+      {
+        // Re and Im of K x + λ C x + λ² M x
+        const Complex unit = part == 0. ? Complex(1., 0.) : Complex(0., -1.), l = unit * lambda[j], l2 = unit * lambda[j] * lambda[j];
+        MultiVector   expected(X.Map(), 1);
+        expected.Update(unit.real(), view(K, j, 1), -unit.imag(), view(K, 2 + j, 1), 0.);
+        expected.Update(l.real(), view(C, j, 1), -l.imag(), view(C, 2 + j, 1), 1.);
+        expected.Update(l2.real(), view(M, j, 1), -l2.imag(), view(M, 2 + j, 1), 1.);
+        const double size = column_norms(expected)[0];
+        expected.Update(-1., view(L, part == 0. ? j : 2 + j, 1), 1.);
+        EXPECT_LT(column_norms(expected)[0], 1e-13 * size);
+      }
+}
