@@ -213,7 +213,6 @@ TEST(ContactProblem, FindsWhatEnumerationFinds)
     }
   // Both cases must have occurred, or the test shows nothing.
   // Both cases must have occurred, or the test shows nothing.
-  std::cout << n_unique << " certified, " << n_several << " with several solutions, " << n_refused << " without" << std::endl;
   EXPECT_GT(n_unique, 10);
   EXPECT_GT(n_several, 0);
 }
