@@ -216,3 +216,36 @@ TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
         EXPECT_LT(column_norms(expected)[0], 1e-13 * size);
       }
 }
+
+
+
+TEST(SpeedDependentFriction, MassOnASpring)
+{
+  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt: about the steady state m ẍ + (c + μ'N) ẋ + k x = 0, and x grows if -μ'N > c.
+  const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
+  const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
+  const double falling  = -0.5 * std::exp(-w_0 / 0.4);
+  EXPECT_NEAR((friction(w_0 + 1e-5) - friction(w_0 - 1e-5)) / 2e-5, falling, 1e-9);
+
+  // The belt is no dof: P_t u = 0 - x, and nothing moves along n and b.
+  const Epetra_Map map = rows(1), nodes = rows(1);
+  const auto       one  = [&](const double value) { return Testing::diagonal(map, [value](int) { return value; }); };
+  const auto       none = sparse(nodes, map, [](int) { return Row{}; });
+  ContactOperators contact;
+  contact.normal     = none;
+  contact.tangential = sparse(nodes, map, [](int) { return Row{{0, -1.}}; });
+  contact.radial     = none;
+  contact.kernel     = one(1.);
+  const SecondOrderSystem system{one(m), one(c), one(k)};
+  for (const double slope : {falling, -1.001 * c / N, -0.999 * c / N, 0., 0.4})
+    {
+      const double        R       = -0.5 * (c + slope * N) / m;
+      const CoupledSystem coupled = couple(system, contact, contact_damping(contact, {0.}, {slope * N}));
+      for (const auto &values : solutions(coupled, friction(w_0)))
+        {
+          ASSERT_EQ(values.size(), 1u);
+          EXPECT_LT(std::abs(values[0] - Complex(R, std::sqrt(k / m - R * R))), 1e-13);
+          EXPECT_EQ(values[0].real() > 0., -slope * N > c);
+        }
+    }
+}

@@ -15,10 +15,11 @@ namespace Squeal
    *
    *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + P_bᵀ diag(c_b) P_b) T_c
+   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + C_f) T_c
    *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_C = ½ P_n C T_c,  V_M = ½ P_n M T_c
    *
-   * C is the damping of the bodies. That of the contact has no part in V_C: P_n P_bᵀ = 0.
+   * C is the damping of the bodies, C_f that of the contact (contact_damping()),
+   * which has no part in V_C because P_n P_bᵀ = P_n P_tᵀ = 0.
    */
   struct CoupledSystem
   {
@@ -34,9 +35,13 @@ namespace Squeal
   };
 
   /**
-   * C_b = P_bᵀ diag(c_b) P_b [N s/m] on the uncoupled dofs; null if all c_b vanish.
+   * C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs,
+   * from the coefficients of the contact nodes; null if all of them vanish. An
+   * empty @p c_t means zeros. With a friction coefficient μ(w) that falls with
+   * the sliding speed, c_t = μ'(w_0) |R_n0| is negative.
    */
-  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const std::vector<double> &c_b);
+  std::shared_ptr<const SparseMatrix>
+  contact_damping(const ContactOperators &contact, const std::vector<double> &c_b, const std::vector<double> &c_t = {});
 
   /// Couples the @p system; @p contact_damping may be null.
   CoupledSystem couple(const SecondOrderSystem                   &system,
