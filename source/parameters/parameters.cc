@@ -155,6 +155,7 @@ namespace Squeal
       parameters.materials.add_parameters(prm);
       parameters.discretization.add_parameters(prm);
       parameters.operation.add_parameters(prm);
+      parameters.damping.add_parameters(prm);
       parameters.solvers.add_parameters(prm);
       parameters.output.add_parameters(prm);
     }
@@ -243,6 +244,7 @@ namespace Squeal
     materials.check();
     discretization.check();
     operation.check();
+    damping.check();
     solvers.check();
   }
 } // namespace Squeal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/parameters/analysis.h>
+#include <squeal/parameters/damping.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
@@ -19,6 +20,7 @@ namespace Squeal
     MaterialParameters       materials;
     DiscretizationParameters discretization;
     OperationParameters      operation;
+    DampingParameters        damping;
     SolverParameters         solvers;
     OutputParameters         output;
 
