@@ -31,6 +31,21 @@ namespace Squeal
     return frictionless.stiffness->RowMap();
   }
 
+  bool CoupledSystem::has_damping() const
+  {
+    return frictionless.damping || modal_damping;
+  }
+
+  MultiVector CoupledSystem::damping_times(const MultiVector &X) const
+  {
+    if (!modal_damping)
+      return *frictionless.damping * X;
+    MultiVector result = *modal_damping * X;
+    if (frictionless.damping)
+      result.Update(1., *frictionless.damping * X, 1.);
+    return result;
+  }
+
   std::shared_ptr<const SparseMatrix>
   contact_damping(const ContactOperators &contact, const std::vector<double> &c_b, const std::vector<double> &c_t)
   {
