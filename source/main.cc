@@ -2,6 +2,7 @@
 #include <squeal/base/version.h>
 #include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
+#include <squeal/studies/dissipation_study.h>
 #include <squeal/studies/stability_study.h>
 
 #include <deal.II/base/mpi.h>
@@ -116,6 +117,10 @@ Decides whether a disc rubbed by friction pins squeals.
       {
         case Study::stability:
           run_stability_study(run);
+          break;
+        case Study::dissipation:
+          run_dissipation_study(run);
+          break;
       }
   }
   /// Prints the one message of a failed run; returns the exit status.

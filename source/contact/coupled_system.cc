@@ -9,23 +9,50 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// Pᵀ diag(c) P; null if all c vanish.
+    std::shared_ptr<const SparseMatrix> damping_along(const SparseMatrix &P, const std::vector<double> &coefficients)
+    {
+      if (std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; }))
+        return nullptr;
+
+      Epetra_Vector c(P.RowMap());
+      for (int i = 0; i < c.MyLength(); ++i)
+        c[i] = coefficients[P.RowMap().GID(i)];
+      SparseMatrix scaled(P);
+      scaled.LeftScale(c);
+      return multiply(P, scaled, true, false);
+    }
+  } // namespace
+
   const Epetra_Map &CoupledSystem::map() const
   {
     return frictionless.stiffness->RowMap();
   }
 
-  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const std::vector<double> &c_b)
+  bool CoupledSystem::has_damping() const
   {
-    if (std::all_of(c_b.begin(), c_b.end(), [](const double c) { return c == 0.; }))
-      return nullptr;
+    return frictionless.damping || modal_damping;
+  }
 
-    const SparseMatrix &P_b = *contact.radial;
-    Epetra_Vector       c(P_b.RowMap());
-    for (int i = 0; i < c.MyLength(); ++i)
-      c[i] = c_b[P_b.RowMap().GID(i)];
-    SparseMatrix scaled(P_b);
-    scaled.LeftScale(c);
-    return multiply(P_b, scaled, true, false);
+  MultiVector CoupledSystem::damping_times(const MultiVector &X) const
+  {
+    if (!modal_damping)
+      return *frictionless.damping * X;
+    MultiVector result = *modal_damping * X;
+    if (frictionless.damping)
+      result.Update(1., *frictionless.damping * X, 1.);
+    return result;
+  }
+
+  std::shared_ptr<const SparseMatrix>
+  contact_damping(const ContactOperators &contact, const std::vector<double> &c_b, const std::vector<double> &c_t)
+  {
+    const auto along_b = damping_along(*contact.radial, c_b), along_t = damping_along(*contact.tangential, c_t);
+    if (along_b && along_t)
+      return add(1., *along_b, 1., *along_t);
+    return along_b ? along_b : along_t;
   }
 
   CoupledSystem couple(const SecondOrderSystem                   &system,

@@ -156,6 +156,7 @@ namespace Squeal
       parameters.discretization.add_parameters(prm);
       parameters.operation.add_parameters(prm);
       parameters.sliding.add_parameters(prm);
+      parameters.damping.add_parameters(prm);
       parameters.solvers.add_parameters(prm);
       parameters.output.add_parameters(prm);
     }
@@ -255,6 +256,7 @@ namespace Squeal
     if (sliding.state == ContactState::steady_sliding && !(operation.rotation_speed > 0.))
       throw ParameterError("the disc does not turn, so that nothing slides steadily", "parameter Operation/Rotation speed",
                            "give a positive speed, or set Steady sliding/Contact state = equal load");
+    damping.check();
     solvers.check();
   }
 } // namespace Squeal

@@ -42,8 +42,8 @@ namespace Squeal
     const SecondOrderSystem &matrices = system.frictionless;
     border(M, gram(*T, *matrices.mass * vectors));
     border(K, gram(*T, *matrices.stiffness * vectors));
-    if (matrices.damping)
-      border(C, gram(*T, *matrices.damping * vectors));
+    if (system.has_damping())
+      border(C, gram(*T, system.damping_times(vectors)));
 
     A          = append_columns(A, replicate(transpose_times(*system.friction_forces, vectors)));
     V_K        = append_columns(V_K, replicate(*system.normal_stiffness * vectors));

@@ -88,8 +88,8 @@ namespace Squeal
     // Frictionless part
     MultiVector R = *matrices.stiffness * X;
     add_scaled(R, square, *matrices.mass * X);
-    if (matrices.damping)
-      add_scaled(R, lambda, *matrices.damping * X);
+    if (system.has_damping())
+      add_scaled(R, lambda, system.damping_times(X));
 
     // Friction: −μ A (V_K + λ V_C + λ² V_M) φ, or its transpose −μ (V_K + λ V_C + λ² V_M)ᵀ Aᵀ φ
     if (mu != 0.)

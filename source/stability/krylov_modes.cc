@@ -1,11 +1,40 @@
+#include <squeal/base/exceptions.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/matrix_operator.h>
 #include <squeal/stability/krylov_modes.h>
 
-#include <optional>
-
 namespace Squeal
 {
+  namespace
+  {
+    /// C_c − μ A V_C + C_m, of which either part may be null.
+    class DampingOperator : public LinearOperator
+    {
+    public:
+      DampingOperator(std::shared_ptr<const SparseMatrix> matrix, const CoupledSystem &system)
+        : matrix(std::move(matrix))
+        , system(system)
+      {}
+
+      void apply(const MultiVector &X, MultiVector &Y) const override
+      {
+        if (matrix)
+          matrix->Multiply(false, X, Y);
+        if (system.modal_damping)
+          Y.Update(1., *system.modal_damping * X, matrix ? 1. : 0.);
+      }
+
+      const Epetra_Map &map() const override
+      {
+        return system.map();
+      }
+
+    private:
+      std::shared_ptr<const SparseMatrix> matrix;
+      const CoupledSystem                &system;
+    };
+  } // namespace
+
   ComplexModes krylov_modes(const CoupledSystem    &system,
                             UpdatedInverse         &inverse,
                             const double            shift,
@@ -15,13 +44,18 @@ namespace Squeal
                             const SolverParameters &parameters,
                             Progress               &progress)
   {
-    // The pencil as sparse matrices
-    const SecondOrderSystem       matrices = with_friction(system, mu);
-    const MatrixOperator          mass(matrices.mass), stiffness(matrices.stiffness);
-    std::optional<MatrixOperator> damping;
-    if (matrices.damping)
-      damping.emplace(matrices.damping);
-    const QuadraticPencil pencil{&mass, damping ? &*damping : nullptr, &stiffness};
+    // Its inverse would hold the dense C_m
+    if (shift != 0. && system.modal_damping)
+      throw SolverError("modal damping and a disc that can move as a rigid body do not go together with the Krylov solver",
+                        "complex modes",
+                        "choose Complex modes/Solver = residual iteration, hold the disc by Mounts/Elastic mounts, or leave "
+                        "Damping/Modal damping ratio empty");
+
+    // The pencil: sparse matrices, but for modal damping
+    const SecondOrderSystem matrices = with_friction(system, mu);
+    const MatrixOperator    mass(matrices.mass), stiffness(matrices.stiffness);
+    const DampingOperator   damping(matrices.damping, system);
+    const QuadraticPencil   pencil{&mass, system.has_damping() ? &damping : nullptr, &stiffness};
 
     // Its inverse at the shift
     std::unique_ptr<Factorization> lu;

@@ -46,7 +46,8 @@ namespace Squeal
       return U;
     }
 
-    /// Φ_R with its static responses to friction and damping of first order.
+    /// Φ_R with its static responses to friction and damping of first order. That to modal damping, K_c⁻¹ C_m Φ_R, lies in
+    /// the span of Φ_R, which are eigenvectors.
     MultiVector starting_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &Phi, const double mu)
     {
       // Epetra vectors cannot be assigned in another size: parts are collected first.

@@ -45,14 +45,15 @@ namespace Squeal
                                const Linearisation     &linearisation,
                                const FrictionlessModes &frictionless,
                                const double             mu,
-                               Run                     &run)
+                               Run                     &run,
+                               const std::string       &step)
   {
     const Parameters     &parameters = run.parameters;
     const CoupledSystem  &coupled    = linearisation.coupled;
     const SymmetricModes &real       = frictionless.real;
     const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    run.progress.begin("Complex modes");
+    run.progress.begin(step);
     FrictionModes result;
     ComplexModes &modes = result.modes;
     if (parameters.solvers.complex_solver == ComplexSolver::krylov)

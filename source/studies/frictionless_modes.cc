@@ -5,6 +5,7 @@
 #include <squeal/studies/frictionless_modes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Squeal
 {
@@ -27,6 +28,17 @@ namespace Squeal
     std::fill(labels.begin(), labels.begin() + n_rigid_body, "RB");
     mark_doublets(labels);
     return labels;
+  }
+
+  void add_modal_damping(const FrictionlessModes &modes, const DampingParameters &parameters, Linearisation &linearisation)
+  {
+    if (parameters.modal_ratios.empty())
+      return;
+    std::vector<double> ratios;
+    for (const double eigenvalue : modes.real.eigenvalues)
+      ratios.push_back(parameters.modal_ratio(hertz(std::sqrt(eigenvalue))));
+    linearisation.coupled.modal_damping =
+      modal_damping(*linearisation.coupled.frictionless.mass, *modes.real.vectors, modes.real.eigenvalues, ratios);
   }
 
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,

@@ -133,6 +133,16 @@ namespace Squeal
     }
   } // namespace
 
+  const std::array<PaperRange, 2> paper_ranges_damped = {{{"F1", -1.76, -1.07}, {"T1", -2.34, -1.41}}};
+
+  std::optional<double> paper_divergence_damped(const std::string &label)
+  {
+    for (const Row &row : rows())
+      if (row.match == Match::label && row.label == label)
+        return row.divergence_damped;
+    return {};
+  }
+
   Table table_one(const TableOneResults &results, const RadialDissipation dissipation, Agreement &agreement)
   {
     const bool damped = dissipation != RadialDissipation::none;

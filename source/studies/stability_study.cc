@@ -165,11 +165,12 @@ namespace Squeal
     std::optional<SlidingState> sliding;
     if (parameters.sliding.state == ContactState::steady_sliding)
       sliding = solve_sliding(scene, operation, parameters.sliding, run);
-    const Linearisation linearisation = linearise(scene, sliding ? &*sliding : nullptr, operation);
+    Linearisation linearisation = linearise(scene, sliding ? &*sliding : nullptr, operation);
 
     // ------------------------------------------------------------------- modes
     const FrictionlessModes frictionless = frictionless_modes(scene, linearisation, run);
-    const FrictionModes     friction     = friction_modes(scene, linearisation, frictionless, operation.friction_coefficient, run);
+    add_modal_damping(frictionless, parameters.damping, linearisation);
+    const FrictionModes friction = friction_modes(scene, linearisation, frictionless, operation.friction_coefficient, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
 

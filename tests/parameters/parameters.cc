@@ -167,11 +167,15 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
 {
   const Parameters p = read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
                                  "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
-                                 "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7", "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
+                                 "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7", "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02",
+                                 "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
   EXPECT_NE(print(p), print(Parameters()));
   EXPECT_EQ(print(read(print(p))), print(p));
   EXPECT_EQ(read(print(p)).geometry.element_size, 0.0123456789);
   EXPECT_EQ(read(print(p)).materials.pin.rayleigh_beta, 1.2345678e-7);
+  ASSERT_EQ(read(print(p)).damping.modal_ratios.size(), 2u);
+  EXPECT_EQ(read(print(p)).damping.modal_ratios[0].ratio, 0.0123456789);
+  EXPECT_EQ(read(print(p)).damping.modal_ratios[1].frequency, 2500.5);
   EXPECT_EQ(read(print(p)).geometry.bottom.angles, (std::vector<double>{1. / 3.}));
 
   // Also with the documentation, which states a unit for every number
@@ -235,6 +239,38 @@ TEST(ParameterChecks, Materials)
   expect_refused("Mounts/Elastic mounts=disc_bore: 1, -2, 3", "surface disc_bore", "not a finite value >= 0");
   expect_refused("Mounts/Elastic mounts=: 1, 2, 3", "Mounts/Elastic mounts", "names no surface");
   expect_refused("Mounts/Elastic mounts=disc_bore: 1, 2, 3; disc_bore: 1, 2, 3", "surface disc_bore", "mounted twice");
+}
+
+TEST(ParameterChecks, Damping)
+{
+  const char *name = "parameter Damping/Modal damping ratio";
+  expect_refused("Damping/Modal damping ratio=1000", name, "is not a frequency with its damping ratio");
+  expect_refused("Damping/Modal damping ratio=1000: 0.01: 2", name, "is not a frequency with its damping ratio");
+  expect_refused("Damping/Modal damping ratio=1000: 1 %", name, "`1 %` is not a number");
+  expect_refused("Damping/Modal damping ratio=: 0.1", name, "is not a number");
+  expect_refused("Damping/Modal damping ratio=1000: 1", name, "the damping ratio 1 at 1000 Hz is not in [0, 1)");
+  expect_refused("Damping/Modal damping ratio=1000: -0.01", name, "not in [0, 1)");
+  expect_refused("Damping/Modal damping ratio=-1: 0.01", name, "not a finite value >= 0");
+  expect_refused("Damping/Modal damping ratio=1000: 0.01, 1000: 0.02", name, "does not exceed the one before it");
+  expect_refused("Damping/Modal damping ratio=2000: 0.01, 1000: 0.02", name, "does not exceed the one before it, 2000 Hz");
+  EXPECT_EQ(refusal("", {"Damping/Modal damping ratio=0: 0, 1000: 0.999"}), "accepted");
+}
+
+TEST(ModalDampingRatios, AreLinearBetweenTheEntries)
+{
+  EXPECT_EQ(Parameters().damping.modal_ratio(1000.), 0.);
+  const DampingParameters one = read("", {"Damping/Modal damping ratio=800: 0.01"}).damping;
+  for (const double frequency : {0., 800., 5000.})
+    EXPECT_EQ(one.modal_ratio(frequency), 0.01);
+
+  const DampingParameters three = read("", {"Damping/Modal damping ratio=500: 0.02, 1500: 0.01, 3500: 0.05"}).damping;
+  EXPECT_EQ(three.modal_ratio(100.), 0.02);
+  EXPECT_EQ(three.modal_ratio(500.), 0.02);
+  EXPECT_DOUBLE_EQ(three.modal_ratio(1000.), 0.015);
+  EXPECT_EQ(three.modal_ratio(1500.), 0.01);
+  EXPECT_DOUBLE_EQ(three.modal_ratio(2500.), 0.03);
+  EXPECT_EQ(three.modal_ratio(3500.), 0.05);
+  EXPECT_EQ(three.modal_ratio(9000.), 0.05);
 }
 
 TEST(ParameterChecks, Solvers)

@@ -2,6 +2,7 @@
 #include "scenes.h"
 
 #include <squeal/eigen/dense_quadratic.h>
+#include <squeal/eigen/symmetric_modes.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/reduction/reduced_model.h>
 
@@ -18,6 +19,15 @@ namespace
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}};
     return Scene(extrude(polar_plan(0.1505, 0.3155, 1, 7, pins), layers(1, 2)), materials, operating(dissipation));
+  }
+
+  /// The system with 3 % damping of its modes below 15 kHz.
+  CoupledSystem with_modal_damping(CoupledSystem system)
+  {
+    const auto real = symmetric_modes(*system.frictionless.stiffness, *system.frictionless.mass, std::pow(2. * M_PI * 15000., 2));
+    system.modal_damping =
+      modal_damping(*system.frictionless.mass, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.03));
+    return system;
   }
 
   double largest_difference(const std::vector<Complex> &values, std::vector<Complex> others)
@@ -102,6 +112,39 @@ TEST(ReducedModel, ProjectsEveryBlock)
             }
         }
       EXPECT_LT(max_norm(add(replicate(grown.basis()), replicate(X), -1.)), 1e-16);
+    }
+}
+
+
+
+TEST(ReducedModel, ModalDamping)
+{
+  // Alone and beside a damping matrix, in a full basis and in a small one grown in parts
+  const double limit = 2. * M_PI * 20000., mu = 0.6;
+  for (const MaterialParameters &materials : {mounted(), damped(mounted())})
+    {
+      const Scene             s        = tiny_scene(RadialDissipation::none, materials);
+      const CoupledSystem     system   = with_modal_damping(s.coupled);
+      const SecondOrderSystem matrices = with_friction(system, mu);
+      const int               n        = system.map().NumGlobalElements();
+      const MultiVector       units    = unit_vectors(system.map());
+      DenseMatrix             C        = replicate(*system.modal_damping * units);
+      if (matrices.damping)
+        C = add(C, to_dense(*matrices.damping));
+      const auto all = dense_quadratic_modes(to_dense(*matrices.mass), &C, to_dense(*matrices.stiffness), limit);
+
+      const MultiVector T = orthonormalize(*system.frictionless.mass, nullptr, random_vectors(system.map(), n), 1e-13);
+      ReducedModel      full(system), grown(system);
+      full.extend(T);
+      const ReducedPencil pencil = full.at(mu);
+      ASSERT_TRUE(pencil.has_damping);
+      EXPECT_GT(all.values.size(), 20u);
+      EXPECT_LT(largest_difference(all.values, dense_quadratic_modes(pencil.mass, &pencil.damping, pencil.stiffness, limit).values), 1e-9);
+
+      grown.extend(view(T, 0, 4));
+      grown.extend(view(T, 4, 3));
+      const DenseMatrix X = replicate(view(T, 0, 7)), expected = multiply(X, multiply(C, X), true);
+      EXPECT_LT(max_norm(add(grown.at(mu).damping, expected, -1.)), 1e-12 * max_norm(expected));
     }
 }
 

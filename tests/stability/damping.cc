@@ -1,5 +1,6 @@
 #include "solutions.h"
 
+#include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
 
 #include <gtest/gtest.h>
@@ -31,6 +32,27 @@ namespace
     materials.disc.rayleigh_beta  = beta;
     materials.pin                 = materials.disc;
     return materials;
+  }
+
+  /// ζ of the tests with modal damping: between 1 and 4 % within the band.
+  double ratio_at(const double omega)
+  {
+    return 0.01 + 0.03 * omega / omega_max;
+  }
+
+  std::vector<double> ratios_of(const SymmetricModes &real)
+  {
+    std::vector<double> ratios;
+    for (const double eigenvalue : real.eigenvalues)
+      ratios.push_back(ratio_at(std::sqrt(eigenvalue)));
+    return ratios;
+  }
+
+  /// The system with damping of its real modes.
+  CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
+  {
+    system.modal_damping = modal_damping(*system.frictionless.mass, *real.vectors, real.eigenvalues, ratios_of(real));
+    return system;
   }
 
   /// λ with Im λ > 0 of real modes, each damped by itself: λ² + c(ω) λ + ω² = 0.
@@ -215,4 +237,162 @@ TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
         expected.Update(-1., view(L, part == 0. ? j : 2 + j, 1), 1.);
         EXPECT_LT(column_norms(expected)[0], 1e-13 * size);
       }
+}
+
+
+
+TEST(SpeedDependentFriction, MassOnASpring)
+{
+  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt: about the steady state m ẍ + (c + μ'N) ẋ + k x = 0, and x grows if -μ'N > c.
+  const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
+  const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
+  const double falling  = -0.5 * std::exp(-w_0 / 0.4);
+  EXPECT_NEAR((friction(w_0 + 1e-5) - friction(w_0 - 1e-5)) / 2e-5, falling, 1e-9);
+
+  // The belt is no dof: P_t u = 0 - x, and nothing moves along n and b.
+  const Epetra_Map map = rows(1), nodes = rows(1);
+  const auto       one  = [&](const double value) { return Testing::diagonal(map, [value](int) { return value; }); };
+  const auto       none = sparse(nodes, map, [](int) { return Row{}; });
+  ContactOperators contact;
+  contact.normal     = none;
+  contact.tangential = sparse(nodes, map, [](int) { return Row{{0, -1.}}; });
+  contact.radial     = none;
+  contact.kernel     = one(1.);
+  const SecondOrderSystem system{one(m), one(c), one(k)};
+  for (const double slope : {falling, -1.001 * c / N, -0.999 * c / N, 0., 0.4})
+    {
+      const double        R       = -0.5 * (c + slope * N) / m;
+      const CoupledSystem coupled = couple(system, contact, contact_damping(contact, {0.}, {slope * N}));
+      for (const auto &values : solutions(coupled, friction(w_0)))
+        {
+          ASSERT_EQ(values.size(), 1u);
+          EXPECT_LT(std::abs(values[0] - Complex(R, std::sqrt(k / m - R * R))), 1e-13);
+          EXPECT_EQ(values[0].real() > 0., -slope * N > c);
+        }
+    }
+}
+
+
+
+TEST(ModalDamping, IsDiagonalInTheModes)
+{
+  const Scene       s(mesh_of(skewed_pins), mounted(), operating());
+  const auto        real   = real_modes(s.coupled);
+  const MultiVector Phi    = *real.vectors;
+  const auto        system = with_modal_damping(s.coupled, real);
+  DenseMatrix       D      = gram(Phi, *system.modal_damping * Phi);
+  double            size   = 0.;
+  for (int j = 0; j < D.n_columns(); ++j)
+    {
+      const double omega = std::sqrt(real.eigenvalues[j]), expected = 2. * ratio_at(omega) * omega;
+      D(j, j) -= expected;
+      size = std::max(size, expected);
+    }
+  EXPECT_LT(max_norm(D), 1e-11 * size);
+
+  // Symmetric, and without effect on what is M-orthogonal to the modes
+  const MultiVector X = random_vectors(system.map(), 3);
+  const DenseMatrix S = gram(X, *system.modal_damping * X);
+  EXPECT_LT(max_norm(add(S, transpose(S), -1.)), 1e-13 * max_norm(S));
+  const MultiVector Y = orthonormalize(*system.frictionless.mass, &Phi, X, 1e-10);
+  EXPECT_LT(max_norm(gram(Y, *system.modal_damping * Y)), 1e-11 * size);
+
+  // Rigid-body modes get none; no ratios, no damping.
+  std::vector<double> eigenvalues = real.eigenvalues;
+  eigenvalues.front()             = 0.;
+  const auto free                 = modal_damping(*system.frictionless.mass, Phi, eigenvalues, ratios_of(real));
+  EXPECT_LT(column_norms(*free * view(Phi, 0, 1))[0], 1e-10 * column_norms(*free * view(Phi, 1, 1))[0]);
+  EXPECT_EQ(modal_damping(*system.frictionless.mass, Phi, real.eigenvalues, std::vector<double>(eigenvalues.size(), 0.)), nullptr);
+  EXPECT_FALSE(s.coupled.has_damping());
+}
+
+
+
+TEST(ModalDamping, GivesEachModeItsRatio)
+{
+  // λ = −ζ ω ± i ω √(1 − ζ²)
+  const Scene s(mesh_of(skewed_pins), mounted(), operating());
+  const auto  real     = real_modes(s.coupled);
+  const auto  system   = with_modal_damping(s.coupled, real);
+  const auto  expected = damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; });
+  EXPECT_LT(largest(distances(krylov(system, 0.).lambda, expected)), 1e-10);
+  EXPECT_LT(largest(distances(krylov(system, 0., 1e-11, ShiftInverse::sparse_lu).lambda, expected)), 1e-10);
+  EXPECT_LT(largest(distances(iterated(system, 0., 1e-11).lambda, expected)), 1e-10);
+}
+
+
+
+TEST(ModalDamping, BothSolversAgreeWithFriction)
+{
+  // By itself, and with every other damping
+  for (const bool others : {false, true})
+    {
+      const Scene               s(mesh_of(skewed_pins), others ? damped(mounted()) : mounted(), operating());
+      const std::vector<double> c_b(s.interface.size(), others ? 50. : 0.), c_t(s.interface.size(), others ? -20. : 0.);
+      const CoupledSystem       bare   = couple(s.system, s.contact, contact_damping(s.contact, c_b, c_t));
+      const auto                system = with_modal_damping(bare, real_modes(bare));
+      const auto                reference = krylov(system, mu);
+      for (const double tolerance : {1e-4, 1e-8})
+        EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
+      EXPECT_LT(largest(reference.residuals), 1e-11);
+      // It matters.
+      EXPECT_GT(largest(distances(krylov(bare, mu).lambda, reference.lambda)), 1e-3);
+    }
+}
+
+
+
+TEST(ModalDamping, AddsItsForcesOnBothSides)
+{
+  const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating());
+  const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
+  const std::vector<Complex> lambda = {{-300., 9000.}};
+  const MultiVector          X = random_vectors(system.map(), 2), re = view(X, 0, 1), im = view(X, 1, 1);
+  const MultiVector          C = *system.modal_damping * X;
+  for (const bool left : {false, true})
+    {
+      MultiVector  difference = force_residuals(system, mu, lambda, re, im, left);
+      const double size       = column_norms(difference)[0];
+      difference.Update(-1., force_residuals(s.coupled, mu, lambda, re, im, left), 1.);
+      MultiVector expected(C);
+      expected(0)->Update(-lambda[0].imag(), *C(1), lambda[0].real());
+      expected(1)->Update(lambda[0].imag(), *C(0), lambda[0].real());
+      EXPECT_GT(column_norms(expected)[0], 1e-9 * size);
+      expected.Update(-1., difference, 1.);
+      EXPECT_LT(column_norms(expected)[0], 1e-14 * size);
+    }
+}
+
+
+
+TEST(ModalDamping, OfADiscThatMovesFreely)
+{
+  // The Krylov solver has no inverse at a shift then, the residual iteration needs none.
+  const Scene           s(mesh_of(skewed_pins), mounted({}), operating());
+  const double          shift = stabilizing_shift(s.model, s.coupled, omega_max);
+  SymmetricModesOptions real_options;
+  real_options.shift    = shift * shift;
+  const auto     real   = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, real_options);
+  const auto     system = with_modal_damping(s.coupled, real);
+  UpdatedInverse inverse(system, shift, FactorizationLibrary::automatic);
+  Progress       progress;
+
+  ResidualIterationOptions options;
+  options.largest_frequency = omega_max;
+  options.tolerance         = 1e-10;
+  const auto modes          = residual_iteration(system, inverse, *real.vectors, 0., options, progress);
+  EXPECT_EQ(modes.n_rigid_body, 3);
+  EXPECT_LT(largest(distances(modes.lambda, damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; }))), 1e-9);
+
+  try
+    {
+      krylov_modes(system, inverse, shift, 0., omega_max, real.eigenvalues.size(), SolverParameters(), progress);
+      FAIL() << "accepted modal damping with a shift";
+    }
+  catch (const SolverError &error)
+    {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("modal damping"), std::string::npos) << message;
+      EXPECT_NE(message.find("Complex modes/Solver = residual iteration"), std::string::npos) << message;
+    }
 }

@@ -2,6 +2,7 @@
 
 #include <squeal/assembly/second_order_system.h>
 #include <squeal/contact/contact_operators.h>
+#include <squeal/contact/modal_damping.h>
 
 #include <complex>
 #include <vector>
@@ -13,12 +14,15 @@ namespace Squeal
    * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
    * compression and t the direction of the disc's motion relative to the pin):
    *
-   *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
+   *   (λ² (M_c − μ A V_M) + λ (C_c + C_m − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + P_bᵀ diag(c_b) P_b) T_c
+   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + C_f) T_c
    *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_C = ½ P_n C T_c,  V_M = ½ P_n M T_c
    *
-   * C is the damping of the bodies. That of the contact has no part in V_C: P_n P_bᵀ = 0.
+   * C is the damping of the bodies, C_f that of the contact (contact_damping()),
+   * which has no part in V_C because P_n P_bᵀ = P_n P_tᵀ = 0. Modal damping C_m
+   * joins C_c. It is known in coupled coordinates only and takes no part in the
+   * reactions: what C of the bodies it stands for, the ratios do not tell.
    */
   struct CoupledSystem
   {
@@ -28,22 +32,33 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix> normal_damping;    ///< V_C, n_c × n; null: the bodies have no damping
     std::shared_ptr<const SparseMatrix> normal_mass;       ///< V_M, n_c × n
     std::shared_ptr<const SparseMatrix> kernel;            ///< T_c, n_uncoupled × n
+    std::shared_ptr<const ModalDamping> modal_damping;     ///< C_m; null: none
 
     /// Distribution of the coupled dofs.
     const Epetra_Map &map() const;
+
+    /// Whether there is C_c or C_m.
+    bool has_damping() const;
+
+    /// (C_c + C_m) X; only if has_damping().
+    MultiVector damping_times(const MultiVector &X) const;
   };
 
   /**
-   * C_b = P_bᵀ diag(c_b) P_b [N s/m] on the uncoupled dofs; null if all c_b vanish.
+   * C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs,
+   * from the coefficients of the contact nodes; null if all of them vanish. An
+   * empty @p c_t means zeros. With a friction coefficient μ(w) that falls with
+   * the sliding speed, c_t = μ'(w_0) |R_n0| is negative.
    */
-  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const std::vector<double> &c_b);
+  std::shared_ptr<const SparseMatrix>
+  contact_damping(const ContactOperators &contact, const std::vector<double> &c_b, const std::vector<double> &c_t = {});
 
   /// Couples the @p system; @p contact_damping may be null.
   CoupledSystem couple(const SecondOrderSystem                   &system,
                        const ContactOperators                    &contact,
                        const std::shared_ptr<const SparseMatrix> &contact_damping);
 
-  /// M_c − μ A V_M, C_c − μ A V_C and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
+  /// M_c − μ A V_M, C_c − μ A V_C (without C_m) and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
   SecondOrderSystem with_friction(const CoupledSystem &system, double mu);
 
   /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
@@ -51,7 +66,8 @@ namespace Squeal
 
   /**
    * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
-   * contact reactions [N] (compression negative) of complex modes, n_c × k each part.
+   * contact reactions [N] (compression negative) of complex modes, n_c × k each
+   * part. Modal damping has no part in them.
    */
   void normal_reactions(const CoupledSystem                     &system,
                         const std::vector<std::complex<double>> &lambda,

@@ -13,13 +13,15 @@ namespace Squeal
   /// Which question a run answers.
   enum class Study
   {
-    stability ///< component, real coupled and complex modes at one friction coefficient
+    stability,  ///< component, real coupled and complex modes at one friction coefficient
+    dissipation ///< complex modes with every reading of the radial dissipation
   };
 
   template <>
   struct EnumTable<Study>
   {
-    static constexpr std::array<EnumName<Study>, 1> names = {{{Study::stability, "stability"}}};
+    static constexpr std::array<EnumName<Study>, 2> names = {
+      {{Study::stability, "stability"}, {Study::dissipation, "dissipation"}}};
   };
 
   /// Elements and band (sections `Discretization` and `Band`).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/parameters/analysis.h>
+#include <squeal/parameters/damping.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
@@ -21,6 +22,7 @@ namespace Squeal
     DiscretizationParameters discretization;
     OperationParameters      operation;
     SlidingParameters        sliding;
+    DampingParameters        damping;
     SolverParameters         solvers;
     OutputParameters         output;
 

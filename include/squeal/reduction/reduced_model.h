@@ -18,7 +18,7 @@ namespace Squeal
    * and (13) of the paper). Friction being affine in μ, blocks projected once
    * serve every friction coefficient:
    *
-   *   Tᵀ M_c T,  Tᵀ C_c T,  Tᵀ K_c T,  (Tᵀ A)(V_M T),  (Tᵀ A)(V_C T),  (Tᵀ A)(V_K T)
+   *   Tᵀ M_c T,  Tᵀ (C_c + C_m) T,  Tᵀ K_c T,  (Tᵀ A)(V_M T),  (Tᵀ A)(V_C T),  (Tᵀ A)(V_K T)
    *
    * A basis grows by extend(), which projects only what is new.
    */

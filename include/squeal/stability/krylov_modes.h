@@ -13,7 +13,7 @@ namespace Squeal
    * @param inverse    factor and attachment modes of the frictionless system at @p shift
    * @param n_expected real modes in the band, which tells how many to look for
    *
-   * Throws SolverError if a mode misses the tolerance.
+   * Throws SolverError if a mode misses the tolerance, or if there is modal damping and the shift is not zero.
    */
   ComplexModes krylov_modes(const CoupledSystem    &system,
                             UpdatedInverse         &inverse,

@@ -19,9 +19,10 @@ namespace Squeal
    * made two-sided. The basis starts from the real modes Φ_R and their
    * responses to friction and damping of first order, right and left,
    *
-   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R,
+   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R
    *
-   * and grows by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of the right
+   * (that to modal damping, K_c⁻¹ M_c Φ_R diag(2 ζ ω) = Φ_R diag(2 ζ / ω), is in
+   * their span already), and grows by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of the right
    * and left reduced eigenvectors of all modes that are not accurate yet,
    * compressed by their principal axes in the M-norm. The error of an
    * eigenvalue is estimated from both residuals: with R_F = Q(λ)φ, L_F = Q(λ)ᵀψ

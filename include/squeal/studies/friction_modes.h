@@ -19,12 +19,13 @@ namespace Squeal
     std::size_t n_unstable() const;
   };
 
-  /// Complex modes of the band by the solver that the parameters choose, as a step of the run.
+  /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
   FrictionModes friction_modes(const Scene             &scene,
                                const Linearisation     &linearisation,
                                const FrictionlessModes &frictionless,
                                double                   mu,
-                               Run                     &run);
+                               Run                     &run,
+                               const std::string       &step = "Complex modes");
 
   /// Stable or squeal, in one sentence.
   std::string verdict(const FrictionModes &modes, double mu, double maximum_frequency);

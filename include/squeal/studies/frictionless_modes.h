@@ -25,6 +25,9 @@ namespace Squeal
   /// Component modes, the factorisation, and the real coupled modes of the band, as steps of the run.
   FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run);
 
+  /// Adds the modal damping that the parameters ask for to the linearised system.
+  void add_modal_damping(const FrictionlessModes &modes, const DampingParameters &parameters, Linearisation &linearisation);
+
   /// Names of coupled modes after the component modes that they resemble; @p imaginary_part may be null.
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
                                              const Linearisation     &linearisation,

@@ -3,7 +3,9 @@
 #include <squeal/output/table.h>
 #include <squeal/parameters/operation.h>
 
+#include <array>
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +28,17 @@ namespace Squeal
     double       component = 0., coupled = 0.;
     unsigned int n_component = 0, n_coupled = 0;
   };
+
+  /// Divergence rate in Table 1 of a mode with radial dissipation [%]; nothing where none is printed for the label.
+  std::optional<double> paper_divergence_damped(const std::string &label);
+
+  /// Range of divergence rates that Table 1 prints for a family of pin modes with radial dissipation.
+  struct PaperRange
+  {
+    const char *label;
+    double      lowest, highest; ///< [%]
+  };
+  extern const std::array<PaperRange, 2> paper_ranges_damped;
 
   /**
    * The paper's Table 1 (D. Brizard, O. Chiello, J.-J. Sinou, X. Lorang, J.
