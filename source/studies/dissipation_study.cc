@@ -18,7 +18,7 @@ namespace Squeal
       std::string         name;
       ContactState        state;
       RadialDissipation   dissipation;
-      std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of each label without marks, ascending
+      std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of the modes of each label, ascending
     };
 
     std::vector<Reading> readings()
@@ -30,13 +30,7 @@ namespace Squeal
       return result;
     }
 
-    /// "A0-4 +" without its mark.
-    std::string family(const std::string &label)
-    {
-      return label.substr(0, label.find(' '));
-    }
-
-    /// Modes one below the other: names in the order of frequency without C_b, members of a name by divergence rate.
+    /// Modes in the order of their frequencies without C_b; the members of a family of pin modes by divergence rate.
     Table mode_table(const std::vector<Reading> &all, const std::vector<std::string> &labels)
     {
       std::vector<Column> columns = {{"label", ""}, {"paper with C_b", "%", 3}};
@@ -46,13 +40,14 @@ namespace Squeal
       std::map<std::string, std::size_t> n_seen;
       for (const std::string &label : labels)
         {
-          const std::string name   = family(label);
-          const std::size_t member = n_seen[name]++;
+          const std::size_t member = n_seen[label]++;
           const auto        paper  = paper_divergence_damped(label);
-          std::vector<Cell> cells  = {label, paper ? Cell(*paper) : Cell()};
+          std::vector<Cell> cells;
+          cells.emplace_back(label);
+          cells.push_back(paper ? Cell(*paper) : Cell());
           for (const Reading &reading : all)
             {
-              const auto rates = reading.rates.find(name);
+              const auto rates = reading.rates.find(label);
               const bool has   = rates != reading.rates.end() && member < rates->second.size();
               cells.push_back(has ? Cell(rates->second[member]) : Cell());
             }
@@ -61,25 +56,26 @@ namespace Squeal
       return table;
     }
 
-    /// Decaying half of the pin modes: those that the paper lists as damped.
+    /// The pin modes that the paper lists as damped: all T1, and of F1 the half that bends radially.
     Table range_table(const std::vector<Reading> &all)
     {
-      std::vector<Column> columns = {{"pin modes", ""}, {"paper with C_b", "%", 2}};
+      std::vector<Column> columns = {{"damped pin modes", ""}, {"paper with C_b", "%", 2}};
       for (const Reading &reading : all)
         columns.push_back({reading.name, "%", 2});
       Table table(columns);
       for (const PaperRange &range : paper_ranges_damped)
         for (const bool lowest : {true, false})
           {
-            std::vector<Cell> cells = {std::string(range.label) + (lowest ? " most damped" : " least damped of half"),
-                                       lowest ? range.lowest : range.highest};
+            std::vector<Cell> cells;
+            cells.emplace_back(std::string(range.label) + (lowest ? " most damped" : " least damped"));
+            cells.emplace_back(lowest ? range.lowest : range.highest);
             for (const Reading &reading : all)
               {
                 const auto rates = reading.rates.find(range.label);
                 if (rates == reading.rates.end())
                   cells.emplace_back();
                 else
-                  cells.emplace_back(rates->second[lowest ? 0 : (rates->second.size() - 1) / 2]);
+                  cells.emplace_back(rates->second[lowest ? 0 : (rates->second.size() - 1) / range.every]);
               }
             table.add_row(std::move(cells));
           }
@@ -120,7 +116,7 @@ namespace Squeal
         const FrictionModes friction =
           friction_modes(scene, linearisation, *frictionless, operation.friction_coefficient, run, reading.name);
         for (std::size_t j = 0; j < friction.labels.size(); ++j)
-          reading.rates[family(friction.labels[j])].push_back(100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
+          reading.rates[friction.labels[j]].push_back(100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
         for (auto &entry : reading.rates)
           std::sort(entry.second.begin(), entry.second.end());
         if (labels.empty())

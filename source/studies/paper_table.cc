@@ -133,7 +133,7 @@ namespace Squeal
     }
   } // namespace
 
-  const std::array<PaperRange, 2> paper_ranges_damped = {{{"F1", -1.76, -1.07}, {"T1", -2.34, -1.41}}};
+  const std::array<PaperRange, 2> paper_ranges_damped = {{{"F1", -1.76, -1.07, 2}, {"T1", -2.34, -1.41, 1}}};
 
   std::optional<double> paper_divergence_damped(const std::string &label)
   {

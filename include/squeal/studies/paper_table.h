@@ -37,6 +37,7 @@ namespace Squeal
   {
     const char *label;
     double      lowest, highest; ///< [%]
+    int         every;           ///< one mode of so many is damped: of F1 those that bend radially
   };
   extern const std::array<PaperRange, 2> paper_ranges_damped;
 
