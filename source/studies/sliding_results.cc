@@ -11,7 +11,7 @@ namespace Squeal
       if (uniqueness.is_certified)
         return text("it is the only one: mu < ", uniqueness.unique_below);
       if (uniqueness.found_other)
-        return "it is NOT the only one: another contact set fulfils all conditions too; the one nearest to all nodes closed is used";
+        return "it is NOT the only one: another contact set fulfils all conditions too; the one found first is used";
       return text("whether it is the only one is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "",
                   "; ", uniqueness.n_searches, " searches from other contact sets found no other");
     }
