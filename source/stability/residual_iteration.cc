@@ -47,7 +47,7 @@ namespace Squeal
     }
 
     /// Φ_R with its static responses to friction and damping of first order. That to modal damping, K_c⁻¹ C_m Φ_R, lies in
-    /// the span of Φ_R, which are eigenvectors.
+    /// the span of Φ_R, which are eigenvectors; that to friction from the reactions to damping, μ A V_C, is of second order.
     MultiVector starting_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &Phi, const double mu)
     {
       // Epetra vectors cannot be assigned in another size: parts are collected first.

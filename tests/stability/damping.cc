@@ -131,14 +131,15 @@ namespace
 
 TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 {
-  // C = α M + β K: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); the elastic mount, which has no damping, allows α only.
+  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); the elastic mount, which has no damping, allows α only.
   struct Case
   {
     HexMesh                   mesh;
     double                    alpha, beta;
     std::vector<ElasticMount> mounts;
   };
-  const HexMesh mesh = mesh_of(skewed_pins);
+  const HexMesh mesh      = mesh_of(skewed_pins);
+  int           n_growing = 0;
   for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}},
                                                   Case{with_clamped_rim(mesh), 0., 5e-6, {}},
                                                   Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
@@ -149,7 +150,22 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       ASSERT_GT(expected.size(), 3u);
       EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
+
+      // With friction C̃ = α M̃ + β K̃: each undamped λ_0, of either growth, becomes the root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
+      CoupledSystem undamped       = s.coupled;
+      undamped.frictionless.damping = nullptr;
+      undamped.normal_damping       = nullptr;
+      const auto           growing  = krylov(undamped, mu);
+      std::vector<Complex> shifted;
+      for (const Complex &l : growing.lambda)
+        {
+          const Complex kappa = -l * l, half = 0.5 * (alpha + beta * kappa), root = std::sqrt(half * half - kappa);
+          shifted.push_back(-half + (root.imag() > 0. ? root : -root));
+        }
+      n_growing += n_unstable(growing);
+      EXPECT_LT(largest(distances(krylov(s.coupled, mu).lambda, shifted)), 1e-8);
     }
+  EXPECT_GT(n_growing, 0);
 }
 
 
