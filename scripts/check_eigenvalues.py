@@ -124,6 +124,10 @@ def main():
     labels, eigenvalues = read_modes(arguments.directory / arguments.modes)
     listed = exported_matrices.in_band(eigenvalues, band)
     labels, eigenvalues = [label for label, keep in zip(labels, listed) if keep], eigenvalues[listed]
+    file = pathlib.Path(arguments.directory) / "parameters.prm"
+    parameters = exported_matrices.read_parameters(file) if file.is_file() else {}
+    if parameters.get("Damping/Modal damping ratio"):
+        sys.exit("The run has modal damping, which no exported matrix holds; repeat it without Damping/Modal damping ratio.")
     matrices = exported_matrices.read_matrices(arguments.directory)
 
     print(f"{matrices['M'].shape[0]} dofs, {matrices['P_n'].shape[0]} contact nodes, friction coefficient {friction_coefficient:g}, "

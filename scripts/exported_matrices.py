@@ -3,13 +3,15 @@
 The files of DIRECTORY/matrices, in Matrix Market form, are
 
     M, K            n x n    mass and stiffness of disc and pins, not yet coupled, clamped dofs gone
-    C_b             n x n    radial contact damping
+    C               n x n    damping of the materials
+    C_b             n x n    damping of the contact, along the radius and along the sliding
     P_n, P_t, P_b   n_c x n  relative displacement disc minus pin, normal, along the sliding, along the radius
     T_c             n x n_k  basis of the kernel of P_n
 
 and the problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
 
-    K~ = K - mu/2 P_t^T P_n K,  M~ = M - mu/2 P_t^T P_n M,  K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
+    K~ = K - mu/2 P_t^T P_n K,  M~ = M - mu/2 P_t^T P_n M,  C~ = C - mu/2 P_t^T P_n C + C_b,
+    K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
 
 Nothing here is taken from the program but these matrices, so that what follows is independent of it.
 """
@@ -49,9 +51,9 @@ class QuadraticProblem:
 
 
 def read_matrices(directory):
-    """A dictionary name -> csr matrix of the seven exported matrices."""
+    """A dictionary name -> csr matrix of the eight exported matrices."""
     matrices = {}
-    for name in ("M", "K", "C_b", "P_n", "P_t", "P_b", "T_c"):
+    for name in ("M", "C", "K", "C_b", "P_n", "P_t", "P_b", "T_c"):
         path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"
         if not path.is_file():
             sys.exit(f"{path} is missing; run squeal with --set \"Output/Write matrices=true\".")
@@ -71,7 +73,7 @@ def couple(matrices, friction_coefficient):
 
     return QuadraticProblem(
         mass=project(matrices["M"] + friction @ matrices["M"]),
-        damping=project(matrices["C_b"]),
+        damping=project(matrices["C"] + friction @ matrices["C"] + matrices["C_b"]),
         stiffness=project(matrices["K"] + friction @ matrices["K"]),
     )
 
@@ -91,7 +93,7 @@ def structure_errors(matrices):
         "P_n T_c": largest(P_n @ T_c),
         "columns of T_c - (n - n_c)": float(abs(T_c.shape[1] - (n_dofs - n_contact))),
     }
-    for name in ("M", "K", "C_b"):
+    for name in ("M", "C", "K", "C_b"):
         matrix = matrices[name]
         errors[f"{name} - {name}^T"] = largest(matrix - matrix.T) / (largest(matrix) or 1.0)
     return errors

@@ -78,7 +78,8 @@ namespace Squeal
     prm.add_parameter("Animation frames", animation_frames,
                       "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", Integer(0, 1000));
     prm.add_parameter("Write matrices", write_matrices,
-                      "Writes M, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form and the node coordinates.");
+                      "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, T_c of the closed contact nodes in "
+                      "Matrix Market form and the node coordinates.");
     prm.leave_subsection();
   }
 } // namespace Squeal

@@ -87,15 +87,11 @@ namespace Squeal
       };
       write(*system.mass, "M", MatrixMarketSymmetry::symmetric);
       write(*system.stiffness, "K", MatrixMarketSymmetry::symmetric);
-      if (damping)
-        write(*damping, "C_b", MatrixMarketSymmetry::symmetric);
-      else
-        {
-          // A matrix without entries, so that readers need no special case
-          SparseMatrix zero(Copy, model.free_map(), 0);
-          zero.FillComplete();
-          write(zero, "C_b", MatrixMarketSymmetry::symmetric);
-        }
+      // A matrix without entries where there is no damping, so that readers need no special case
+      SparseMatrix zero(Copy, model.free_map(), 0);
+      zero.FillComplete();
+      write(system.damping ? *system.damping : zero, "C", MatrixMarketSymmetry::symmetric);
+      write(damping ? *damping : zero, "C_b", MatrixMarketSymmetry::symmetric);
       write(*contact.normal, "P_n", MatrixMarketSymmetry::general);
       write(*contact.tangential, "P_t", MatrixMarketSymmetry::general);
       write(*contact.radial, "P_b", MatrixMarketSymmetry::general);
@@ -124,7 +120,7 @@ namespace Squeal
             stream << ',' << node.area << '\n';
           }
       });
-      run.progress.finish("M, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form");
+      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form");
     }
 
     // ------------------------------------------------------------ beside the paper

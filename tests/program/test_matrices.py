@@ -9,7 +9,7 @@ import unittest
 
 from program import SOURCE, ProgramTest
 
-MATRICES = ["M", "K", "C_b", "P_n", "P_t", "P_b", "T_c"]
+MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "T_c"]
 
 
 class Matrices(ProgramTest):
@@ -27,7 +27,7 @@ class Matrices(ProgramTest):
                          sorted([f"{name}.mtx" for name in MATRICES] + ["nodes.csv", "contact_nodes.csv"]))
         for name in MATRICES:
             with open(folder / f"{name}.mtx", encoding="utf-8") as file:
-                symmetry = "symmetric" if name in ("M", "K", "C_b") else "general"
+                symmetry = "symmetric" if name in ("M", "C", "K", "C_b") else "general"
                 self.assertEqual(file.readline(), f"%%MatrixMarket matrix coordinate real {symmetry}\n")
                 n_entries = int(file.readline().split()[2])
                 entries = file.read().splitlines()
@@ -48,6 +48,18 @@ class Matrices(ProgramTest):
         self.assertEqual(numbered, list(range(1, n_dofs + 1)))
         with open(folder / "contact_nodes.csv", encoding="utf-8") as file:
             self.assertEqual(len(file.read().splitlines()), 1 + 4 * 7)
+
+    @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
+    def test_every_damping(self):
+        """Open contact nodes, damping of the contact along both directions and of the materials, with friction's part in it."""
+        results = self.run_scene("damped", "Output/Write matrices=true", "Steady sliding/Contact state=steady sliding",
+                                 "Steady sliding/Gaps=pin_top_1: 1e-4", "Operation/Radial dissipation=consistent",
+                                 "Operation/Friction slope=-0.02", "Pin material/Rayleigh beta=1e-7", "Disc material/Rayleigh alpha=2")
+        with open(results / "matrices" / "contact_nodes.csv", encoding="utf-8") as file:
+            self.assertEqual(len(file.read().splitlines()), 1 + 3 * 7)
+        check = subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "check_eigenvalues.py", results, "--solver", "scipy"],
+                               text=True, capture_output=True, timeout=300)
+        self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_eigenvalues(self):

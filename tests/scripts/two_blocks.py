@@ -106,7 +106,7 @@ def write_run(directory, friction_coefficient=0.4, plate=(5, 4, 1), block=(2, 2,
 
     directory = pathlib.Path(directory)
     (directory / "matrices").mkdir(parents=True, exist_ok=True)
-    for name, matrix in {"M": M, "K": K, "C_b": C_b, "P_n": P_n, "P_t": P_t, "P_b": P_b, "T_c": T_c}.items():
+    for name, matrix in {"M": M, "C": 0 * M, "K": K, "C_b": C_b, "P_n": P_n, "P_t": P_t, "P_b": P_b, "T_c": T_c}.items():
         symmetry = "symmetric" if name in ("M", "K") else "general"
         scipy.io.mmwrite(directory / "matrices" / f"{name}.mtx", sparse.coo_matrix(matrix), precision=17, symmetry=symmetry)
     (directory / "parameters.prm").write_text(
