@@ -62,6 +62,11 @@ namespace Squeal
       throw FileError("the file cannot be written", "file " + directory + "/" + name, "check permissions and free space");
   }
 
+  bool ResultFolder::writes_here() const
+  {
+    return is_root;
+  }
+
   void ResultFolder::commit()
   {
     if (is_root)

@@ -391,24 +391,6 @@ namespace Squeal
     return state;
   }
 
-  ContactInterface closed_nodes(const ContactInterface &interface, const SlidingState &state)
-  {
-    ContactInterface result;
-    for (std::size_t c = 0; c < interface.size(); ++c)
-      if (state.closed[c])
-        result.push_back(interface[c]);
-    return result;
-  }
-
-  std::vector<double> closed_reactions(const SlidingState &state)
-  {
-    std::vector<double> result;
-    for (std::size_t c = 0; c < state.closed.size(); ++c)
-      if (state.closed[c])
-        result.push_back(state.reactions[c]);
-    return result;
-  }
-
   std::vector<PinContact> pin_contacts(const Model               &model,
                                        const ContactInterface    &interface,
                                        const std::vector<double> &reactions,

@@ -6,7 +6,7 @@ import shutil
 import unittest
 import xml.etree.ElementTree
 
-from program import COMPLEX_COLUMNS, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
+from program import COMPLEX_COLUMNS, SAME, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv", "table1.csv"]
 
@@ -34,7 +34,9 @@ class Results(ProgramTest):
     def test_modes(self):
         rows = read_table(self.results / "complex_modes.csv")
         frequencies = [float(row["frequency [Hz]"]) for row in rows]
-        self.assertEqual(frequencies, sorted(frequencies))
+        # Ascending; of two that are equal to rounding the decaying one comes first.
+        for lower, upper in zip(frequencies, frequencies[1:]):
+            self.assertLessEqual(lower, upper * (1 + SAME))
         self.assertLessEqual(frequencies[-1], 5000)
         for row in rows:
             growth, frequency = float(row["growth rate [1/s]"]), float(row["frequency [Hz]"])
@@ -72,7 +74,7 @@ class Results(ProgramTest):
             self.assertEqual(len(fields), 2)
             volume, contact = sorted(fields, key=lambda path: path.name.endswith("_contact.vtu"))
             self.assertEqual(arrays(volume), {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
-            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag"})
+            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag", "closed"})
 
             animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
             frames = xml.etree.ElementTree.parse(animation).findall(".//DataSet")

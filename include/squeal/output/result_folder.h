@@ -35,6 +35,9 @@ namespace Squeal
     /// Writes a text file on the root process; throws FileError if the disk is full.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
+    /// Whether this process writes the files.
+    bool writes_here() const;
+
     /// Gives the folder its name; an earlier result of that name is replaced.
     void commit();
 

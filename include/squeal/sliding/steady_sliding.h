@@ -70,10 +70,6 @@ namespace Squeal
                      const OperationParameters &operation,
                      const SlidingParameters   &parameters);
 
-  /// The contact nodes that are closed, in their order, and their reactions.
-  ContactInterface    closed_nodes(const ContactInterface &interface, const SlidingState &state);
-  std::vector<double> closed_reactions(const SlidingState &state);
-
   /// What a pin does in a state of contact.
   struct PinContact
   {
