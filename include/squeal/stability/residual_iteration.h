@@ -22,11 +22,12 @@ namespace Squeal
    *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R
    *
    * (that to modal damping, K_c⁻¹ M_c Φ_R diag(2 ζ ω) = Φ_R diag(2 ζ / ω), is in
-   * their span already), and grows by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of the right
-   * and left reduced eigenvectors of all modes that are not accurate yet,
-   * compressed by their principal axes in the M-norm. The error of an
-   * eigenvalue is estimated from both residuals: with R_F = Q(λ)φ, L_F = Q(λ)ᵀψ
-   * (ψᵀ the left eigenvector, no conjugate) the next Galerkin step changes λ by
+   * their span already), and grows by the displacement residuals K_c⁻¹ R_F and
+   * K_c⁻¹ L_F of the right and left reduced eigenvectors of all modes that are
+   * not accurate yet, compressed by their principal axes in the M-norm. The
+   * error of an eigenvalue is estimated from both residuals: with R_F = Q(λ)φ,
+   * L_F = Q(λ)ᵀψ (ψᵀ the left eigenvector, no conjugate) the next Galerkin step
+   * changes λ by
    *
    *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
    *
