@@ -3,7 +3,7 @@
 # run.sh and test.sh source this file; called by itself it does the same and stops there:
 #
 #   scripts/setup.sh              what building, running and testing need
-#   scripts/setup.sh pictures     also what scripts/render_mode.py and the plots need
+#   scripts/setup.sh pictures     also what scripts/render_*.py and the plots need
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.

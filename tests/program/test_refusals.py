@@ -48,10 +48,18 @@ class Refusals(ProgramTest):
             self.assertEqual(sum(line.startswith(start) and len(line) > len(start) for line in lines), 1, message)
         for word in mentions:
             self.assertIn(word, message)
+        return process
 
-    def scene_refused(self, mentions, *overrides, n_processes=1):
+    def scene_refused(self, mentions, *overrides, n_processes=1, output="results"):
         settings = [word for override in overrides for word in ("--set", override)]
-        self.refused(mentions, "scene.prm", "--output", "results", *settings, n_processes=n_processes)
+        return self.refused(mentions, "scene.prm", "--output", output, *settings, n_processes=n_processes)
+
+    def sliding_refused(self, mentions, *overrides, n_processes=1):
+        """Refused before anything is assembled or factorised, and no folder is made for results."""
+        process = self.scene_refused(mentions, "Steady sliding/Contact state=steady sliding", *overrides, n_processes=n_processes,
+                                     output="new")
+        for step in ("Assembly", "Steady sliding", "Component modes"):
+            self.assertNotIn(step, process.stdout)
 
     def geometry_refused(self, mentions, text, *overrides):
         self.scene_refused(mentions, f"Geometry/File={self.write('other.geo', text)}", "Mounts/Elastic mounts=", *overrides)
@@ -110,9 +118,81 @@ class Refusals(ProgramTest):
         self.refused(["open.prm"], "open.prm")
 
     def test_operation(self):
-        self.scene_refused(["sliding speed", "Operation/Rotation speed"],
-                           "Operation/Radial dissipation=consistent", "Operation/Rotation speed=0")
+        for dissipation in ("consistent", "published"):
+            self.scene_refused(["sliding speed", "Operation/Rotation speed"],
+                               f"Operation/Radial dissipation={dissipation}", "Operation/Rotation speed=0")
         self.scene_refused(["load", "Operation/Load per side"], "Operation/Radial dissipation=published", "Operation/Load per side=0")
+
+    def test_steady_sliding(self):
+        self.sliding_refused(["does not turn", "Operation/Rotation speed"], "Operation/Rotation speed=0")
+        self.sliding_refused(["-1000", "Operation/Load per side"], "Operation/Load per side=-1000")
+        self.sliding_refused(["load is zero", "Operation/Load per side"], "Operation/Load per side=0")
+        self.sliding_refused(["ahead", "equal load|steady sliding"], "Steady sliding/Contact state=ahead")
+        self.sliding_refused(["by hand", "load per side|displacement|load per pin"], "Steady sliding/Control=by hand")
+
+    def test_gaps(self):
+        gaps = "Steady sliding/Gaps"
+        self.sliding_refused(["no pin `pin_top_3`", gaps, "pin_top_1, pin_top_2, pin_bottom_1, pin_bottom_2"], f"{gaps}=pin_top_3: 1e-6")
+        self.sliding_refused(["0.032 m", "height of the pin", gaps, "pin_top_2", "metres"], f"{gaps}=pin_top_1: 1e-6; pin_top_2: 0.032")
+        self.sliding_refused(["-10 m", "height of the pin", "pin_bottom_1"], f"{gaps}=pin_bottom_1: -10")
+        self.sliding_refused(["height of the pin", "pin_top_1"], f"{gaps}=pin_top_1: 0, 2, 0")
+        self.sliding_refused(["`pin_top_1 1e-6` is not an entry", "pin: gap, sliding taper, radial taper"], f"{gaps}=pin_top_1 1e-6")
+        self.sliding_refused(["`pin_top_1: 1e-6, 1e-4` is not an entry", gaps], f"{gaps}=pin_top_1: 1e-6, 1e-4")
+        self.sliding_refused(["`: 1e-6` is not an entry", gaps], f"{gaps}=: 1e-6")
+        self.sliding_refused(["`wide` is not a finite number", gaps, "pin pin_top_1"], f"{gaps}=pin_top_1: wide")
+        self.sliding_refused(["`nan` is not a finite number", gaps], f"{gaps}=pin_top_1: nan")
+        self.sliding_refused(["`1e-6 m` is not a finite number", gaps], f"{gaps}=pin_top_1: 1e-6 m")
+        self.sliding_refused(["`pin_top_1` is given twice", gaps], f"{gaps}=pin_top_1: 1e-6; pin_top_1: 0")
+        self.sliding_refused(["no pin `pin_top_3`", gaps], f"{gaps}=pin_top_3: 1e-6", n_processes=2)
+
+    def test_loads_of_pins(self):
+        per_pin, loads = "Steady sliding/Control=load per pin", "Steady sliding/Loads"
+        self.sliding_refused(["no pin `pin_left`", loads, "pin_bottom_2"], per_pin, f"{loads}=pin_left: 500")
+        self.sliding_refused(["`pin_top_1: 1, 2` is not an entry", "pin: load"], per_pin, f"{loads}=pin_top_1: 1, 2")
+        self.sliding_refused(["`heavy` is not a finite number", "pin pin_top_1"], per_pin, f"{loads}=pin_top_1: heavy")
+        self.sliding_refused(["load is -5 N", loads, "pin pin_top_1"], per_pin, f"{loads}=pin_top_1: -5")
+        self.sliding_refused(["load is 0 N", loads, "pin pin_top_1"], per_pin, f"{loads}=pin_top_1: 0")
+        self.sliding_refused(["does not list has no load", "Operation/Load per side"], per_pin, f"{loads}=pin_top_1: 5",
+                             "Operation/Load per side=0")
+        for control, displacement in {"load per side": 0, "displacement": 1e-5}.items():
+            self.sliding_refused([f"`{control}` is prescribed", loads, "Control = load per pin"], f"Steady sliding/Control={control}",
+                                 f"Steady sliding/Displacement={displacement}", f"{loads}=pin_top_1: 500")
+
+    def test_displacement(self):
+        control, displacement = "Steady sliding/Control=displacement", "Steady sliding/Displacement"
+        self.sliding_refused(["do not move", displacement, "positive"], control)
+        self.sliding_refused(["-1e-6", displacement], control, f"{displacement}=-1e-6")
+        self.sliding_refused(["1e-06 m closes no gap", "2e-06 m", displacement, "Gaps"], control, f"{displacement}=1e-6",
+                             "Steady sliding/Gaps=pin_top_1: 1e-5; pin_top_2: 2e-6")
+        for other in ("load per side", "load per pin"):
+            self.sliding_refused([f"`{other}` is prescribed", displacement, "Control = displacement"], f"Steady sliding/Control={other}",
+                                 f"{displacement}=1e-6")
+
+    def test_disc_that_nothing_holds(self):
+        # Friction pushes the disc in its plane; this is known after a factorisation only.
+        self.scene_refused(["nothing holds the disc in its plane", "Mounts/Elastic mounts"], "Steady sliding/Contact state=steady sliding",
+                           "Mounts/Elastic mounts=", output="new")
+
+    def test_damping(self):
+        table, where = "Damping/Modal damping ratio", "parameter Damping/Modal damping ratio"
+        for value, mentions in {"1000": ["`1000` is not a frequency with its damping ratio", "frequency: ratio"],
+                                "1000: 0.01: 0.02": ["is not a frequency with its damping ratio"],
+                                "1000: 0.01; 2000: 0.02": ["is not a frequency with its damping ratio", "frequency: ratio, freq"],
+                                "1000: little": ["`little` is not a number"],
+                                "low: 0.01": ["`low` is not a number"],
+                                "1000: nan": ["`nan` is not a number"],
+                                "1000: 1": ["damping ratio 1 at 1000 Hz", "[0, 1)"],
+                                "1000: -0.01": ["damping ratio -0.01 at 1000 Hz", "[0, 1)"],
+                                "-1: 0.01": ["frequency -1 Hz"],
+                                "2000: 0.01, 1000: 0.02": ["1000 Hz does not exceed", "2000 Hz", "ascending"],
+                                "1000: 0.01, 1000: 0.02": ["1000 Hz does not exceed"]}.items():
+            with self.subTest(value):
+                self.scene_refused([where, *mentions], f"{table}={value}", output="new")
+        for material in ("Disc material", "Pin material"):
+            for name in ("Rayleigh alpha", "Rayleigh beta"):
+                self.scene_refused(["-1e-6", f"{material}/{name}"], f"{material}/{name}=-1e-6", output="new")
+        self.scene_refused(["steep", "Operation/Friction slope"], "Operation/Friction slope=steep", output="new")
+        self.scene_refused(["load is zero", "Friction slope"], "Operation/Friction slope=-0.01", "Operation/Load per side=0", output="new")
 
     def test_mounts(self):
         self.scene_refused(["is not an elastic mount", "radial, tangential, axial"], "Mounts/Elastic mounts=disc_bore: 1e10, 1e10")

@@ -1,4 +1,4 @@
-"""A mode as squeal writes it, made without squeal: an annulus with pins on both sides that follow its bending.
+"""A mode and a state of contact as squeal writes them, made without squeal: an annulus with pins on both sides.
 
 Vertices are not shared between cells, as in deal.II's files.
 """
@@ -57,30 +57,46 @@ def bending(points, n_diameters, turn):
 def write(path, n_diameters=4, disc_cells=(16, 150, 3), pin_cells=(6, 6, 4)):
     bodies = [disc(disc_cells)] + [pin(*place, side, pin_cells) for side in (1, -1) for place in PINS]
     points = np.concatenate(bodies).reshape(-1, 3)
-    n_cells = len(points) // 8
     component = np.repeat(np.arange(len(bodies)), [len(body) for body in bodies])
-
-    grid = vtk.vtkUnstructuredGrid()
-    vertices = vtk.vtkPoints()
-    vertices.SetData(numpy_to_vtk(points, deep=True))
-    grid.SetPoints(vertices)
-    cells = vtk.vtkCellArray()
-    cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, 8 * n_cells + 1, 8), deep=True),
-                  numpy_to_vtkIdTypeArray(np.arange(8 * n_cells), deep=True))
-    grid.SetCells(vtk.VTK_HEXAHEDRON, cells)
-
     mode = bending(points, n_diameters, 0.0) + 0.3j * bending(points, n_diameters, math.pi / (2 * n_diameters))
     largest = np.abs(mode[np.arange(len(mode)), np.abs(mode).argmax(axis=1)])
     dominant = mode[np.arange(len(mode)), np.abs(mode).argmax(axis=1)]
     arrays = {"displacement_real": mode.real, "displacement_imag": mode.imag,
               "amplitude": np.where(largest > 0, np.linalg.norm(mode, axis=1), 0), "phase": np.angle(dominant)}
-    for name, values in arrays.items():
-        array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
-        array.SetName(name)
-        grid.GetPointData().AddArray(array)
-    array = numpy_to_vtk(component.astype(np.float64), deep=True)
-    array.SetName("component")
-    grid.GetCellData().AddArray(array)
+    write_grid(path, points, 8, vtk.VTK_HEXAHEDRON, arrays, {"component": component})
+
+
+def write_contact(path, pin_cells=(6, 6, 4)):
+    """Contact faces of the pins: pressure falls along the sliding in the positive sense, and the last nodes are open."""
+    faces, ahead = [], []
+    for side in (1, -1):
+        for radius, angle in PINS:
+            quadrilaterals = pin(radius, angle, side, pin_cells).reshape(-1, 4, 3)
+            face = quadrilaterals[np.all(abs(abs(quadrilaterals[:, :, 2]) - THICKNESS / 2) < 1e-9, axis=1)].reshape(-1, 3)
+            faces.append(face)
+            ahead.append((face[:, 1] * math.cos(angle) - face[:, 0] * math.sin(angle)) / PIN_RADIUS)
+    points, ahead = np.concatenate(faces), np.concatenate(ahead)
+    pressure = 1e5 * np.maximum(0.9 - ahead, 0)
+    gap = 1e-6 * np.minimum(0.9 - ahead, 0)
+    write_grid(path, points, 4, vtk.VTK_QUAD, {"pressure": pressure, "closed": pressure > 0, "gap": gap}, {})
+
+
+def write_grid(path, points, n_corners, cell_type, point_fields, cell_fields):
+    """Cells that follow each other in the points."""
+    n_cells = len(points) // n_corners
+    grid = vtk.vtkUnstructuredGrid()
+    vertices = vtk.vtkPoints()
+    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points), deep=True))
+    grid.SetPoints(vertices)
+    cells = vtk.vtkCellArray()
+    cells.SetData(numpy_to_vtkIdTypeArray(np.arange(0, n_corners * n_cells + 1, n_corners), deep=True),
+                  numpy_to_vtkIdTypeArray(np.arange(n_corners * n_cells), deep=True))
+    grid.SetCells(cell_type, cells)
+    for data, fields in ((grid.GetPointData(), point_fields), (grid.GetCellData(), cell_fields)):
+        for name, values in fields.items():
+            array = numpy_to_vtk(np.ascontiguousarray(values, dtype=float), deep=True)
+            array.SetName(name)
+            data.AddArray(array)
 
     writer = vtk.vtkXMLUnstructuredGridWriter()
     writer.SetFileName(str(path))

@@ -1,0 +1,78 @@
+"""Steady sliding solved again from exported matrices by Lemke's complementary pivoting."""
+
+import csv
+
+import numpy as np
+import scipy.io
+import scipy.sparse as sparse
+import scipy.sparse.linalg
+
+# Ways of backplates count from here, so that they are positive where the disc gives way before them [m]
+START = -1e-4
+
+
+class SlidingContact:
+    """The contact of disc and pins condensed to all contact nodes; needs the matrices of a run in which all are closed."""
+
+    def __init__(self, folder, friction_coefficient):
+        K, P_n, P_t = (sparse.csc_matrix(scipy.io.mmread(folder / "matrices" / f"{name}.mtx")) for name in ("K", "P_n", "P_t"))
+        factors = scipy.sparse.linalg.splu(K)
+        self.flexibility = P_n @ factors.solve((P_n + friction_coefficient * P_t).T.toarray())
+        with open(folder / "matrices" / "contact_nodes.csv", newline="", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.pins = [row["pin"] for row in rows]
+        self.sides = np.array([float(row["n_z"]) for row in rows])
+        self.areas = np.array([float(row["area [m^2]"]) for row in rows])
+        self.positions = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in rows])
+        self.sliding = np.array([[float(row[f"t_{axis}"]) for axis in "xyz"] for row in rows])
+        self.axis_distances = np.hypot(self.positions[:, 0], self.positions[:, 1])
+
+    def gaps(self, pins):
+        """Initial gaps [m] of all nodes from gap, sliding taper and radial taper of some pins."""
+        gaps = np.zeros(len(self.pins))
+        for pin, (gap, along, outwards) in pins.items():
+            nodes = [c for c, name in enumerate(self.pins) if name == pin]
+            centre = np.average(self.positions[nodes], axis=0, weights=self.areas[nodes])
+            gaps[nodes] = (gap + along * np.sum((self.positions[nodes] - centre) * self.sliding[nodes], axis=1)
+                           + outwards * (self.axis_distances[nodes] - np.hypot(centre[0], centre[1])))
+        return gaps
+
+    def solve(self, gaps, plates, loads):
+        """Compression [N] of every node and way [m] of every backplate; plates gives the number of each node's backplate.
+
+        With compressions p and ways d from START, both >= 0, the remaining gaps G p - B (d + START) + gaps and the surplus
+        B^T p - loads are >= 0 too, and complementary to p and d.
+        """
+        n, unit = len(gaps), np.mean(np.diag(self.flexibility))
+        B = np.equal.outer(np.array(plates), np.arange(len(loads))).astype(float)
+        matrix = np.block([[self.flexibility / unit, -B], [B.T, np.zeros((len(loads), len(loads)))]])
+        solution = lemke(matrix, np.concatenate([(gaps - START) / unit, -np.array(loads)]))
+        return solution[:n], unit * solution[n:] + START
+
+
+def lemke(matrix, vector):
+    """z >= 0 with matrix z + vector >= 0 and z^T (matrix z + vector) = 0."""
+    n = len(vector)
+    if vector.min() >= 0:
+        return np.zeros(n)
+    # Slack variables 0 ... n - 1, z n ... 2 n - 1, the artificial variable 2 n
+    tableau = np.hstack([np.eye(n), -matrix, -np.ones((n, 1)), vector[:, None]])
+    basis, row, entering = list(range(n)), int(np.argmin(vector)), 2 * n
+    for _ in range(100 * n):
+        tableau[row] /= tableau[row, entering]
+        others = np.arange(n) != row
+        tableau[others] -= np.outer(tableau[others, entering], tableau[row])
+        leaving, basis[row] = basis[row], entering
+        if leaving == 2 * n:
+            z = np.zeros(2 * n)
+            z[basis] = tableau[:, -1]
+            return z[n:]
+        entering = leaving + n if leaving < n else leaving - n
+        column = tableau[:, entering]
+        positive = np.flatnonzero(column > 1e-11 * abs(column).max())
+        if len(positive) == 0:
+            break
+        ratios = tableau[positive, -1] / column[positive]
+        # Where several leave, the artificial variable does.
+        row = int(min(positive[ratios <= ratios.min() * (1 + 1e-12)], key=lambda i: basis[i] != 2 * n))
+    raise RuntimeError("Lemke's method ended on a ray.")

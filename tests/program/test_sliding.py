@@ -1,0 +1,510 @@
+"""Runs about steady sliding: the state of contact, what it does to the modes, and damping."""
+
+import cmath
+import importlib.util
+import json
+import math
+import subprocess
+import sys
+import unittest
+
+from program import SOURCE, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
+from vtu_file import VtuFile
+
+STEADY = "Steady sliding/Contact state=steady sliding"
+CONSISTENT = "Operation/Radial dissipation=consistent"
+RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
+SHAPES = ["Output/Mode shapes=all", "Output/Animation frames=0"]
+PINS = ["pin_top_1", "pin_top_2", "pin_bottom_1", "pin_bottom_2"]
+
+# Of the default parameters
+FRICTION, SPEED, LOAD = 0.4, 4.0, 1000.0
+
+# Of a value that a field holds in single precision, relative to the largest [-]
+SINGLE = 1e-6
+
+
+def pins(folder):
+    """Rows of sliding_pins.csv by pin, numbers as numbers."""
+    return {row["pin"]: {name: float(text) for name, text in row.items() if name != "pin"}
+            for row in read_table(folder / "sliding_pins.csv")}
+
+
+def loads(folder):
+    return [row["load [N]"] for row in pins(folder).values()]
+
+
+def certificate(folder):
+    return {row["quantity"]: float(row["value"]) for row in read_table(folder / "sliding_certificate.csv")}
+
+
+def growth_rates(folder):
+    return [value.real for value in eigenvalues(folder)]
+
+
+class ContactFaces:
+    """Fields of a _contact.vtu at the nodes of each pin's face, each node once."""
+
+    def __init__(self, path):
+        file = VtuFile(path)
+        self.nodes = {pin: {} for pin in PINS}
+        for i, point in enumerate(file.points):
+            side = "top" if point[2] > 0 else "bottom"
+            pin = f"pin_{side}_{1 if point[1] < 0 else 2}"
+            key = tuple(round(1e6 * x) for x in point)
+            values = {name: field[i] for name, field in file.fields.items()}
+            if self.nodes[pin].setdefault(key, (point, values))[1] != values:
+                raise AssertionError(f"{path} has several values at {point}")
+
+    def of_pin(self, pin):
+        """Pairs of a point and its fields by name."""
+        return list(self.nodes[pin].values())
+
+    def all(self):
+        return [node for pin in PINS for node in self.of_pin(pin)]
+
+
+class SlidingTest(ProgramTest):
+    def assert_close(self, actual, expected, tolerance):
+        """Holds lists against each other, errors relative to the largest expected number."""
+        self.assertEqual(len(actual), len(expected))
+        largest = max(map(abs, expected))
+        self.assertLessEqual(max(abs(a - b) for a, b in zip(actual, expected)), tolerance * largest)
+
+    def assert_certified(self, folder, has_load=True):
+        values = certificate(folder)
+        self.assertLess(values["residual of the full system [-]"], 1e-10)
+        self.assertLess(values["error of the prescribed loads [-]"], 1e-10)
+        self.assertLessEqual(values["largest tension over load [-]"], 0)
+        self.assertLess(values["largest overlap over way [-]"], 1e-12)
+        self.assertLess(values["complementarity |r_n g| over load and way [-]"], 1e-12)
+        self.assertLess(values["force balance with the supports [-]"], 1e-10)
+        self.assertLess(values["moment balance with the supports [-]"], 1e-10)
+        if has_load:
+            for side in ("lower", "upper"):
+                self.assertAlmostEqual(values[f"normal load of the {side} side [N]"], LOAD, delta=1e-10 * LOAD)
+
+
+class State(SlidingTest):
+    """The state of contact of a run with consistent radial dissipation."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", STEADY, CONSISTENT, "Output/Mode shapes=unstable")
+        cls.pins = pins(cls.results)
+
+    def test_tables(self):
+        self.assertEqual(header(self.results / "sliding_certificate.csv"), "quantity,value")
+        self.assertEqual(list(self.pins), PINS)
+        for name in ("sliding_pins.csv", "sliding_certificate.csv"):
+            self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / name)), name)
+        record = json.loads((self.results / "run.json").read_text(encoding="utf-8"))
+        self.assertIn("Steady sliding", [step["name"] for step in record["steps"]])
+
+    def test_certificate(self):
+        self.assert_certified(self.results)
+
+    def test_loads(self):
+        for side in (1, -1):
+            of_side = [pin for pin in self.pins.values() if pin["side [-]"] == side]
+            self.assertEqual(len(of_side), 2)
+            self.assertAlmostEqual(sum(pin["load [N]"] for pin in of_side), LOAD, delta=1e-10 * LOAD)
+            self.assertEqual(len({pin["way of backplate [m]"] for pin in of_side}), 1)
+
+    def test_pins(self):
+        height = 0.0318
+        for name, pin in self.pins.items():
+            with self.subTest(name):
+                self.assertEqual(pin["open nodes [-]"], 0)
+                self.assertEqual(pin["nodes [-]"], 7)
+                self.assertEqual(pin["largest gap [m]"], 0)
+                # Friction turns a pin about its clamp: the centre of pressure of a stiff one lies mu times half its height ahead.
+                self.assertAlmostEqual(pin["pressure offset along t [m]"], -FRICTION * height / 2, delta=0.05 * FRICTION * height / 2)
+                self.assertGreater(pin["way of backplate [m]"], 0)
+                self.assertGreater(pin["largest pressure [Pa]"], pin["load [N]"] / (math.pi * 0.026**2))
+                self.assertAlmostEqual(pin["w_0 [m/s]"], SPEED * (0.2275 + pin["pressure offset outwards [m]"]), delta=1e-6)
+                self.assertEqual(pin["c_t [N s/m]"], 0)
+
+    def test_rotation_turns_the_centres_of_pressure(self):
+        backwards = pins(self.run_scene("backwards", STEADY, "Operation/Rotation=negative"))
+        # The layout is its own mirror image, and offsets are along t; the mesh is so only nearly.
+        for pin, mirrored in zip(PINS, ("pin_top_2", "pin_top_1", "pin_bottom_2", "pin_bottom_1")):
+            self.assertAlmostEqual(backwards[mirrored]["load [N]"], self.pins[pin]["load [N]"], delta=1e-3 * LOAD)
+            self.assertAlmostEqual(backwards[mirrored]["pressure offset along t [m]"], self.pins[pin]["pressure offset along t [m]"],
+                                   delta=1e-4)
+
+    def test_fields(self):
+        faces = ContactFaces(self.results / "sliding_state_contact.vtu")
+        for name, pin in self.pins.items():
+            nodes = faces.of_pin(name)
+            self.assertEqual(len(nodes), 7)
+            reactions = [fields["normal_reaction"] for _, fields in nodes]
+            damping = [FRICTION * abs(fields["normal_reaction"]) / (SPEED * math.hypot(x, y)) for (x, y, _), fields in nodes]
+            self.assertAlmostEqual(-sum(reactions), pin["load [N]"], delta=SINGLE * LOAD)
+            self.assert_close([fields["c_b"] for _, fields in nodes], damping, SINGLE)
+            self.assertAlmostEqual(sum(damping), pin["c_b [N s/m]"], delta=SINGLE * sum(damping))
+            self.assertAlmostEqual(max(fields["pressure"] for _, fields in nodes), pin["largest pressure [Pa]"],
+                                   delta=SINGLE * pin["largest pressure [Pa]"])
+            for _, fields in nodes:
+                self.assertLess(fields["normal_reaction"], 0)
+                self.assertEqual((fields["gap"], fields["closed"], fields["c_t"]), (0, 1, 0))
+
+    def test_displacements(self):
+        state = VtuFile(self.results / "sliding_state.vtu")
+        self.assertEqual(set(state.fields) - {"subdomain"}, {"displacement", "component"})
+        ends = [(point, u) for point, u in zip(state.points, state.fields["displacement"]) if abs(abs(point[2]) - 0.05495) < 1e-6]
+        self.assertGreater(len(ends), 0)
+        # The clamped ends of the pins have moved with their backplate.
+        way = self.pins["pin_top_1"]["way of backplate [m]"]
+        for (_, _, z), u in ends:
+            self.assert_close(u, (0, 0, -math.copysign(way, z)), SINGLE)
+
+    def test_modes(self):
+        equal = eigenvalues(self.run_scene("equal", CONSISTENT))
+        self.assertGreater(distance(eigenvalues(self.results), equal), 1e-5)
+        for overrides in (["Complex modes/Shift inverse=sparse LU"], RESIDUAL_ITERATION):
+            with self.subTest(overrides):
+                other = self.run_scene("other", STEADY, CONSISTENT, *overrides)
+                self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(self.results))
+
+    def test_state_does_not_matter_without_dissipation(self):
+        # As long as all nodes are closed, reactions enter through the dissipation only.
+        self.assert_same_eigenvalues(eigenvalues(self.run_scene("steady", STEADY)), eigenvalues(self.run_scene("equal")))
+
+    def test_scaling(self):
+        # c_b is in proportion to load over speed, everything else depends on neither.
+        for state in ([], [STEADY]):
+            values = [eigenvalues(self.run_scene("scaled", CONSISTENT, f"Operation/Load per side={factor * LOAD}",
+                                                 f"Operation/Rotation speed={factor * SPEED}", *state)) for factor in (1, 3)]
+            self.assert_same_eigenvalues(values[1], values[0])
+        self.assert_close(loads(self.folder / "scaled"), [3 * load for load in loads(self.results)], 1e-10)
+
+    def test_processes(self):
+        several = self.run_scene("several", STEADY, CONSISTENT, "Output/Mode shapes=unstable", n_processes=2)
+        self.assert_certified(several)
+        actual = pins(several)
+        for name, pin in self.pins.items():
+            for column, value in pin.items():
+                with self.subTest(name, column=column):
+                    self.assertAlmostEqual(actual[name][column], value, delta=1e-8 * abs(value))
+        self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(self.results), 1e-8)
+        for (_, fields), (_, other) in zip(ContactFaces(self.results / "sliding_state_contact.vtu").all(),
+                                           ContactFaces(several / "sliding_state_contact.vtu").all()):
+            self.assertAlmostEqual(fields["normal_reaction"], other["normal_reaction"], delta=SINGLE * LOAD)
+
+
+class Control(SlidingTest):
+    """The other two ways to press."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", STEADY, CONSISTENT)
+
+    def test_displacement(self):
+        ways = [pin["way of backplate [m]"] for pin in pins(self.results).values()]
+        self.assert_close(ways, 4 * ways[:1], 1e-10)
+        pressed = self.run_scene("pressed", STEADY, CONSISTENT, "Steady sliding/Control=displacement",
+                                 f"Steady sliding/Displacement={ways[0]!r}")
+        self.assert_certified(pressed, has_load=False)
+        for column in ("load [N]", "pressure offset along t [m]", "largest pressure [Pa]", "c_b [N s/m]"):
+            self.assert_close([pin[column] for pin in pins(pressed).values()], [pin[column] for pin in pins(self.results).values()], 1e-9)
+        self.assert_same_eigenvalues(eigenvalues(pressed), eigenvalues(self.results))
+
+    def test_load_per_pin(self):
+        per_pin = [STEADY, CONSISTENT, "Steady sliding/Control=load per pin", "Steady sliding/Loads=pin_top_2: 300; pin_top_1: 700"]
+        pressed = self.run_scene("pressed", *per_pin)
+        self.assert_certified(pressed)
+        self.assert_close(loads(pressed), [700, 300, 500, 500], 1e-10)
+        ways = [pin["way of backplate [m]"] for pin in pins(pressed).values()]
+        self.assertGreater(ways[0], ways[1])
+
+        # Gaps change the ways then, and nothing else.
+        short = self.run_scene("short", *per_pin, "Steady sliding/Gaps=pin_top_1: 1e-5; pin_bottom_2: 3e-6")
+        self.assert_close(loads(short), loads(pressed), 1e-10)
+        self.assert_close([pin["way of backplate [m]"] for pin in pins(short).values()],
+                          [way + gap for way, gap in zip(ways, (1e-5, 0, 0, 3e-6))], 1e-9)
+        self.assert_same_eigenvalues(eigenvalues(short), eigenvalues(pressed))
+
+    def test_equal_loads_of_pins(self):
+        pressed = self.run_scene("pressed", STEADY, "Steady sliding/Control=load per pin")
+        self.assert_close(loads(pressed), 4 * [LOAD / 2], 1e-10)
+
+
+class Gaps(SlidingTest):
+    """Pins that do not touch, or in part."""
+
+    def assert_open_nodes(self, folder):
+        """The fields of state and modes, and the table, agree on what is open; numbers of open nodes."""
+        faces = ContactFaces(folder / "sliding_state_contact.vtu")
+        modes = sorted((folder / "modes").glob("*_contact.vtu"))
+        self.assertGreater(len(modes), 0)
+        for name, pin in pins(folder).items():
+            nodes = faces.of_pin(name)
+            self.assertEqual(sum(fields["closed"] == 0 for _, fields in nodes), pin["open nodes [-]"])
+            largest = -min(fields["gap"] for _, fields in nodes)
+            self.assertAlmostEqual(largest, pin["largest gap [m]"], delta=SINGLE * largest)
+            for _, fields in nodes:
+                self.assertIn(fields["closed"], (0, 1))
+                self.assertEqual(fields["gap"] < 0, fields["closed"] == 0)
+                self.assertEqual(fields["normal_reaction"] < 0, fields["closed"] == 1)
+            for mode in modes:
+                for (_, state), (_, fields) in zip(nodes, ContactFaces(mode).of_pin(name)):
+                    self.assertEqual(fields["closed"], state["closed"])
+                    if fields["closed"] == 0:
+                        self.assertEqual((fields["normal_reaction_real"], fields["normal_reaction_imag"]), (0, 0))
+        return [int(pin["open nodes [-]"]) for pin in pins(folder).values()]
+
+    def test_short_pin(self):
+        for dissipation in ("none", "consistent"):
+            with self.subTest(dissipation):
+                results = self.run_scene("results", STEADY, f"Operation/Radial dissipation={dissipation}",
+                                         "Steady sliding/Gaps=pin_top_1: 2e-5", *SHAPES)
+                self.assert_certified(results)
+                self.assertEqual(self.assert_open_nodes(results), [7, 0, 0, 0])
+                table = pins(results)
+                self.assertAlmostEqual(table["pin_top_2"]["load [N]"], LOAD, delta=1e-10 * LOAD)
+                self.assertEqual([table["pin_top_1"][name] for name in ("load [N]", "largest pressure [Pa]", "c_b [N s/m]")], [0, 0, 0])
+                # The gap is what the backplate has not closed, but for what the disc gives way.
+                self.assertAlmostEqual(table["pin_top_1"]["largest gap [m]"], 2e-5 - table["pin_top_1"]["way of backplate [m]"], delta=1e-6)
+                self.assertGreater(len(eigenvalues(results)), 30)
+                # Its lowest bending modes are those of a pin that is clamped at one end and free at the other.
+                free = [float(row["frequency [Hz]"]) for row in read_table(results / "component_modes.csv")
+                        if row["component"] == "pins" and row["contact"] == "free" and row["label"] == "F1"]
+                lowest = [frequency for frequency in real_frequencies(results) if abs(frequency - free[0]) < 1e-6 * free[0]]
+                self.assertEqual(len(lowest), 2)
+
+    def test_hardly_touching_pin(self):
+        # 10 micrometres are as much as the other pin is compressed: a corner carries next to nothing.
+        results = self.run_scene("results", STEADY, "Steady sliding/Gaps=pin_top_1: 1e-5", *SHAPES)
+        self.assert_certified(results)
+        self.assertEqual(self.assert_open_nodes(results), [6, 0, 0, 0])
+        self.assertLess(pins(results)["pin_top_1"]["load [N]"], 1e-3 * LOAD)
+
+    def test_worn_pin(self):
+        # Worn at its trailing edge, away from where friction presses it.
+        results = self.run_scene("results", STEADY, CONSISTENT, "Steady sliding/Gaps=pin_bottom_2: 0, 4e-4, 0", *SHAPES)
+        self.assert_certified(results)
+        n_open = self.assert_open_nodes(results)
+        self.assertEqual(n_open[:3], [0, 0, 0])
+        self.assertTrue(0 < n_open[3] < 7, n_open)
+        offsets = [pin["pressure offset along t [m]"] for pin in pins(results).values()]
+        self.assertLess(offsets[3], min(offsets[:3]))
+
+    def test_strong_friction(self):
+        # Friction itself lifts nodes off.
+        results = self.run_scene("results", STEADY, CONSISTENT, "Operation/Friction coefficient=1", *SHAPES)
+        self.assert_certified(results)
+        self.assertGreater(min(self.assert_open_nodes(results)), 0)
+
+
+@unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
+class Independent(SlidingTest):
+    """The same state and modes from the exported matrices alone."""
+
+    CASES = {"even": (0.4, {}), "no friction": (0, {}), "strong friction": (1.0, {}), "hardly touching": (0.4, {"pin_top_1": (1e-5, 0, 0)}),
+             "short": (0.4, {"pin_top_1": (2e-5, 0, 0)}), "worn": (0.4, {"pin_bottom_2": (0, 4e-4, 0), "pin_top_1": (-1e-6, 0, -1e-4)}),
+             "uneven": (0.8, {"pin_top_1": (2e-6, 1e-4, -2e-4), "pin_top_2": (0, -2e-4, 1e-4), "pin_bottom_1": (3e-6, 0, 2e-4)})}
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        # Equal load keeps all pairs; the mesh is that of every run.
+        cls.matrices = cls.run_scene("matrices", "Output/Write matrices=true")
+
+    def run_case(self, friction, gaps, *overrides):
+        text = "; ".join(f"{pin}: {gap!r}, {along!r}, {outwards!r}" for pin, (gap, along, outwards) in gaps.items())
+        return self.run_scene("results", STEADY, CONSISTENT, f"Operation/Friction coefficient={friction}", f"Steady sliding/Gaps={text}",
+                              "Output/Write matrices=true", *overrides)
+
+    def assert_same_state(self, results, contact, friction, compressions, ways):
+        """Loads, ways and open nodes from the table, reactions from the dissipation, which is in proportion to them."""
+        import scipy.io
+        table = pins(results)
+        compression = {name: [p for p, pin in zip(compressions, contact.pins) if pin == name] for name in PINS}
+        self.assert_close(loads(results), [sum(compression[name]) for name in PINS], 1e-8)
+        self.assert_close([pin["way of backplate [m]"] for pin in table.values()], ways, 1e-8)
+        self.assertEqual([pin["open nodes [-]"] for pin in table.values()], [compression[name].count(0) for name in PINS])
+        for name, pin in table.items():
+            pressures = [p / area for p, area, of_pin in zip(compressions, contact.areas, contact.pins) if of_pin == name]
+            self.assertAlmostEqual(pin["largest pressure [Pa]"], max(pressures), delta=1e-8 * LOAD / 0.002)
+        if friction > 0:
+            P_b, C_b = (scipy.io.mmread(folder / "matrices" / f"{name}.mtx").tocsr()
+                        for folder, name in ((self.matrices, "P_b"), (results, "C_b")))
+            damping = (P_b @ C_b @ P_b.T).diagonal() / 4
+            self.assert_close(damping * SPEED * contact.axis_distances / friction, compressions, 1e-8)
+
+    def test_state(self):
+        from lemke import SlidingContact
+        for name, (friction, gaps) in self.CASES.items():
+            with self.subTest(name):
+                contact = SlidingContact(self.matrices, friction)
+                plates = [0 if side > 0 else 1 for side in contact.sides]
+                compressions, ways = contact.solve(contact.gaps(gaps), plates, [LOAD, LOAD])
+                results = self.run_case(friction, gaps)
+                self.assert_certified(results)
+                self.assert_same_state(results, contact, friction, compressions, [ways[0], ways[0], ways[1], ways[1]])
+
+    def test_load_per_pin(self):
+        from lemke import SlidingContact
+        friction, gaps = self.CASES["uneven"]
+        contact = SlidingContact(self.matrices, friction)
+        plates = [PINS.index(pin) for pin in contact.pins]
+        compressions, ways = contact.solve(contact.gaps(gaps), plates, [700, 500, 500, 200])
+        results = self.run_case(friction, gaps, "Steady sliding/Control=load per pin",
+                                "Steady sliding/Loads=pin_top_1: 700; pin_bottom_2: 200")
+        self.assert_same_state(results, contact, friction, compressions, ways)
+
+    def test_displacement(self):
+        from lemke import SlidingContact, lemke
+        friction, gaps = self.CASES["uneven"]
+        contact = SlidingContact(self.matrices, friction)
+        way, unit = 4e-6, contact.flexibility.max()
+        compressions = lemke(contact.flexibility / unit, (contact.gaps(gaps) - way) / unit)
+        results = self.run_case(friction, gaps, "Steady sliding/Control=displacement", f"Steady sliding/Displacement={way}")
+        self.assert_certified(results, has_load=False)
+        self.assert_same_state(results, contact, friction, compressions, 4 * [way])
+
+    def test_eigenvalues(self):
+        for name in ("short", "worn"):
+            with self.subTest(name):
+                results = self.run_case(*self.CASES[name])
+                check = subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "check_eigenvalues.py", results, "--solver", "scipy"],
+                                       text=True, capture_output=True, timeout=300)
+                self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+
+
+class Damping(SlidingTest):
+    """Damping of materials, of given modes, and by a falling or rising friction coefficient."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results")
+        cls.values = eigenvalues(cls.results)
+
+    def test_damping_of_the_mass(self):
+        # With friction too: lambda^2 + alpha lambda takes the place of lambda^2.
+        alpha = 20.0
+        expected = []
+        for value in self.values:
+            root = cmath.sqrt(alpha**2 / 4 + value**2)
+            expected.append(-alpha / 2 + (root if root.imag > 0 else -root))
+        for overrides in ([], RESIDUAL_ITERATION):
+            with self.subTest(overrides):
+                damped = self.run_scene("damped", f"Disc material/Rayleigh alpha={alpha}", f"Pin material/Rayleigh alpha={alpha}", *overrides)
+                self.assert_same_eigenvalues(eigenvalues(damped), expected)
+
+    def test_damping_of_the_pins(self):
+        beta = 1e-8
+        # Without friction it damps every mode, pins' most: theirs by beta omega / 2, since the disc hardly moves.
+        still = self.run_scene("still", "Operation/Friction coefficient=0", f"Pin material/Rayleigh beta={beta}")
+        for value in eigenvalues(still):
+            self.assertLessEqual(value.real, 1e-9)
+            self.assertGreaterEqual(value.real, -1.001 * beta * abs(value) ** 2 / 2)
+        twisting = [value for value, row in zip(eigenvalues(still), read_table(still / "complex_modes.csv")) if row["label"] == "T1"]
+        self.assertEqual(len(twisting), 4)
+        for value in twisting:
+            self.assertAlmostEqual(value.real, -beta * abs(value) ** 2 / 2, delta=1e-3 * beta * abs(value) ** 2 / 2)
+
+        # With friction it may shift damping from mode to mode, but adds to the sum, and the worst mode grows more slowly.
+        damped = self.run_scene("damped", f"Pin material/Rayleigh beta={beta}")
+        self.assertLess(sum(growth_rates(damped)), sum(growth_rates(self.results)) - 1)
+        self.assertLess(max(growth_rates(damped)), max(growth_rates(self.results)))
+
+    def test_friction_slope(self):
+        for state in ([], [STEADY]):
+            without = self.run_scene("without", *state)
+            sums = {}
+            for slope in (-0.01, 0.01):
+                results = self.run_scene("slope", f"Operation/Friction slope={slope}", *state)
+                sums[slope] = sum(growth_rates(results)) - sum(growth_rates(without))
+                self.assertLess(slope * (max(growth_rates(results)) - max(growth_rates(without))), 0)
+                self.assertLess(slope * sums[slope], 0)
+                if state:
+                    for pin in pins(results).values():
+                        self.assertAlmostEqual(pin["c_t [N s/m]"], slope * pin["load [N]"], delta=1e-9 * LOAD * abs(slope))
+            self.assertAlmostEqual(sums[-0.01], -sums[0.01], delta=1e-3 * sums[-0.01])
+
+    def test_friction_slope_without_friction(self):
+        # A rising coefficient resists the sliding everywhere, a falling one drives it.
+        for slope in (-0.01, 0.01):
+            rates = growth_rates(self.run_scene("slope", "Operation/Friction coefficient=0", f"Operation/Friction slope={slope}"))
+            self.assertLess(max(slope * rate for rate in rates), 1e-9)
+
+    def test_modal_damping(self):
+        # Without friction each mode by itself; 0.01 at 0 Hz, 0.03 at 5000 Hz.
+        table = "Damping/Modal damping ratio=0: 0.01, 5000: 0.03"
+        for overrides in ([], RESIDUAL_ITERATION):
+            with self.subTest(overrides):
+                damped = self.run_scene("damped", "Operation/Friction coefficient=0", table, *overrides)
+                expected = []
+                for frequency in real_frequencies(damped):
+                    ratio, omega = 0.01 + 0.02 * frequency / 5000, 2 * math.pi * frequency
+                    expected.append(omega * complex(-ratio, math.sqrt(1 - ratio**2)))
+                self.assert_same_eigenvalues(eigenvalues(damped), expected)
+
+    def test_modal_damping_with_friction(self):
+        ratio = 0.001
+        table = f"Damping/Modal damping ratio=0: {ratio}"
+        damped = eigenvalues(self.run_scene("damped", table))
+        for value, undamped in zip(damped, self.values):
+            # Friction lets pin modes share their damping among themselves.
+            self.assertAlmostEqual(value.real - undamped.real, -ratio * abs(undamped), delta=0.03 * ratio * abs(undamped))
+        self.assert_same_eigenvalues(eigenvalues(self.run_scene("other", table, *RESIDUAL_ITERATION)), damped)
+
+    def test_processes(self):
+        overrides = [STEADY, CONSISTENT, "Steady sliding/Gaps=pin_top_1: 1e-5", "Operation/Friction slope=-0.01",
+                     "Pin material/Rayleigh beta=1e-7", "Damping/Modal damping ratio=0: 0.01"]
+        one, two = (eigenvalues(self.run_scene("processes", *overrides, n_processes=n)) for n in (1, 2))
+        self.assert_same_eigenvalues(two, one)
+
+
+class DissipationStudy(SlidingTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", "Study=dissipation")
+
+    def test_files(self):
+        self.assertEqual(sorted(path.name for path in self.results.iterdir()),
+                         ["dissipation.csv", "dissipation_ranges.csv", "parameters.prm", "run.json", "sliding_certificate.csv",
+                          "sliding_pins.csv"])
+        self.assertEqual(header(self.results / "dissipation_ranges.csv").split(",")[1:], header(self.results / "dissipation.csv").split(",")[1:])
+        self.assert_certified(self.results)
+
+    def assert_same_rates(self, column, *overrides):
+        """Divergence rates [%] of each label are those of a run of their own, as far as the label has rows."""
+        alone = self.run_scene("alone", *overrides)
+        expected, actual = {}, {}
+        for row in read_table(alone / "complex_modes.csv"):
+            expected.setdefault(row["label"], []).append(float(row["divergence rate [%]"]))
+        n_rows = {}
+        for row in read_table(self.results / "dissipation.csv"):
+            n_rows[row["label"]] = n_rows.get(row["label"], 0) + 1
+            if row[f"{column} [%]"]:
+                actual.setdefault(row["label"], []).append(float(row[f"{column} [%]"]))
+        self.assertGreater(sum(map(len, actual.values())), 30)
+        for label, n in n_rows.items():
+            with self.subTest(column, label=label):
+                rates = sorted(expected.get(label, []))[:n]
+                self.assertEqual(len(actual.get(label, [])), len(rates))
+                for rate, other in zip(actual.get(label, []), rates):
+                    self.assertAlmostEqual(rate, other, delta=1e-8)
+        return alone
+
+    def test_columns(self):
+        self.assert_same_rates("no C_b")
+        self.assert_same_rates("equal load published", "Operation/Radial dissipation=published")
+        alone = self.assert_same_rates("steady sliding consistent", STEADY, CONSISTENT)
+        self.assertEqual(loads(alone), loads(self.results))
+
+    def test_open_nodes(self):
+        gaps = "Steady sliding/Gaps=pin_top_1: 2e-5"
+        results = self.run_scene("short", "Study=dissipation", gaps)
+        self.assertEqual(pins(results)["pin_top_1"]["open nodes [-]"], 7)
+        most_damped = {row["damped pin modes"]: row for row in read_table(results / "dissipation_ranges.csv")}["T1 most damped"]
+        alone = self.run_scene("alone", STEADY, CONSISTENT, gaps)
+        rates = [float(row["divergence rate [%]"]) for row in read_table(alone / "complex_modes.csv") if row["label"] == "T1"]
+        self.assertAlmostEqual(float(most_damped["steady sliding consistent [%]"]), min(rates), delta=1e-8)
