@@ -1,4 +1,3 @@
-#include <squeal/base/exceptions.h>
 #include <squeal/parameters/enum_parameter.h>
 #include <squeal/parameters/number_parameter.h>
 #include <squeal/parameters/operation.h>
@@ -21,12 +20,5 @@ namespace Squeal
                          "c_t = slope R_n0 per node, so that a falling slope destabilises. Units: s/m.",
                          Double(-10., 10.));
     prm.leave_subsection();
-  }
-
-  void OperationParameters::check() const
-  {
-    if (radial_dissipation != RadialDissipation::none && !(rotation_speed > 0.))
-      throw ParameterError("radial dissipation divides by the sliding speed, which is zero", "parameter Operation/Rotation speed",
-                           "give a positive speed, or set Operation/Radial dissipation = none");
   }
 } // namespace Squeal

@@ -239,23 +239,38 @@ namespace Squeal
     prm.print_parameters(stream, static_cast<dealii::ParameterHandler::OutputStyle>(style | dealii::ParameterHandler::KeepDeclarationOrder));
   }
 
+  bool Parameters::needs_steady_sliding() const
+  {
+    return sliding.state == ContactState::steady_sliding || study == Study::dissipation;
+  }
+
+  void Parameters::check_contact_state() const
+  {
+    const bool is_steady = needs_steady_sliding();
+    if (is_steady)
+      sliding.check_steady();
+    // The study of dissipation turns it on whatever the operation says
+    const bool has_contact_damping =
+      operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study == Study::dissipation;
+    const bool uses_load = (!is_steady && has_contact_damping) || study == Study::dissipation ||
+                           (is_steady && sliding.control == BackplateControl::load_per_side);
+    if (uses_load && !(operation.load_per_side > 0.))
+      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero", "parameter Operation/Load per side",
+                           "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
+                           "Steady sliding/Contact state = equal load");
+    if ((is_steady || has_contact_damping) && !(operation.rotation_speed > 0.))
+      throw ParameterError("the disc does not turn: nothing slides steadily, and contact damping has no sliding speed",
+                           "parameter Operation/Rotation speed",
+                           "give a positive speed; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
+                           "Steady sliding/Contact state = equal load");
+  }
+
   void Parameters::check() const
   {
     geometry.check();
     materials.check();
     discretization.check();
-    operation.check();
-    sliding.check();
-    const bool has_contact_damping = operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0.;
-    const bool needs_load          = sliding.state == ContactState::equal_load ? has_contact_damping :
-                                                                                 sliding.control == BackplateControl::load_per_side;
-    if (needs_load && !(operation.load_per_side > 0.))
-      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero", "parameter Operation/Load per side",
-                           "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
-                           "Steady sliding/Contact state = equal load");
-    if (sliding.state == ContactState::steady_sliding && !(operation.rotation_speed > 0.))
-      throw ParameterError("the disc does not turn, so that nothing slides steadily", "parameter Operation/Rotation speed",
-                           "give a positive speed, or set Steady sliding/Contact state = equal load");
+    check_contact_state();
     damping.check();
     solvers.check();
   }

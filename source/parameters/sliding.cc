@@ -117,15 +117,13 @@ namespace Squeal
     prm.leave_subsection();
   }
 
-  void SlidingParameters::check() const
+  void SlidingParameters::check_steady() const
   {
     for (const PinLoad &entry : pin_loads)
       if (!(entry.load > 0.))
         throw ParameterError("the load is " + exact_text(entry.load) + " N", "parameter Steady sliding/Loads, pin " + entry.pin,
                              "give a positive force; a pin that shall not touch gets a gap and no actuator of its own");
-    if (state == ContactState::equal_load)
-      return;
-    if (control == BackplateControl::displacement && !(displacement > 0.))
+    if (control == BackplateControl::displacement && !(displacement > 0.) && gaps.empty())
       throw ParameterError("the backplates do not move", "parameter Steady sliding/Displacement",
                            "give a positive way, or set Steady sliding/Control = load per side");
     if (control != BackplateControl::load_per_pin && !pin_loads.empty())

@@ -247,7 +247,7 @@ namespace Squeal
       {
         const std::string &pin = model.component_names()[interface[c].pin];
         if (std::abs(gaps[c]) >= height[interface[c].pin])
-          throw ParameterError("the gap of " + exact_text(gaps[c]) + " m is not smaller than the height of the pin, " +
+          throw ParameterError("the gap of " + exact_text(gaps[c]) + " m is larger than the height of the pin, " +
                                  exact_text(height[interface[c].pin]) + " m",
                                "parameter Steady sliding/Gaps, pin " + pin, "gaps are given in metres: 1e-5 is 10 micrometres");
         smallest[plates.of_node[c]] = std::min(smallest[plates.of_node[c]], gaps[c]);

@@ -18,7 +18,7 @@ namespace Squeal
       std::string         name;
       ContactState        state;
       RadialDissipation   dissipation;
-      std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of the modes of each label, ascending
+      std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of each family of modes, by frequency
     };
 
     std::vector<Reading> readings()
@@ -30,34 +30,45 @@ namespace Squeal
       return result;
     }
 
-    /// Modes in the order of their frequencies without C_b; the members of a family of pin modes by divergence rate.
-    Table mode_table(const std::vector<Reading> &all, const std::vector<std::string> &labels)
+    /// "A0-4 +" without its mark: marks tell the two of a doublet apart, which need not be two in every reading.
+    std::string family(const std::string &label)
+    {
+      const std::size_t n = label.size();
+      return n > 2 && label[n - 2] == ' ' ? label.substr(0, n - 2) : label;
+    }
+
+    /// Families in the order of their lowest frequencies; in those of pin modes the members by divergence rate.
+    Table mode_table(std::vector<Reading> all, const std::vector<std::string> &families)
     {
       std::vector<Column> columns = {{"label", ""}, {"paper with C_b", "%", 3}};
       for (const Reading &reading : all)
         columns.push_back({reading.name, "%", 3});
-      Table                              table(columns);
-      std::map<std::string, std::size_t> n_seen;
-      for (const std::string &label : labels)
+      Table table(columns);
+      for (const std::string &name : families)
         {
-          const std::size_t member = n_seen[label]++;
-          const auto        paper  = paper_divergence_damped(label);
-          std::vector<Cell> cells;
-          cells.emplace_back(label);
-          cells.push_back(paper ? Cell(*paper) : Cell());
-          for (const Reading &reading : all)
+          std::size_t n = 0;
+          for (Reading &reading : all)
+            n = std::max(n, reading.rates[name].size());
+          if (n > 2)
+            for (Reading &reading : all)
+              std::sort(reading.rates[name].begin(), reading.rates[name].end());
+          for (std::size_t member = 0; member < n; ++member)
             {
-              const auto rates = reading.rates.find(label);
-              const bool has   = rates != reading.rates.end() && member < rates->second.size();
-              cells.push_back(has ? Cell(rates->second[member]) : Cell());
+              const std::string label = n == 2 ? name + (member == 0 ? " -" : " +") : name;
+              const auto        paper = paper_divergence_damped(label);
+              std::vector<Cell> cells;
+              cells.emplace_back(label);
+              cells.push_back(paper ? Cell(*paper) : Cell());
+              for (Reading &reading : all)
+                cells.push_back(member < reading.rates[name].size() ? Cell(reading.rates[name][member]) : Cell());
+              table.add_row(std::move(cells));
             }
-          table.add_row(std::move(cells));
         }
       return table;
     }
 
     /// The pin modes that the paper lists as damped: all T1, and of F1 the half that bends radially.
-    Table range_table(const std::vector<Reading> &all)
+    Table range_table(std::vector<Reading> all)
     {
       std::vector<Column> columns = {{"damped pin modes", ""}, {"paper with C_b", "%", 2}};
       for (const Reading &reading : all)
@@ -69,13 +80,11 @@ namespace Squeal
             std::vector<Cell> cells;
             cells.emplace_back(std::string(range.label) + (lowest ? " most damped" : " least damped"));
             cells.emplace_back(lowest ? range.lowest : range.highest);
-            for (const Reading &reading : all)
+            for (Reading &reading : all)
               {
-                const auto rates = reading.rates.find(range.label);
-                if (rates == reading.rates.end())
-                  cells.emplace_back();
-                else
-                  cells.emplace_back(rates->second[lowest ? 0 : (rates->second.size() - 1) / range.every]);
+                auto &rates = reading.rates[range.label];
+                std::sort(rates.begin(), rates.end());
+                cells.push_back(rates.empty() ? Cell() : Cell(rates[lowest ? 0 : (rates.size() - 1) / range.every]));
               }
             table.add_row(std::move(cells));
           }
@@ -101,7 +110,7 @@ namespace Squeal
     std::optional<FrictionlessModes> frictionless;
     std::vector<unsigned int>        closed; // of these modes
     std::vector<Reading>             all = readings();
-    std::vector<std::string>         labels;
+    std::vector<std::string>         families;
     for (Reading &reading : all)
       {
         operation.radial_dissipation      = reading.dissipation;
@@ -116,15 +125,16 @@ namespace Squeal
         const FrictionModes friction =
           friction_modes(scene, linearisation, *frictionless, operation.friction_coefficient, run, reading.name);
         for (std::size_t j = 0; j < friction.labels.size(); ++j)
-          reading.rates[friction.labels[j]].push_back(100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
-        for (auto &entry : reading.rates)
-          std::sort(entry.second.begin(), entry.second.end());
-        if (labels.empty())
-          labels = friction.labels;
+          {
+            const std::string name = family(friction.labels[j]);
+            reading.rates[name].push_back(100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
+            if (std::find(families.begin(), families.end(), name) == families.end())
+              families.push_back(name);
+          }
       }
 
     write_sliding_tables(scene, state, parameters.operation, run);
-    run.write_table("dissipation", mode_table(all, labels));
+    run.write_table("dissipation", mode_table(all, families));
     run.write_table("dissipation_ranges", range_table(all));
     run.screen << '\n';
     run.finish();

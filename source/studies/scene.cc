@@ -31,7 +31,8 @@ namespace Squeal
     scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.degree, run.communicator);
     scene.interface = pair_contact_nodes(*scene.model, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
     scene.contact   = contact_operators(*scene.model, scene.interface);
-    check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
+    if (parameters.needs_steady_sliding())
+      check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
     const int n = scene.model->free_map().NumGlobalElements(), n_coupled = scene.contact.kernel->NumGlobalCols();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);

@@ -145,6 +145,15 @@ class Refusals(ProgramTest):
         self.sliding_refused(["`pin_top_1` is given twice", gaps], f"{gaps}=pin_top_1: 1e-6; pin_top_1: 0")
         self.sliding_refused(["no pin `pin_top_3`", gaps], f"{gaps}=pin_top_3: 1e-6", n_processes=2)
 
+    def test_study_of_dissipation(self):
+        """It solves for steady sliding and has contact damping whatever the other parameters say."""
+        study = "Study=dissipation"
+        self.scene_refused(["Operation/Load per side", "the load is zero"], study, "Operation/Load per side=0")
+        self.scene_refused(["Operation/Rotation speed", "does not turn"], study, "Operation/Rotation speed=0")
+        self.scene_refused(["Steady sliding/Displacement"], study, "Steady sliding/Displacement=1")
+        self.scene_refused(["Steady sliding/Loads"], study, "Steady sliding/Loads=pin_top_1: 3")
+        self.scene_refused(["Operation/Rotation speed", "does not turn"], "Operation/Friction slope=0.1", "Operation/Rotation speed=0")
+
     def test_loads_of_pins(self):
         per_pin, loads = "Steady sliding/Control=load per pin", "Steady sliding/Loads"
         self.sliding_refused(["no pin `pin_left`", loads, "pin_bottom_2"], per_pin, f"{loads}=pin_left: 500")

@@ -368,7 +368,7 @@ TEST(SteadySliding, Refusals)
   EXPECT_TRUE(contains(message(sliding, s), s.model.component_names()[1]));
 
   sliding.gaps = {{s.model.component_names()[1], 10.}};
-  EXPECT_TRUE(contains(message(sliding, s), "is not smaller than the height of the pin"));
+  EXPECT_TRUE(contains(message(sliding, s), "is larger than the height of the pin"));
 
   sliding              = SlidingScene::steady();
   sliding.control      = BackplateControl::displacement;

@@ -51,8 +51,5 @@ namespace Squeal
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
 
     void add_parameters(dealii::ParameterHandler &prm);
-
-    /// Throws ParameterError.
-    void check() const;
   };
 } // namespace Squeal

@@ -36,7 +36,13 @@ namespace Squeal
     /// Every parameter with its value and documentation, as a parameter file.
     void print(std::ostream &stream, bool with_documentation) const;
 
+    /// Whether the study solves for the steady sliding state.
+    bool needs_steady_sliding() const;
+
     /// Throws ParameterError where values or their combination make no sense.
     void check() const;
+
+  private:
+    void check_contact_state() const;
   };
 } // namespace Squeal

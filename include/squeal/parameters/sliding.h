@@ -73,7 +73,7 @@ namespace Squeal
 
     void add_parameters(dealii::ParameterHandler &prm);
 
-    /// Throws ParameterError.
-    void check() const;
+    /// Refuses values that leave no steady sliding state; throws ParameterError.
+    void check_steady() const;
   };
 } // namespace Squeal
