@@ -19,6 +19,8 @@ namespace Squeal
     constexpr double dependent = 1e-12;
     /// Weight of the relative distance of λ beside MAC-M: it decides among equals only.
     constexpr double distance_weight = 1e-3;
+    /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
+    constexpr double far = 0.3;
 
     /// Xᴴ M Y from Gram matrices of [Re X, Im X] and [Re Y, Im Y].
     ComplexDenseMatrix hermitian_products(const DenseMatrix &G)
@@ -186,7 +188,8 @@ namespace Squeal
       if (!members[c].empty())
         shares[c] = shares_in_span(submatrix(A, members[c], members[c]), rows(C, members[c]), B);
     const auto gain = [&](const int i, const int j) {
-      return shares[cluster[i]][j] - distance_weight * std::min(1., std::abs(modes.lambda[j] - reference.lambda[i]) / std::abs(reference.lambda[i]));
+      const double distance = std::abs(modes.lambda[j] - reference.lambda[i]) / std::abs(reference.lambda[i]);
+      return distance < far ? shares[cluster[i]][j] - distance_weight * distance : -1.;
     };
     std::vector<int> match = best_assignment(k, n_reduced, gain);
     X.Comm().Broadcast(match.data(), k, 0); // ties may go either way
