@@ -185,10 +185,4 @@ namespace Squeal::Testing
     };
     return {assemble(K, foundation * h * h), assemble(M, 0.)};
   }
-
-  /// max |entries of XᵀMX - I|.
-  inline double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
-  {
-    return max_norm(add(gram(X, M * X), identity(X.NumVectors()), -1.));
-  }
 } // namespace Squeal::Testing

@@ -1,85 +1,32 @@
-#include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/bases/static_response.h>
-#include <squeal/linear_algebra/sparse.h>
-
-#include <algorithm>
-#include <limits>
 
 namespace Squeal
 {
-  namespace
-  {
-    /// ω_max / s: the shift lies far below the elastic modes, so that each refinement gains several digits.
-    constexpr double band_per_shift = 5000.;
-
-    /// Refinement ends when it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this.
-    constexpr double largest_residual = 1e-9;
-  } // namespace
-
   StaticResponse::StaticResponse(const Model               &model,
                                  const SecondOrderSystem   &system,
                                  const double               largest_circular_frequency,
                                  const FactorizationLibrary library)
-    : system(system)
-  {
-    const char                         *what  = "stiffness of disc and pins without contact";
-    const std::optional<MultiVector> motions = free_disc_motions(model, system, largest_circular_frequency);
-    if (!motions)
-      {
-        factor = factorize_positive_definite(*system.stiffness, library, what);
-        return;
-      }
-    N               = std::make_unique<MultiVector>(*motions);
-    MN              = std::make_unique<MultiVector>(*system.mass * *N);
-    const double s  = largest_circular_frequency / band_per_shift;
-    factor          = factorize_positive_definite(*add(1., *system.stiffness, s * s, *system.mass), library, what);
-  }
+    : solver(system.stiffness,
+             system.mass,
+             free_disc_motions(model, system, largest_circular_frequency),
+             largest_circular_frequency,
+             library,
+             "stiffness of disc and pins without contact")
+  {}
 
   MultiVector StaticResponse::solve(const MultiVector &forces) const
   {
-    MultiVector u(forces.Map(), forces.NumVectors());
-    if (!N)
-      {
-        factor->apply(forces, u);
-        return u;
-      }
-
-    MultiVector relieved = forces;
-    multiply_add(-1., *MN, gram(*N, forces), 1., relieved);
-    const std::vector<double> norms    = column_norms(relieved);
-    MultiVector               residual = relieved, correction(u);
-    double                    smallest = std::numeric_limits<double>::max();
-    while (true)
-      {
-        factor->apply(residual, correction);
-        u.Update(1., correction, 1.);
-        multiply_add(-1., *N, gram(*MN, u), 1., u);
-        residual = *system.stiffness * u;
-        residual.Update(1., relieved, -1.);
-        const std::vector<double> rest    = column_norms(residual);
-        double                    largest = 0.;
-        for (std::size_t j = 0; j < rest.size(); ++j)
-          if (norms[j] > 0.)
-            largest = std::max(largest, rest[j] / norms[j]);
-        if (!(largest < 0.5 * smallest))
-          {
-            if (!(std::min(largest, smallest) < largest_residual))
-              throw SolverError("static responses with inertia relief do not converge", "stiffness of disc and pins without contact",
-                                "use a mount that either holds the disc or leaves it free, nothing in between");
-            return u;
-          }
-        smallest = largest;
-      }
+    return solver.solve(forces);
   }
 
   const MultiVector *StaticResponse::rigid_body_modes() const
   {
-    return N.get();
+    return solver.rigid_body_modes();
   }
 
   double StaticResponse::n_factor_entries() const
   {
-    return factor->n_factor_entries();
+    return solver.n_factor_entries();
   }
 } // namespace Squeal

@@ -138,4 +138,26 @@ namespace Squeal
             eliminate(slaves, model, contact, node, -1);
     return kernel_matrix(model.free_map(), kept, slaves);
   }
+
+  MultiVector coordinates(const SparseMatrix &T, const MultiVector &u)
+  {
+    // Columns keep the order and the owner of the dofs that they select; a slave that equals the dof selected next does as well.
+    const Epetra_Map &columns = T.DomainMap();
+    MultiVector       q(columns, u.NumVectors());
+    int               next = 0;
+    for (int i = 0; i < T.NumMyRows() && next < columns.NumMyElements(); ++i)
+      {
+        int     n_entries;
+        double *values;
+        int    *entries;
+        T.ExtractMyRowView(i, n_entries, values, entries);
+        if (n_entries == 1 && values[0] == 1. && T.GCID(entries[0]) == columns.GID(next))
+          {
+            for (int j = 0; j < u.NumVectors(); ++j)
+              q[j][next] = u[j][i];
+            ++next;
+          }
+      }
+    return q;
+  }
 } // namespace Squeal

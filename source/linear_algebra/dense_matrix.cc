@@ -32,7 +32,7 @@ namespace Squeal
     {
       if (info != 0)
         throw SolverError(std::string(routine) + " failed with info = " + std::to_string(info),
-                          "a small dense eigenvalue problem",
+                          "a small dense eigenvalue or singular value problem",
                           "check that the reduced matrices are finite");
     }
   } // namespace
@@ -228,6 +228,21 @@ namespace Squeal
       check_lapack(LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'U', n, A.column(), n, B.column(), n, values.data()),
                    "LAPACK's dsygvd");
     return values;
+  }
+
+
+
+  SingularValues singular_values(DenseMatrix A)
+  {
+    const int      m = A.n_rows(), n = A.n_columns(), k = std::min(m, n);
+    SingularValues result{std::vector<double>(k), identity(n)};
+    if (k == 0)
+      return result;
+    DenseMatrix left(m, m);
+    check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', m, n, A.column(), m, result.values.data(), left.column(), m, result.right.column(), n),
+                 "LAPACK's dgesdd");
+    result.right = transpose(result.right);
+    return result;
   }
 
 

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <limits>
 #include <string>
 
 namespace Squeal
@@ -68,15 +70,27 @@ namespace Squeal
       return values;
     }
 
-    /// Columns [first, first + n) of @p V, column j multiplied by @p scale(j).
-    template <typename Scale>
-    DenseMatrix scaled_columns(const DenseMatrix &V, const int first, const int n, const Scale &scale)
+    /// Columns of @p V that belong to the @p n largest of the ascending @p values, each divided by its root, largest first.
+    DenseMatrix largest_axes(const DenseMatrix &V, const std::vector<double> &values, const int n)
     {
-      DenseMatrix S = columns(V, first, n);
+      DenseMatrix S(V.n_rows(), n);
       for (int j = 0; j < n; ++j)
-        for (int i = 0; i < S.n_rows(); ++i)
-          S(i, j) *= scale(first + j);
+        {
+          const int column = V.n_columns() - 1 - j;
+          for (int i = 0; i < S.n_rows(); ++i)
+            S(i, j) = V(i, column) / std::sqrt(values[column]);
+        }
       return S;
+    }
+
+    /// V diag(1 / √values) Vᵀ.
+    DenseMatrix inverse_root(const DenseMatrix &V, const std::vector<double> &values)
+    {
+      DenseMatrix S = V;
+      for (int j = 0; j < S.n_columns(); ++j)
+        for (int i = 0; i < S.n_rows(); ++i)
+          S(i, j) /= std::sqrt(values[j]);
+      return multiply(S, V, false, true);
     }
   } // namespace
 
@@ -238,114 +252,175 @@ namespace Squeal
 
 
 
-  std::optional<MultiVector>
-  orthonormalize_if_any(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance)
+  namespace
   {
-    // A Gram matrix resolves directions down to the square root of the
-    // rounding unit; with this ratio per pass they still come out accurate.
-    const double resolved = 1e-10;
-
-    std::vector<MultiVector> kept;
-    const auto               project = [&](MultiVector &Y) {
-      if (Q != nullptr)
-        project_out(M, *Q, Y);
-      for (const MultiVector &W : kept)
-        project_out(M, W, Y);
+    /// Whether directions are looked for among the columns as they are or scaled to unit norm.
+    enum class Scaling
+    {
+      none,
+      unit_norm
     };
 
-    // Scale to unit norm; the largest direction of the scaled columns is the yardstick.
-    std::optional<MultiVector> remaining;
-    double                     largest = 0.;
+    /// Largest over smallest of ascending eigenvalues.
+    double condition_number(const std::vector<double> &values)
     {
-      DenseMatrix         G = gram(X, M * X);
-      std::vector<double> scale;
-      std::vector<int>    nonzero;
-      for (int j = 0; j < X.NumVectors(); ++j)
-        {
-          if (!std::isfinite(G(j, j)))
-            throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values",
-                              "orthonormalisation",
-                              "check the step that computed the vectors");
-          if (G(j, j) > 0.)
-            {
-              nonzero.push_back(j);
-              scale.push_back(1. / std::sqrt(G(j, j)));
-            }
-        }
-      const int k = nonzero.size();
-      if (k == 0)
-        return {};
-      DenseMatrix S(X.NumVectors(), k), unit(k, k);
-      for (int j = 0; j < k; ++j)
-        {
-          S(nonzero[j], j) = scale[j];
-          for (int i = 0; i < k; ++i)
-            unit(i, j) = scale[i] * scale[j] * G(nonzero[i], nonzero[j]);
-        }
-      remaining.emplace(X * S);
-      largest   = common_eigenvalues(X.Comm(), unit).back();
+      return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
-    const double smallest = tolerance * tolerance * largest;
 
-    // One projection leaves components of the size of the rounding error, the second none.
-    project(*remaining);
-    project(*remaining);
+    std::optional<MultiVector> orthonormal_axes(const SparseMatrix &M,
+                                                const MultiVector  *Q,
+                                                const MultiVector  &X,
+                                                const double        tolerance,
+                                                const Scaling       scaling,
+                                                PrincipalAxes      *axes)
+    {
+      // A Gram matrix resolves directions down to the square root of the
+      // rounding unit; with this ratio per pass they still come out accurate.
+      const double resolved = 1e-10;
 
-    while (remaining)
+      std::vector<MultiVector> kept;
+      const auto               project = [&](MultiVector &Y) {
+        if (Q != nullptr)
+          project_out(M, *Q, Y);
+        for (const MultiVector &W : kept)
+          project_out(M, W, Y);
+      };
+
+      // Scale to unit norm; the largest direction of the scaled columns is the yardstick.
+      std::optional<MultiVector> remaining;
+      double                     largest = 0.;
       {
-        DenseMatrix               V      = gram(*remaining, M * *remaining);
-        const std::vector<double> values = common_eigenvalues(X.Comm(), V);
-        const int                 k      = values.size();
-
-        const double threshold = std::max(resolved * values.back(), smallest);
-        int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
-        if (!(values.back() > smallest) || n_rest == k)
-          break;
-
-        MultiVector W = *remaining * scaled_columns(V, n_rest, k - n_rest, [&](const int j) { return 1. / std::sqrt(values[j]); });
-        for (int pass = 0; pass < 2; ++pass)
+        DenseMatrix         G = gram(X, M * X);
+        std::vector<double> scale;
+        std::vector<int>    nonzero;
+        for (int j = 0; j < X.NumVectors(); ++j)
           {
-            project(W);
-            // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
-            DenseMatrix               U       = gram(W, M * W);
-            const std::vector<double> squares = common_eigenvalues(X.Comm(), U);
-            W = W * multiply(scaled_columns(U, 0, U.n_columns(), [&](const int j) { return 1. / std::sqrt(squares[j]); }),
-                             U,
-                             false,
-                             true);
+            if (!std::isfinite(G(j, j)))
+              throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values",
+                                "orthonormalisation",
+                                "check the step that computed the vectors");
+            if (G(j, j) > 0.)
+              {
+                nonzero.push_back(j);
+                scale.push_back(scaling == Scaling::unit_norm ? 1. / std::sqrt(G(j, j)) : 1.);
+              }
           }
-        kept.push_back(std::move(W));
-
-        // Rounding in V leaves a trace of the kept directions in the others, which the projection removes.
-        if (n_rest > 0)
+        const int k = nonzero.size();
+        if (k == 0)
+          return {};
+        DenseMatrix S(X.NumVectors(), k), unit(k, k);
+        for (int j = 0; j < k; ++j)
           {
-            remaining.emplace(*remaining * columns(V, 0, n_rest));
-            project(*remaining);
-            project(*remaining);
+            S(nonzero[j], j) = scale[j];
+            for (int i = 0; i < k; ++i)
+              unit(i, j) = scale[i] * scale[j] * G(nonzero[i], nonzero[j]);
           }
-        else
-          remaining.reset();
+        remaining.emplace(X * S);
+        const std::vector<double> squares = common_eigenvalues(X.Comm(), unit);
+        largest                           = squares.back();
+        if (axes != nullptr)
+          *axes = {{}, condition_number(squares)};
       }
+      const double smallest = tolerance * tolerance * largest;
 
-    if (kept.empty())
-      return {};
-    if (kept.size() == 1)
-      return std::move(kept.front());
-    std::vector<const MultiVector *> parts;
-    for (const MultiVector &W : kept)
-      parts.push_back(&W);
-    return join(parts);
+      // One projection leaves components of the size of the rounding error, the second none.
+      project(*remaining);
+      project(*remaining);
+
+      while (remaining)
+        {
+          DenseMatrix               V      = gram(*remaining, M * *remaining);
+          const std::vector<double> values = common_eigenvalues(X.Comm(), V);
+          const int                 k      = values.size();
+
+          const double threshold = std::max(resolved * values.back(), smallest);
+          int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
+          if (!(values.back() > smallest) || n_rest == k)
+            break;
+
+          MultiVector W = *remaining * largest_axes(V, values, k - n_rest);
+          if (axes != nullptr)
+            std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms), [](const double x) { return std::sqrt(x); });
+          for (int pass = 0; pass < 2; ++pass)
+            {
+              project(W);
+              // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
+              DenseMatrix               U       = gram(W, M * W);
+              const std::vector<double> squares = common_eigenvalues(X.Comm(), U);
+              W = W * inverse_root(U, squares);
+            }
+          kept.push_back(std::move(W));
+
+          // Rounding in V leaves a trace of the kept directions in the others, which the projection removes.
+          if (n_rest > 0)
+            {
+              remaining.emplace(*remaining * columns(V, 0, n_rest));
+              project(*remaining);
+              project(*remaining);
+            }
+          else
+            remaining.reset();
+        }
+
+      if (kept.empty())
+        return {};
+      if (kept.size() == 1)
+        return std::move(kept.front());
+      std::vector<const MultiVector *> parts;
+      for (const MultiVector &W : kept)
+        parts.push_back(&W);
+      return join(parts);
+    }
+  } // namespace
+
+
+
+  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
+                                                   const MultiVector  *Q,
+                                                   const MultiVector  &X,
+                                                   const double        tolerance,
+                                                   PrincipalAxes      *axes)
+  {
+    return orthonormal_axes(M, Q, X, tolerance, Scaling::unit_norm, axes);
   }
 
 
 
-  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance)
+  MultiVector
+  orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance, PrincipalAxes *axes)
   {
-    std::optional<MultiVector> W = orthonormalize_if_any(M, Q, X, tolerance);
+    std::optional<MultiVector> W = orthonormalize_if_any(M, Q, X, tolerance, axes);
     if (!W)
       throw SolverError("all " + std::to_string(X.NumVectors()) + " vectors are zero or depend linearly on those already there",
                         "orthonormalisation",
                         "give other vectors, or a smaller tolerance");
     return *W;
+  }
+
+
+
+  MultiVector
+  principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
+  {
+    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, axes);
+    if (!W)
+      throw SolverError("all " + std::to_string(X.NumVectors()) + " vectors are zero", "proper orthogonal decomposition", "give other vectors");
+    if (maximum < 1)
+      throw SolverError("a basis of " + std::to_string(maximum) + " vectors was asked for", "proper orthogonal decomposition",
+                        "ask for one vector at least");
+    if (W->NumVectors() <= maximum)
+      return *W;
+    if (axes != nullptr)
+      axes->norms.resize(maximum);
+    // Returned as it is the view would outlive W; its copy does not refer to it.
+    const MultiVector largest = view(*W, 0, maximum);
+    return MultiVector(largest);
+  }
+
+
+
+  double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
+  {
+    return max_norm(add(gram(X, M * X), identity(X.NumVectors()), -1.));
   }
 } // namespace Squeal

@@ -157,6 +157,7 @@ namespace Squeal
       parameters.operation.add_parameters(prm);
       parameters.sliding.add_parameters(prm);
       parameters.damping.add_parameters(prm);
+      parameters.reduction.add_parameters(prm);
       parameters.solvers.add_parameters(prm);
       parameters.output.add_parameters(prm);
     }
@@ -272,6 +273,7 @@ namespace Squeal
     discretization.check();
     check_contact_state();
     damping.check();
+    reduction.check();
     solvers.check();
   }
 } // namespace Squeal

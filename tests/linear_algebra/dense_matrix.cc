@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 using namespace Squeal;
 
 namespace
@@ -99,4 +101,24 @@ TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
         }
     }
   EXPECT_EQ(n_complex, 2);
+}
+
+
+
+TEST(DenseMatrices, SingularValuesAndKernel)
+{
+  const DenseMatrix A = example(), tall = multiply(A, columns(A, 0, 2), true);
+  for (const DenseMatrix &B : {A, tall, transpose(tall)})
+    {
+      const auto  [values, V] = singular_values(B);
+      const int   n           = B.n_columns(), k = values.size();
+      ASSERT_EQ(k, std::min(B.n_rows(), n));
+      EXPECT_TRUE(std::is_sorted(values.rbegin(), values.rend()));
+      EXPECT_LT(max_norm(add(multiply(V, V, true), identity(n), -1.)), 1e-14);
+      const DenseMatrix BV = multiply(B, V), squares = multiply(BV, BV, true);
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+          EXPECT_NEAR(squares(i, j), i == j && i < k ? values[i] * values[i] : 0., 1e-13);
+    }
+  EXPECT_TRUE(singular_values(DenseMatrix(0, 3)).values.empty());
 }

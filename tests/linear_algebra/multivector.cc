@@ -147,6 +147,69 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
 
 
 
+TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
+{
+  // Two unit vectors at an angle: the Gram matrix has the eigenvalues 1 ± cos.
+  const Epetra_Map  map = rows(60, GetParam());
+  const auto        M   = inner_product(map);
+  const MultiVector Q   = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
+  const double      cosine = 0.8, sine = 0.6;
+  MultiVector       X(map, 2);
+  X(0)->Update(5., *Q(0), 0.);
+  X(1)->Update(0.1 * cosine, *Q(0), 0.1 * sine, *Q(1), 0.);
+  PrincipalAxes axes;
+  orthonormalize(*M, nullptr, X, 1e-8, &axes);
+  EXPECT_NEAR(axes.condition, (1. + cosine) / (1. - cosine), 1e-12);
+  ASSERT_EQ(axes.norms.size(), 2u);
+  EXPECT_NEAR(axes.norms[0], std::sqrt(1. + cosine), 1e-13);
+  EXPECT_NEAR(axes.norms[1], std::sqrt(1. - cosine), 1e-13);
+
+  // Dependent columns: as far as rounding tells
+  *X(1) = *X(0);
+  orthonormalize(*M, nullptr, X, 1e-8, &axes);
+  EXPECT_GT(axes.condition, 1e14);
+  EXPECT_EQ(axes.norms.size(), 1u);
+}
+
+
+
+TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
+{
+  // Columns of known singular values over twelve orders of magnitude, mixed by an orthogonal matrix
+  const Epetra_Map  map = rows(60, GetParam());
+  const auto        M   = inner_product(map);
+  const int         k   = 7;
+  const MultiVector Q   = orthonormalize(*M, nullptr, random_vectors(map, k, 3), 1e-8);
+  DenseMatrix       mix = gram(random_vectors(map, k, 5), random_vectors(map, k, 6));
+  mix                   = add(mix, transpose(mix));
+  symmetric_eigenvalues(mix);
+  DenseMatrix S = transpose(mix);
+  for (int j = 0; j < k; ++j)
+    for (int i = 0; i < k; ++i)
+      S(i, j) *= std::pow(10., 2 - 2 * i);
+  const MultiVector X = Q * S;
+
+  PrincipalAxes     axes;
+  const MultiVector W = principal_axes(*M, X, 1e-9, 20, &axes);
+  ASSERT_EQ(W.NumVectors(), 5);
+  EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
+  ASSERT_EQ(axes.norms.size(), 5u);
+  for (int i = 0; i < 5; ++i)
+    {
+      EXPECT_NEAR(axes.norms[i] / std::pow(10., 2 - 2 * i), 1., 1e-4);
+      EXPECT_NEAR(std::abs(gram(view(W, i, 1), *M * view(Q, i, 1))(0, 0)), 1., 1e-6);
+    }
+
+  const MultiVector first = principal_axes(*M, X, 1e-9, 3, &axes);
+  EXPECT_EQ(first.NumVectors(), 3);
+  EXPECT_LT(max_norm(add(gram(first, *M * view(W, 0, 3)), identity(3), -1.)), 1e-13);
+  EXPECT_EQ(axes.norms.size(), 3u);
+  EXPECT_THROW(principal_axes(*M, X, 1e-9, 0), SolverError);
+  EXPECT_THROW(principal_axes(*M, MultiVector(map, 2), 1e-9, 2), SolverError);
+}
+
+
+
 TEST_P(MultiVectors, OrthonormalizeRefusesUndefinedValues)
 {
   const Epetra_Map map = rows(60, GetParam());

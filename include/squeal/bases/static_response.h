@@ -1,10 +1,8 @@
 #pragma once
 
 #include <squeal/assembly/second_order_system.h>
-#include <squeal/linear_algebra/factorization.h>
+#include <squeal/bases/inertia_relief.h>
 #include <squeal/model/model.h>
-
-#include <memory>
 
 namespace Squeal
 {
@@ -14,12 +12,8 @@ namespace Squeal
    * pins together (section 5.1 of the paper). K consists of one block for each
    * component, so that one factorisation is that of every component.
    *
-   * Where the mount leaves the disc some rigid-body motions N, the forces are
-   * relieved by inertia,
-   *
-   *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,
-   *
-   * solved with the factor of K + s² M and iterative refinement.
+   * Where the mount leaves the disc some rigid-body motions, the forces are
+   * relieved by inertia (InertiaRelief).
    */
   class StaticResponse
   {
@@ -45,8 +39,6 @@ namespace Squeal
     double n_factor_entries() const;
 
   private:
-    SecondOrderSystem              system;
-    std::unique_ptr<MultiVector>   N, MN;
-    std::unique_ptr<Factorization> factor;
+    InertiaRelief solver;
   };
 } // namespace Squeal

@@ -44,4 +44,10 @@ namespace Squeal
                                                  const ContactInterface &interface,
                                                  const std::vector<bool> &selected,
                                                  ContactBoundary          boundary);
+
+  /**
+   * q with T q = u for displacements u, n × k, in the range of a kernel T (T_c
+   * or one of component_kernel()): the entries of u at the dofs that T selects.
+   */
+  MultiVector coordinates(const SparseMatrix &T, const MultiVector &u);
 } // namespace Squeal

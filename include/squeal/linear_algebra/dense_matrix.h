@@ -111,6 +111,14 @@ namespace Squeal
    */
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A, DenseMatrix B);
 
+  /// Singular values and right singular vectors of an m × n matrix.
+  struct SingularValues
+  {
+    std::vector<double> values; ///< min(m, n) of them, descending
+    DenseMatrix         right;  ///< V, n × n: its last n − rank columns span the kernel
+  };
+  SingularValues singular_values(DenseMatrix A);
+
   /**
    * Eigenvalues of a real square matrix with right and, where asked, left
    * eigenvectors (LAPACK's dgeev: left vectors satisfy yᴴ A = λ yᴴ).

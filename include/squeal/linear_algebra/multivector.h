@@ -54,6 +54,13 @@ namespace Squeal
   /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
   MultiVector random_vectors(const Epetra_Map &map, int n_vectors, unsigned int seed = 1);
 
+  /// How far the columns of a set of vectors are from dependent.
+  struct PrincipalAxes
+  {
+    std::vector<double> norms;          ///< M-norms of the kept axes (singular values of the columns), largest first
+    double              condition = 1.; ///< of the Gram matrix of all columns, scaled or not; infinite where rounding makes it indefinite
+  };
+
   /**
    * Orthonormalises the columns of @p X in the inner product of the symmetric
    * positive definite @p M against the M-orthonormal columns of @p Q (may be
@@ -68,10 +75,27 @@ namespace Squeal
    * sense.
    *
    * Returns the kept directions, or nothing if none is left (an Epetra
-   * multivector has at least one column).
+   * multivector has at least one column). @p axes, if given, receives what was
+   * found about the columns.
    */
-  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance);
+  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
+                                                   const MultiVector  *Q,
+                                                   const MultiVector  &X,
+                                                   double              tolerance,
+                                                   PrincipalAxes      *axes = nullptr);
 
   /// The same where at least one direction must be left; throws SolverError otherwise.
-  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance);
+  MultiVector
+  orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance, PrincipalAxes *axes = nullptr);
+
+  /**
+   * Proper orthogonal decomposition: the M-orthonormal principal axes of the
+   * columns of X as they are, without scaling, largest first. Kept are those
+   * whose M-norm exceeds @p tolerance times the largest, @p maximum at most.
+   * Computed in passes as above. Throws SolverError if all columns are zero.
+   */
+  MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, double tolerance, int maximum, PrincipalAxes *axes = nullptr);
+
+  /// max |XᵀMX − I|.
+  double orthonormality_defect(const SparseMatrix &M, const MultiVector &X);
 } // namespace Squeal

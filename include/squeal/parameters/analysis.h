@@ -13,15 +13,16 @@ namespace Squeal
   /// Which question a run answers.
   enum class Study
   {
-    stability,  ///< component, real coupled and complex modes at one friction coefficient
-    dissipation ///< complex modes with every reading of the radial dissipation
+    stability,   ///< component, real coupled and complex modes at one friction coefficient
+    dissipation, ///< complex modes with every reading of the radial dissipation
+    reduction    ///< reduced bases, with their errors and cost
   };
 
   template <>
   struct EnumTable<Study>
   {
-    static constexpr std::array<EnumName<Study>, 2> names = {
-      {{Study::stability, "stability"}, {Study::dissipation, "dissipation"}}};
+    static constexpr std::array<EnumName<Study>, 3> names = {
+      {{Study::stability, "stability"}, {Study::dissipation, "dissipation"}, {Study::reduction, "reduction"}}};
   };
 
   /// Elements and band (sections `Discretization` and `Band`).

@@ -5,6 +5,7 @@
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
+#include <squeal/parameters/reduction.h>
 #include <squeal/parameters/sliding.h>
 
 #include <iosfwd>
@@ -23,6 +24,7 @@ namespace Squeal
     OperationParameters      operation;
     SlidingParameters        sliding;
     DampingParameters        damping;
+    ReductionParameters      reduction;
     SolverParameters         solvers;
     OutputParameters         output;
 

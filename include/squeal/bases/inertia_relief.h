@@ -1,0 +1,52 @@
+#pragma once
+
+#include <squeal/linear_algebra/factorization.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace Squeal
+{
+  /**
+   * Solves K u = f for blocks of forces, K symmetric positive semidefinite with
+   * a known kernel N of rigid-body motions. Where there is one the forces are
+   * relieved by inertia,
+   *
+   *   K u = f − M N Nᵀf,   NᵀM u = 0,   NᵀM N = 1,
+   *
+   * solved with the factor of K + s² M and iterative refinement.
+   */
+  class InertiaRelief
+  {
+  public:
+    /**
+     * @param rigid_body N, n × k, M-orthonormal; nothing if K is positive definite
+     * @param largest_circular_frequency end of the band [rad/s]: s is a small part of it
+     * @param what       whose stiffness K is, for messages
+     *
+     * Throws SolverError if K (or K + s² M) is not positive definite.
+     */
+    InertiaRelief(std::shared_ptr<const SparseMatrix> stiffness,
+                  std::shared_ptr<const SparseMatrix> mass,
+                  const std::optional<MultiVector>   &rigid_body,
+                  double                              largest_circular_frequency,
+                  FactorizationLibrary                library,
+                  std::string                         what);
+
+    /// u for every column of @p forces. Throws SolverError if the refinement fails.
+    MultiVector solve(const MultiVector &forces) const;
+
+    /// N; null if K is positive definite.
+    const MultiVector *rigid_body_modes() const;
+
+    /// Entries of the factor; 0 where the library does not tell.
+    double n_factor_entries() const;
+
+  private:
+    std::shared_ptr<const SparseMatrix> K;
+    std::unique_ptr<MultiVector>        N, MN;
+    std::unique_ptr<Factorization>      factor;
+    std::string                         what;
+  };
+} // namespace Squeal

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <squeal/bases/component_modes.h>
+#include <squeal/bases/static_response.h>
+#include <squeal/contact/updated_inverse.h>
+
+#include <array>
+#include <memory>
+
+namespace Squeal
+{
+  /**
+   * Static boundary modes of disc and pins on the uncoupled dofs, one column for
+   * each contact node (sections 5.1 and 6.1 of the paper), each set computed when
+   * it is first asked for and kept. The arguments must outlive it.
+   *
+   * Where the mount leaves the disc free, forces on it are relieved by inertia:
+   * its attachment modes are complete only together with rigid_body_modes().
+   */
+  class StaticModes
+  {
+  public:
+    /// @param largest_circular_frequency end of the band [rad/s], see StaticResponse
+    StaticModes(const Model             &model,
+                const ContactInterface  &interface,
+                const ContactOperators  &contact,
+                const SecondOrderSystem &system,
+                const StaticResponse    &response,
+                double                   largest_circular_frequency,
+                FactorizationLibrary     library);
+
+    /// Ψ_an^D − Ψ_an^P = K⁻¹ P_nᵀ: responses to unit normal forces, +n on the disc and −n on the pins [m/N], n × n_c.
+    const MultiVector &normal_attachment() const;
+
+    /// Ψ_at^D − Ψ_at^P = K⁻¹ P_tᵀ, the same along t.
+    const MultiVector &tangential_attachment() const;
+
+    /// Ψ_an^D or Ψ_an^P: responses of one component to unit forces along n, the other at rest.
+    MultiVector normal_attachment(Component component) const;
+
+    /**
+     * Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit
+     * normal forces together with the friction that they cause, r_t = μ r_n.
+     */
+    MultiVector rubbing_attachment(double friction_coefficient) const;
+
+    /**
+     * Ψ_cn^D or Ψ_cn^P: responses of one component to a unit displacement n·u = 1
+     * of one of its contact nodes, n·u = 0 at the others, free in the tangent
+     * planes [-], n × n_c; P_n Ψ_cn^D = I and P_n Ψ_cn^P = −I. Of a disc that can
+     * still move rigidly, those orthogonal to the motions in the M-inner product.
+     *
+     * Throws SolverError if the stiffness of the sliding component is singular otherwise.
+     */
+    const MultiVector &constraint(Component component) const;
+
+    /// N, n × k, M-orthonormal: rigid-body motions of the uncoupled disc; null if the mounts hold it.
+    const MultiVector *rigid_body_modes() const;
+
+    /// Number of contact nodes.
+    int n_contact() const;
+
+  private:
+    MultiVector constraint_modes(Component component) const;
+
+    const Model                                        &model;
+    const ContactInterface                             &interface;
+    const ContactOperators                             &contact;
+    const SecondOrderSystem                            &system;
+    const StaticResponse                               &response;
+    double                                              largest_circular_frequency;
+    FactorizationLibrary                                library;
+    mutable std::unique_ptr<MultiVector>                normal, tangential;
+    mutable std::array<std::unique_ptr<MultiVector>, 2> constraints;
+  };
+
+  /// Which of the two eigenvectors of a nonsymmetric problem.
+  enum class Side
+  {
+    right,
+    left
+  };
+
+  /**
+   * Responses of first order of real coupled modes Φ_R to friction, n × n_R, in
+   * coupled coordinates and up to the factor μ:
+   *
+   *   right  K_c⁻¹ A V_K Φ_R,    eq. (25), with the static part of the friction forces
+   *   left   K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  the same of the transposed problem
+   *
+   * Where @p inverse has a shift s, its S = K_c + s C_c + s² M_c stands for K_c.
+   */
+  MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
+
+  /**
+   * Responses of first order of real coupled modes Φ_R to damping,
+   * K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R. Throws SolverError if there is no damping.
+   */
+  MultiVector damping_response(const CoupledSystem  &system,
+                               const UpdatedInverse &inverse,
+                               const MultiVector    &real_modes,
+                               double                friction_coefficient = 0.);
+} // namespace Squeal

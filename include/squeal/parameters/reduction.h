@@ -1,0 +1,55 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Which problem reduced bases are measured on.
+  enum class ReductionProblem
+  {
+    frictionless, ///< real coupled modes (section 5 of the paper)
+    friction      ///< complex modes at the friction coefficient of the operation (section 6)
+  };
+
+  template <>
+  struct EnumTable<ReductionProblem>
+  {
+    static constexpr std::array<EnumName<ReductionProblem>, 2> names = {
+      {{ReductionProblem::frictionless, "frictionless"}, {ReductionProblem::friction, "friction"}}};
+  };
+
+  /// How many component modes a basis gets: all up to a frequency, or given numbers of the lowest.
+  struct ModeTruncation
+  {
+    double frequency    = 0.; ///< [Hz]; 0: by the numbers
+    int    disc         = 0;  ///< modes of the disc, free or sliding
+    int    pins_free    = 0;  ///< of all pins together
+    int    pins_sliding = 0;  ///< of all pins together
+
+    /// "10000 Hz" or "80, 120, 60".
+    std::string text() const;
+  };
+
+  /// Reduced bases and how they are compared (section `Reduction`).
+  struct ReductionParameters
+  {
+    std::vector<std::string>    bases;   ///< names; empty: all that fit the problem
+    ReductionProblem            problem          = ReductionProblem::friction;
+    std::vector<ModeTruncation> truncations      = {{10000., 0, 0, 0}};
+    double                      coupled_frequency = 0.;   ///< of the real coupled modes [Hz]; 0: the end of the band
+    double                      rank_tolerance   = 1e-10; ///< [-]
+    std::vector<double>         grown_tolerances = {1e-4, 1e-6}; ///< of residual-grown bases, on the estimated |δλ|/|λ| [-]
+    std::vector<double>         snapshots        = {0.1, 0.25, 0.4}; ///< friction coefficients whose complex modes make the POD basis
+    double                      pod_tolerance    = 1e-4; ///< [-]
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+} // namespace Squeal
