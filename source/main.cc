@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/dissipation_study.h>
+#include <squeal/studies/reduction_study.h>
 #include <squeal/studies/stability_study.h>
 
 #include <deal.II/base/mpi.h>
@@ -120,6 +121,9 @@ Decides whether a disc rubbed by friction pins squeals.
           break;
         case Study::dissipation:
           run_dissipation_study(run);
+          break;
+        case Study::reduction:
+          run_reduction_study(run);
           break;
       }
   }

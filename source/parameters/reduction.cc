@@ -97,7 +97,10 @@ namespace Squeal
     add_enum_parameter(prm, "Problem", problem,
                        "What the bases are measured on: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
                        "Operation/Friction coefficient (section 6).");
-    prm.declare_entry("Bases", "", dealii::Patterns::Anything(),
+    std::string names;
+    for (const std::string &name : bases)
+      names += (names.empty() ? "" : ", ") + name;
+    prm.declare_entry("Bases", names, dealii::Patterns::Anything(),
                       "Names of reduced bases, separated by commas; empty: all that fit the problem.");
     prm.add_action("Bases", [this](const std::string &text) {
       bases.clear();

@@ -91,4 +91,14 @@ namespace Squeal
     result.coupled         = couple(scene.system, result.contact, result.contact_damping);
     return result;
   }
+
+  Linearisation linearised_scene(Scene &scene, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    assemble_scene(scene, run);
+    std::optional<SlidingState> sliding;
+    if (parameters.sliding.state == ContactState::steady_sliding)
+      sliding = solve_sliding(scene, parameters.operation, parameters.sliding, run);
+    return linearise(scene, sliding ? &*sliding : nullptr, parameters.operation);
+  }
 } // namespace Squeal

@@ -157,11 +157,8 @@ namespace Squeal
         run.progress.note("  dry run: nothing was computed or written");
         return;
       }
-    assemble_scene(scene, run);
-    std::optional<SlidingState> sliding;
-    if (parameters.sliding.state == ContactState::steady_sliding)
-      sliding = solve_sliding(scene, operation, parameters.sliding, run);
-    Linearisation linearisation = linearise(scene, sliding ? &*sliding : nullptr, operation);
+    Linearisation                      linearisation = linearised_scene(scene, run);
+    const std::optional<SlidingState> &sliding       = linearisation.sliding;
 
     // ------------------------------------------------------------------- modes
     const FrictionlessModes frictionless = frictionless_modes(scene, linearisation, run);

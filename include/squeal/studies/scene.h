@@ -57,6 +57,9 @@ namespace Squeal
   /// The quasi-static state that @p sliding asks for, as a step of the run.
   SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run);
 
+  /// Assembles the scene and linearises it about the state of contact that the parameters ask for, as steps of the run.
+  Linearisation linearised_scene(Scene &scene, Run &run);
+
   /**
    * Couples the closed nodes of a state; where @p state is null all are closed
    * with equal shares of the load. The contact damping follows @p operation.
