@@ -17,8 +17,8 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev nlohmann-json3-dev
-          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy)
-packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth gnuplot-nox)
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy gnuplot-nox)
+packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 packages_peers=(python3-petsc4py python3-slepc4py)
 
 complain() { printf '%s\n' "$*" >&2; }

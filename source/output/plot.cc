@@ -13,7 +13,7 @@ namespace Squeal
   namespace
   {
     // Colours that are told apart with every kind of colour vision (Okabe and Ito, after black and grey), and gnuplot's markers
-    constexpr const char *palette[] = {"#000000", "#999999", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442"};
+    constexpr const char *palette[] = {"#000000", "#999999", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#7f5539"};
     constexpr int         n_colours = sizeof(palette) / sizeof(palette[0]);
     constexpr int         markers[] = {7, 5, 9, 11, 13, 6, 4, 8, 10, 12, 2, 1, 3};
     constexpr int         n_markers = sizeof(markers) / sizeof(markers[0]);

@@ -68,7 +68,10 @@ namespace Squeal
     {
       std::string text;
       for (const ModeTruncation &truncation : truncations)
-        text += (text.empty() ? "" : "; ") + (truncation.frequency > 0. ? exact_text(truncation.frequency) : truncation.text());
+        text += (text.empty() ? "" : "; ") +
+                (truncation.frequency > 0. ? exact_text(truncation.frequency) :
+                                             std::to_string(truncation.disc) + ", " + std::to_string(truncation.pins_free) + ", " +
+                                               std::to_string(truncation.pins_sliding));
       return text;
     }
 
@@ -87,7 +90,7 @@ namespace Squeal
   {
     if (frequency > 0.)
       return exact_text(frequency) + " Hz";
-    return std::to_string(disc) + ", " + std::to_string(pins_free) + ", " + std::to_string(pins_sliding);
+    return std::to_string(disc) + "/" + std::to_string(pins_free) + "/" + std::to_string(pins_sliding);
   }
 
   void ReductionParameters::add_parameters(dealii::ParameterHandler &prm)
@@ -119,7 +122,7 @@ namespace Squeal
     add_list(prm, "Grown tolerances", grown_tolerances,
              "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these. Units: none.");
     add_list(prm, "Snapshots", snapshots,
-             "Friction coefficients whose complex modes, right and left, make the basis `POD`. Units: none.");
+             "Friction coefficients whose complex modes make the basis `POD`. Units: none.");
     add_number_parameter(prm, "POD tolerance", pod_tolerance,
                          "Principal axes of the snapshots below this part of the largest are left out. Units: none.", Double(1e-13, 1.));
     prm.leave_subsection();

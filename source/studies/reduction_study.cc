@@ -29,6 +29,9 @@ namespace Squeal
     /// Estimates count as good within this factor of the true error.
     constexpr double good_factor = 3.;
 
+    /// Relative differences of λ below this are rounding errors of the reference and say nothing about an estimate.
+    constexpr double reference_accuracy = 1e-11;
+
     /// Processor seconds since construction.
     class Stopwatch
     {
@@ -341,6 +344,7 @@ namespace Squeal
                    {"component modes", ""},
                    {"modes", "-"},
                    {"claimed", "-"},
+                   {"judged", "-"},
                    {"median ratio to the true error", "-", 2},
                    {"within a factor of 3", "%", 0},
                    {"median gain of the correction", "-", 1},
@@ -349,13 +353,14 @@ namespace Squeal
       for (const Candidate &candidate : candidates)
         {
           std::vector<double> ratios, gains;
-          long                n_good = 0, n_undecided = 0, n_wrong = 0;
+          long                n_claimed = 0, n_good = 0, n_undecided = 0, n_wrong = 0;
           for (std::size_t j = 0; j < candidate.errors.size(); ++j)
             {
               const ModeError &e = candidate.errors[j];
               n_undecided += e.verdict == Verdict::undecided;
               n_wrong += e.verdict == (unstable[j] ? Verdict::stable : Verdict::unstable);
-              if (!e.claimed || !std::isfinite(e.estimate_ratio))
+              n_claimed += e.claimed;
+              if (!e.claimed || !(e.eigenvalue > reference_accuracy))
                 continue;
               ratios.push_back(e.estimate_ratio);
               n_good += e.estimate_ratio > 1. / good_factor && e.estimate_ratio < good_factor;
@@ -368,8 +373,8 @@ namespace Squeal
             std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
             return Cell(values[values.size() / 2]);
           };
-          table.add_row({candidate.name, candidate.truncation, static_cast<long>(candidate.errors.size()), static_cast<long>(ratios.size()),
-                         median(ratios), ratios.empty() ? Cell() : Cell(100. * n_good / ratios.size()), median(gains), n_undecided, n_wrong});
+          table.add_row({candidate.name, candidate.truncation, static_cast<long>(candidate.errors.size()), n_claimed,
+                         static_cast<long>(ratios.size()), median(ratios), ratios.empty() ? Cell() : Cell(100. * n_good / ratios.size()), median(gains), n_undecided, n_wrong});
         }
       return table;
     }
@@ -416,16 +421,20 @@ namespace Squeal
     }
 
     /// Error over cost, with the bases that none beats in both joined by a line.
-    PlotPanel cost_panel(const std::vector<Candidate> &candidates, const char *what, const std::function<double(const Candidate &)> &seconds)
+    PlotPanel cost_panel(const std::vector<Candidate>                     &candidates,
+                         const bool                                        friction,
+                         const char                                       *what,
+                         const std::function<double(const Candidate &)> &seconds)
     {
-      PlotPanel                              panel{std::string("Error over ") + what, std::string(what) + " [s of CPU]", "largest eps_div", true, true, {}, {}};
+      PlotPanel panel{std::string("Error over ") + what, std::string(what) + " [s of CPU]",
+                      friction ? "largest eps_div" : "largest eps_frq", true, true, {}, {}};
       std::vector<std::pair<double, double>> points;
       int                                    number = 0;
       for (const Candidate &candidate : candidates)
         {
           double largest = 0.;
           for (const ModeError &e : candidate.errors)
-            largest = std::max(largest, e.divergence);
+            largest = std::max(largest, friction ? e.divergence : e.frequency);
           points.emplace_back(seconds(candidate), largest);
           panel.series.push_back({candidate.name + (candidate.truncation.empty() ? "" : " " + candidate.truncation), {points.back().first},
                                   {largest}, PlotSeries::Style::points, number, number});
@@ -673,8 +682,8 @@ namespace Squeal
       write_plot("reduction_errors", error_plot(candidates, groups, order), run.folder()) &&
       write_plot("reduction_cost",
                  {"Cost and accuracy of reduced bases",
-                  {cost_panel(candidates, "time per friction coefficient", [](const Candidate &c) { return c.solve_seconds; }),
-                   cost_panel(candidates, "time of building", [](const Candidate &c) { return c.build_seconds; })},
+                  {cost_panel(candidates, friction, friction ? "time per friction coefficient" : "time of solving", [](const Candidate &c) { return c.solve_seconds; }),
+                   cost_panel(candidates, friction, "time of building", [](const Candidate &c) { return c.build_seconds; })},
                   2},
                  run.folder());
     run.screen << '\n';

@@ -31,7 +31,7 @@ namespace Squeal
     int    pins_free    = 0;  ///< of all pins together
     int    pins_sliding = 0;  ///< of all pins together
 
-    /// "10000 Hz" or "80, 120, 60".
+    /// "10000 Hz" or "80/120/60".
     std::string text() const;
   };
 
@@ -44,7 +44,7 @@ namespace Squeal
     double                      coupled_frequency = 0.;   ///< of the real coupled modes [Hz]; 0: the end of the band
     double                      rank_tolerance   = 1e-10; ///< [-]
     std::vector<double>         grown_tolerances = {1e-4, 1e-6}; ///< of residual-grown bases, on the estimated |δλ|/|λ| [-]
-    std::vector<double>         snapshots        = {0.1, 0.25, 0.4}; ///< friction coefficients whose complex modes make the POD basis
+    std::vector<double>         snapshots        = {0.05, 0.25, 0.45}; ///< friction coefficients whose complex modes make the POD basis
     double                      pod_tolerance    = 1e-4; ///< [-]
 
     void add_parameters(dealii::ParameterHandler &prm);
