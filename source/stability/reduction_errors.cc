@@ -17,8 +17,8 @@ namespace Squeal
 
     /// Directions of a cluster whose squared M-norm is below this part of the largest are rounding errors.
     constexpr double dependent = 1e-12;
-    /// Weight of the relative distance of λ beside MAC-M: it decides among equals only.
-    constexpr double distance_weight = 1e-3;
+    /// Weight of MAC-M of single modes beside the share in the span of their cluster.
+    constexpr double member_weight = 0.1;
     /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
     constexpr double far = 0.3;
 
@@ -182,14 +182,15 @@ namespace Squeal
     for (int i = 0; i < k; ++i)
       members[cluster[i]].push_back(i);
 
-    // Counterparts: members of a cluster gain alike, so that among them the distance of λ decides
+    // Counterparts: the span of the cluster decides which reduced modes belong to it, MAC-M of single modes to which member
     std::vector<std::vector<double>> shares(k);
     for (int c = 0; c < k; ++c)
       if (!members[c].empty())
         shares[c] = shares_in_span(submatrix(A, members[c], members[c]), rows(C, members[c]), B);
+    const auto mac  = [&](const int i, const int j) { return std::norm(C(i, j)) / (A(i, i).real() * B(j, j).real()); };
     const auto gain = [&](const int i, const int j) {
       const double distance = std::abs(modes.lambda[j] - reference.lambda[i]) / std::abs(reference.lambda[i]);
-      return distance < far ? shares[cluster[i]][j] - distance_weight * distance : -1.;
+      return distance < far ? shares[cluster[i]][j] + member_weight * mac(i, j) : -1.;
     };
     std::vector<int> match = best_assignment(k, n_reduced, gain);
     X.Comm().Broadcast(match.data(), k, 0); // ties may go either way
@@ -218,7 +219,7 @@ namespace Squeal
         error.reduced         = found;
         error.match           = match[i];
         error.residual        = estimates.energy_residuals[i];
-        error.shape           = std::max(0., 1. - std::norm(C(i, match[i])) / (A(i, i).real() * B(match[i], match[i]).real()));
+        error.shape           = std::max(0., 1. - mac(i, match[i]));
         error.frequency       = std::abs(found.imag() - lambda.imag()) / lambda.imag();
         error.divergence      = std::abs(reduced.divergence_rate - exact.divergence_rate);
         error.eigenvalue      = std::abs(found - lambda) / std::abs(lambda);

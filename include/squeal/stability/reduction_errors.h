@@ -53,11 +53,10 @@ namespace Squeal
    *
    * each reduced mode serving once, so that the sum of MAC-M is largest. Where
    * λ of several reference modes lie within the tolerance of each other, in
-   * chains, MAC-M of single modes says nothing. There a reduced mode counts by
-   * its share in the span of the cluster, members are told apart by the
-   * distance of λ, and the angles between the subspaces are given beside ε_mac,
-   * all in the complex M-inner product. A mode of which a poor basis has no image
-   * gets the likest within 30 % of its λ.
+   * chains, MAC-M of single modes says little. There a reduced mode counts by its
+   * share in the span of the cluster first, and the angles between the
+   * subspaces are given beside ε_mac, all in the complex M-inner product. A mode
+   * of which a poor basis has no image gets the likest within 30 % of its λ.
    *
    * @param system    the frictionless problem: undamped()
    * @param inverse   factor of K_c (or of the shifted stiffness, which then stands for it)
