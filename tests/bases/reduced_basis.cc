@@ -1,0 +1,517 @@
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/reduced_basis.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/eigen/dense_quadratic.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/reduction/reduced_model.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <complex>
+#include <limits>
+#include <map>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+using Complex = std::complex<double>;
+
+namespace
+{
+  constexpr double mu        = 0.6;
+  const double     omega_max = circular_frequency(6000.);
+
+  /// Contact faces, polynomial degree, mounts.
+  struct Case
+  {
+    const char               *name;
+    double                    slope; ///< of the contact faces
+    unsigned int              degree;
+    std::vector<ElasticMount> mounts;
+  };
+  void PrintTo(const Case &c, std::ostream *stream)
+  {
+    *stream << c.name;
+  }
+
+  const std::vector<ElasticMount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
+  const Case                      flat = {"flat", 0., 1, held};
+
+  const std::vector<BasisKind> component_kinds = {BasisKind::free,         BasisKind::fixed,           BasisKind::mixed,
+                                                  BasisKind::free_rubbing, BasisKind::free_tangential, BasisKind::fixed_tangential,
+                                                  BasisKind::mixed_tangential};
+  const std::vector<BasisKind> real_kinds      = {BasisKind::real, BasisKind::real_tangential, BasisKind::real_first_order,
+                                                  BasisKind::real_two_sided, BasisKind::real_two_sided_damped};
+
+  std::vector<BasisKind> all_kinds()
+  {
+    std::vector<BasisKind> kinds = component_kinds;
+    kinds.insert(kinds.end(), real_kinds.begin(), real_kinds.end());
+    return kinds;
+  }
+
+  /// A scene with everything that bases are made from.
+  struct Bodies
+  {
+    explicit Bodies(const Case &c, const double component_band = 2.)
+      : s(mapped(extrude(polar_plan(0.1505, 0.3155, 3, 18,
+                                    {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::top, 3, 2, 0, 1}, {Plan::Side::bottom, 0, 2, 1, 1}}),
+                         layers(1, 2)),
+                 [c](const Point3 &p) {
+                   return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
+                 }),
+          mounted(c.mounts), operating(RadialDissipation::consistent), c.degree)
+      , shift(stabilizing_shift(s.model, s.coupled, omega_max))
+      , response(s.model, s.system, omega_max, FactorizationLibrary::automatic)
+      , static_modes(s.model, s.interface, s.contact, s.system, response, omega_max, FactorizationLibrary::automatic)
+      , inverse(s.coupled, shift, FactorizationLibrary::automatic)
+    {
+      SymmetricModesOptions options;
+      options.tolerance      = 1e-11;
+      options.shift          = shift * shift;
+      const double limit     = component_band * component_band * omega_max * omega_max;
+      const auto   component = [&](const Component which, const ContactBoundary boundary) {
+        return component_modes(s.model, s.interface, s.system, which, boundary, limit, options).vectors;
+      };
+      disc_free    = component(Component::disc, ContactBoundary::free);
+      disc_sliding = component(Component::disc, ContactBoundary::sliding);
+      pins_free    = component(Component::pins, ContactBoundary::free);
+      pins_sliding = component(Component::pins, ContactBoundary::sliding);
+      real         = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, options);
+    }
+
+    BasisIngredients ingredients() const
+    {
+      BasisIngredients in;
+      in.disc_free            = disc_free.get();
+      in.disc_sliding         = disc_sliding.get();
+      in.pins_free            = pins_free.get();
+      in.pins_sliding         = pins_sliding.get();
+      in.static_modes         = &static_modes;
+      in.real                 = real.vectors.get();
+      in.uncoupled            = &s.system;
+      in.contact              = &s.contact;
+      in.coupled              = &s.coupled;
+      in.inverse              = &inverse;
+      in.friction_coefficient = mu;
+      return in;
+    }
+
+    Scene                        s;
+    double                       shift;
+    StaticResponse               response;
+    StaticModes                  static_modes;
+    UpdatedInverse               inverse;
+    std::shared_ptr<MultiVector> disc_free, disc_sliding, pins_free, pins_sliding;
+    SymmetricModes               real;
+  };
+
+  /// Largest M-norm that a column of Y, of unit M-norm, has outside of the span of the M-orthonormal X.
+  double outside(const SparseMatrix &M, const MultiVector &X, MultiVector Y)
+  {
+    std::vector<double> norms(Y.NumVectors()), rest(Y.NumVectors());
+    Y.Dot(M * Y, norms.data());
+    for (int pass = 0; pass < 2; ++pass)
+      multiply_add(-1., X, gram(X, M * Y), 1., Y);
+    Y.Dot(M * Y, rest.data());
+    double largest = 0.;
+    for (std::size_t j = 0; j < norms.size(); ++j)
+      largest = std::max(largest, std::sqrt(std::max(0., rest[j]) / norms[j]));
+    return largest;
+  }
+
+  /// ω² of K_c and M_c on a basis, ascending.
+  std::vector<double> ritz_values(const CoupledSystem &system, const MultiVector &T)
+  {
+    DenseMatrix K = gram(T, *system.frictionless.stiffness * T);
+    return symmetric_eigenvalues(K, gram(T, *system.frictionless.mass * T));
+  }
+
+  class ReducedBases : public ::testing::TestWithParam<Case>
+  {};
+  INSTANTIATE_TEST_SUITE_P(Scenes,
+                           ReducedBases,
+                           ::testing::Values(flat,
+                                             Case{"flat, degree 2", 0., 2, held},
+                                             Case{"cone", 0.3, 1, held},
+                                             Case{"free disc, flat", 0., 1, {}},
+                                             Case{"free disc, cone", 0.3, 1, {}}));
+} // namespace
+
+
+
+TEST(BasisTables, SizesOfThePaper)
+{
+  // Component modes up to 10 kHz (table 3), 66 real modes, 228 contact nodes
+  BasisCounts counts;
+  counts.disc_free = counts.disc_sliding = 80;
+  counts.pins_free                       = 120;
+  counts.pins_sliding                    = 60;
+  counts.contact                         = 228;
+  counts.real                            = 66;
+  const std::map<std::string, std::pair<int, int>> expected = {{"free", {428, 200}},
+                                                               {"fixed", {596, 368}},
+                                                               {"mixed", {596, 368}},
+                                                               {"free + t.a.m.", {656, 428}},
+                                                               {"free with r.a.m.", {428, 200}},
+                                                               {"fixed + t.a.m.", {824, 596}},
+                                                               {"mixed + t.a.m.", {824, 596}},
+                                                               {"real", {66, 66}},
+                                                               {"real + t.a.m.", {294, 294}},
+                                                               {"real + 1st-ord.", {132, 132}},
+                                                               {"real + 1st-ord. two-sided", {198, 198}},
+                                                               {"real + 1st-ord. two-sided + damping", {264, 264}}};
+  std::size_t n_found = 0;
+  for (const auto &[kind, name] : EnumTable<BasisKind>::names)
+    {
+      if (const auto it = expected.find(std::string(name)); it != expected.end())
+        {
+          ++n_found;
+          const BasisSize size = nominal_size(kind, counts);
+          EXPECT_EQ(size.n_r0, it->second.first) << name;
+          EXPECT_EQ(size.n_r, it->second.second) << name;
+        }
+      EXPECT_FALSE(basis_columns(kind).empty());
+      EXPECT_EQ(enum_value<BasisKind>(std::string(name)), kind);
+    }
+  EXPECT_EQ(n_found, expected.size());
+  EXPECT_EQ(basis_columns(BasisKind::free_rubbing), "Phi_f^D Phi_f^P (Psi_amu^D - Psi_amu^P)");
+  EXPECT_EQ(basis_columns(BasisKind::mixed_tangential), "Phi_f^D Phi_s^P Psi_an^D Psi_cn^P (Psi_at^D - Psi_at^P)");
+  EXPECT_FALSE(needs_friction(BasisKind::mixed));
+  EXPECT_TRUE(needs_friction(BasisKind::real));
+}
+
+
+
+TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
+{
+  const Bodies b(GetParam());
+  const int    n_c = b.s.interface.size();
+  for (const BasisKind kind : all_kinds())
+    {
+      const ReducedBasis basis = reduced_basis(kind, b.ingredients());
+      SCOPED_TRACE(basis.name);
+      const SparseMatrix &M = *b.s.coupled.frictionless.mass;
+      EXPECT_EQ(basis.n_nominal, basis.size() + basis.n_dropped);
+      EXPECT_GE(basis.n_dropped, 0);
+      EXPECT_LT(orthonormality_defect(M, *basis.vectors), 1e-12);
+      EXPECT_LE(basis.orthonormality, 1e-12);
+      EXPECT_GE(basis.condition, 1.);
+      const MultiVector u = *b.s.contact.kernel * *basis.vectors;
+      EXPECT_LT(max_norm(replicate(*b.s.contact.normal * u)), 1e-12 * max_norm(replicate(u)));
+      if (is_connected(kind))
+        {
+          EXPECT_EQ(basis.connection.rank, n_c);
+          EXPECT_EQ(basis.n_nominal, basis.n_r0 - n_c);
+          EXPECT_GT(basis.connection.smallest_kept, 1e-9);
+          EXPECT_EQ(basis.connection.largest_dropped, 0.);
+          EXPECT_LT(basis.connection.constraint_error, 1e-10);
+        }
+      else
+        EXPECT_EQ(basis.n_nominal, basis.n_r0);
+    }
+}
+
+
+
+TEST_P(ReducedBases, HaveTheSizesCounted)
+{
+  // Numbers of modes, contact nodes and free motions as they are, by the formulas of the tables
+  const Bodies      b(GetParam());
+  const MultiVector disc = view(*b.disc_free, 0, b.disc_free->NumVectors() - 2);
+  BasisIngredients  in   = b.ingredients();
+  in.disc_free           = &disc;
+  const int n_c = b.s.interface.size(), n_R = b.real.vectors->NumVectors(), f_D = disc.NumVectors(), f_P = b.pins_free->NumVectors(),
+            s_D = b.disc_sliding->NumVectors(), s_P = b.pins_sliding->NumVectors();
+  const std::map<BasisKind, int> expected = {{BasisKind::free, f_D + f_P},
+                                             {BasisKind::fixed, s_D + s_P + n_c},
+                                             {BasisKind::mixed, f_D + s_P + n_c},
+                                             {BasisKind::free_tangential, f_D + f_P + n_c},
+                                             {BasisKind::free_rubbing, f_D + f_P},
+                                             {BasisKind::fixed_tangential, s_D + s_P + 2 * n_c},
+                                             {BasisKind::mixed_tangential, f_D + s_P + 2 * n_c},
+                                             {BasisKind::real, n_R},
+                                             {BasisKind::real_tangential, n_R + n_c},
+                                             {BasisKind::real_first_order, 2 * n_R},
+                                             {BasisKind::real_two_sided, 3 * n_R},
+                                             {BasisKind::real_two_sided_damped, 4 * n_R}};
+  for (const auto &[kind, size] : expected)
+    {
+      const ReducedBasis basis = reduced_basis(kind, in);
+      EXPECT_EQ(basis.n_nominal, size) << basis.name;
+      // Component bases hold no vector twice; real modes that friction does not see make no response.
+      if (is_connected(kind))
+        {
+          EXPECT_EQ(basis.n_dropped, 0) << basis.name;
+        }
+    }
+}
+
+
+
+TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
+{
+  const Bodies b(GetParam()), more(GetParam(), 3.);
+  const auto  &exact  = b.real.eigenvalues;
+  const auto   values = [&](const Bodies &bodies, const BasisKind kind) {
+    return ritz_values(b.s.coupled, *reduced_basis(kind, bodies.ingredients()).vectors);
+  };
+  const double rounding = 1e-9 * omega_max * omega_max;
+  const auto   no_higher = [&](const std::vector<double> &larger, const std::vector<double> &smaller, const char *what) {
+    for (std::size_t j = 0; j < exact.size(); ++j)
+      EXPECT_LE(larger[j], smaller[j] + rounding) << what << ", mode " << j;
+  };
+  const auto error = [&](const std::vector<double> &found) {
+    double largest = 0.;
+    for (std::size_t j = b.real.n_rigid_body; j < exact.size(); ++j)
+      largest = std::max(largest, found[j] / exact[j] - 1.);
+    return largest;
+  };
+
+  std::map<BasisKind, std::vector<double>> found;
+  for (const BasisKind kind : all_kinds())
+    {
+      found[kind] = values(b, kind);
+      no_higher(exact, found[kind], to_string(kind).c_str());
+    }
+  no_higher(found[BasisKind::free_tangential], found[BasisKind::free], "free + t.a.m.");
+  no_higher(found[BasisKind::free_tangential], found[BasisKind::free_rubbing], "free + t.a.m. contains r.a.m.");
+  no_higher(found[BasisKind::fixed_tangential], found[BasisKind::fixed], "fixed + t.a.m.");
+  no_higher(found[BasisKind::mixed_tangential], found[BasisKind::mixed], "mixed + t.a.m.");
+  for (const BasisKind kind : real_kinds)
+    EXPECT_LT(error(found[kind]), 1e-8) << to_string(kind);
+  for (const BasisKind kind : {BasisKind::free, BasisKind::fixed, BasisKind::mixed})
+    {
+      const auto enriched = values(more, kind);
+      no_higher(enriched, found[kind], "more component modes");
+      EXPECT_LT(error(found[kind]), 0.1) << to_string(kind);
+      EXPECT_LT(error(enriched), 0.03) << to_string(kind);
+    }
+}
+
+
+
+TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
+{
+  if (GetParam().mounts.empty())
+    return; // responses of a free disc are next to rigid, if there are any
+  const Bodies        b(GetParam());
+  const SparseMatrix &M = *b.s.coupled.frictionless.mass;
+
+  // Tangential loads on the contact: K_c u = A
+  for (const BasisKind kind : {BasisKind::free_tangential, BasisKind::fixed_tangential, BasisKind::mixed_tangential, BasisKind::real_tangential})
+    EXPECT_LT(outside(M, *reduced_basis(kind, b.ingredients()).vectors, b.inverse.attachment_modes()), 1e-7) << to_string(kind);
+  // They are needed for that.
+  for (const BasisKind kind : {BasisKind::free, BasisKind::fixed, BasisKind::mixed, BasisKind::free_rubbing, BasisKind::real})
+    EXPECT_GT(outside(M, *reduced_basis(kind, b.ingredients()).vectors, b.inverse.attachment_modes()), 1e-2) << to_string(kind);
+
+  // Loads f that the bodies' own modes respond to, and the contact forces they bring about:
+  // (K_c − μ A V_K) u = T_cᵀf − μ/2 A P_n f
+  const MultiVector f = *b.s.system.stiffness * view(*b.disc_free, 0, 4);
+  for (const auto &[kind, friction] : {std::make_pair(BasisKind::free, 0.),
+                                       {BasisKind::mixed, 0.},
+                                       {BasisKind::free_tangential, mu},
+                                       {BasisKind::mixed_tangential, mu},
+                                       {BasisKind::free_rubbing, mu}})
+    {
+      MultiVector load = transpose_times(*b.s.contact.kernel, f);
+      load.Update(-0.5 * friction, *b.s.coupled.friction_forces * (*b.s.contact.normal * f), 1.);
+      const auto matrix = with_friction(b.s.coupled, friction).stiffness;
+      MultiVector u(load.Map(), load.NumVectors());
+      factorize_general(*matrix, FactorizationLibrary::automatic, "stiffness with friction")->apply(load, u);
+
+      const MultiVector T       = *reduced_basis(kind, b.ingredients()).vectors;
+      DenseMatrix       reduced = gram(T, load);
+      DenseLU(gram(T, *matrix * T), "reduced stiffness").solve(reduced);
+      MultiVector difference = T * reduced;
+      difference.Update(-1., u, 1.);
+      for (int j = 0; j < f.NumVectors(); ++j)
+        EXPECT_LT(column_norms(difference)[j], 1e-7 * column_norms(u)[j]) << to_string(kind);
+    }
+}
+
+
+
+TEST_P(ReducedBases, SpanWhatTheyAreMadeOf)
+{
+  const Bodies        b(GetParam());
+  const SparseMatrix &M     = *b.s.coupled.frictionless.mass;
+  const MultiVector   right = friction_response(b.s.coupled, b.inverse, *b.real.vectors, Side::right),
+                    left    = friction_response(b.s.coupled, b.inverse, *b.real.vectors, Side::left),
+                    damping = damping_response(b.s.coupled, b.inverse, *b.real.vectors, mu);
+  for (const BasisKind kind : real_kinds)
+    {
+      const MultiVector T = *reduced_basis(kind, b.ingredients()).vectors;
+      EXPECT_LT(outside(M, T, *b.real.vectors), 1e-9);
+      const auto all = [&](const BasisKind from) { return kind >= from; };
+      EXPECT_EQ(outside(M, T, right) < 1e-6, kind == BasisKind::real_tangential || all(BasisKind::real_first_order)) << to_string(kind);
+      EXPECT_EQ(outside(M, T, left) < 1e-6, all(BasisKind::real_two_sided)) << to_string(kind);
+      EXPECT_EQ(outside(M, T, damping) < 1e-6, all(BasisKind::real_two_sided_damped)) << to_string(kind);
+    }
+
+  // A connected basis lies in the span of its components.
+  for (const BasisKind kind : component_kinds)
+    {
+      const MultiVector                u = *b.s.contact.kernel * *reduced_basis(kind, b.ingredients()).vectors;
+      std::vector<MultiVector>         parts;
+      std::vector<const MultiVector *> pointers;
+      const bool                       fixed = kind == BasisKind::fixed || kind == BasisKind::fixed_tangential;
+      parts.push_back(fixed ? *b.disc_sliding : *b.disc_free);
+      parts.push_back(*b.pins_free);
+      parts.push_back(*b.pins_sliding);
+      for (const Component component : {Component::disc, Component::pins})
+        parts.push_back(b.static_modes.normal_attachment(component));
+      for (const Component component : {Component::disc, Component::pins})
+        parts.push_back(b.static_modes.constraint(component));
+      parts.push_back(b.static_modes.tangential_attachment());
+      for (const MultiVector &part : parts)
+        pointers.push_back(&part);
+      EXPECT_LT(outside(*b.s.system.mass, orthonormalize(*b.s.system.mass, nullptr, join(pointers), 1e-12), u), 1e-6) << to_string(kind);
+    }
+}
+
+
+
+TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
+{
+  // All vectors of the sliding components and the constraint modes span everything that keeps the contact closed.
+  const Case  c = GetParam();
+  const Scene s(mapped(extrude(polar_plan(0.1505, 0.3155, 1, 7, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), layers(1, 2)),
+                       [c](const Point3 &p) {
+                         return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
+                       }),
+                mounted(held), operating(RadialDissipation::consistent));
+  const StaticResponse response(s.model, s.system, omega_max, FactorizationLibrary::automatic);
+  const StaticModes    static_modes(s.model, s.interface, s.contact, s.system, response, omega_max, FactorizationLibrary::automatic);
+  const auto           complete = [&](const std::vector<bool> &selected) {
+    const auto T = component_kernel(s.model, s.interface, selected, ContactBoundary::sliding);
+    return *T * unit_vectors(T->DomainMap());
+  };
+  const MultiVector disc = complete({true, false, false}), pins = complete({false, true, true});
+  BasisIngredients  in;
+  in.disc_sliding = &disc;
+  in.pins_sliding = &pins;
+  in.static_modes = &static_modes;
+  in.uncoupled    = &s.system;
+  in.contact      = &s.contact;
+  in.coupled      = &s.coupled;
+  const ReducedBasis basis = reduced_basis(BasisKind::fixed, in);
+  ASSERT_EQ(basis.size(), s.coupled.map().NumGlobalElements());
+
+  ReducedModel model(s.coupled);
+  model.extend(*basis.vectors);
+  for (const double friction : {0., mu})
+    {
+      const double            limit    = circular_frequency(20000.);
+      const SecondOrderSystem matrices = with_friction(s.coupled, friction);
+      const DenseMatrix       C        = to_dense(*matrices.damping);
+      const auto              full     = dense_quadratic_modes(to_dense(*matrices.mass), &C, to_dense(*matrices.stiffness), limit);
+      const ReducedPencil     pencil   = model.at(friction);
+      const auto              reduced  = dense_quadratic_modes(pencil.mass, &pencil.damping, pencil.stiffness, limit);
+      ASSERT_GT(full.values.size(), 20u);
+      ASSERT_EQ(reduced.values.size(), full.values.size());
+      for (std::size_t j = 0; j < full.values.size(); ++j)
+        {
+          double nearest = std::numeric_limits<double>::infinity();
+          for (const Complex &l : reduced.values)
+            nearest = std::min(nearest, std::abs(l - full.values[j]) / std::abs(l));
+          EXPECT_LT(nearest, 1e-9) << "mode " << j;
+        }
+    }
+
+  // One vector more is one too many.
+  const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
+  in.disc_sliding         = &more;
+  EXPECT_THROW(reduced_basis(BasisKind::fixed, in), SolverError);
+}
+
+
+
+TEST(ReducedBasis, DependentVectorsAreDropped)
+{
+  const Bodies      b(flat);
+  BasisIngredients  in      = b.ingredients();
+  const MultiVector twice   = view(*b.pins_free, 0, 3), doubled = join({b.pins_free.get(), &twice});
+  const auto        once    = reduced_basis(BasisKind::free, in);
+  in.pins_free              = &doubled;
+  const auto again          = reduced_basis(BasisKind::free, in);
+  EXPECT_EQ(again.n_r0, once.n_r0 + 3);
+  EXPECT_EQ(again.n_nominal, once.n_nominal + 3);
+  EXPECT_EQ(again.n_dropped, once.n_dropped + 3);
+  EXPECT_GT(again.condition, 1e12);
+  EXPECT_LT(outside(*b.s.coupled.frictionless.mass, *once.vectors, *again.vectors), 1e-7);
+}
+
+
+
+TEST(ReducedBasis, RigidBodyMotionsAreAddedWhereTheyAreMissing)
+{
+  const Bodies      b({"free disc", 0., 1, {}});
+  const int         n_free  = b.static_modes.rigid_body_modes()->NumVectors();
+  ASSERT_EQ(n_free, 6);
+  const MultiVector elastic = view(*b.disc_free, n_free, b.disc_free->NumVectors() - n_free);
+  BasisIngredients  in      = b.ingredients();
+  const auto        with    = reduced_basis(BasisKind::free, in);
+  in.disc_free              = &elastic;
+  const auto without        = reduced_basis(BasisKind::free, in);
+  EXPECT_EQ(with.n_r0, without.n_r0);
+  EXPECT_EQ(with.n_nominal, without.n_nominal);
+  EXPECT_LT(outside(*b.s.coupled.frictionless.mass, *with.vectors, *without.vectors), 1e-6);
+}
+
+
+
+TEST(ReducedBasis, PrincipalAxesOfSnapshots)
+{
+  // Six vectors of which three are combinations of the others
+  const Bodies      b(flat);
+  const MultiVector first = view(*b.real.vectors, 0, 3), snapshots = join({&first, &first});
+  BasisIngredients  in;
+  in.coupled   = &b.s.coupled;
+  in.snapshots = &snapshots;
+  BasisOptions options;
+  const auto   basis = reduced_basis(BasisKind::pod, in, options);
+  EXPECT_EQ(basis.n_r0, 6);
+  EXPECT_EQ(basis.size(), 3);
+  EXPECT_EQ(basis.n_dropped, 3);
+  EXPECT_EQ(basis.tolerance, options.pod_tolerance);
+  EXPECT_LT(outside(*b.s.coupled.frictionless.mass, *basis.vectors, first), 1e-12);
+  options.pod_size = 2;
+  EXPECT_EQ(reduced_basis(BasisKind::pod, in, options).size(), 2);
+}
+
+
+
+TEST(ReducedBasis, SaysWhatIsMissing)
+{
+  const Bodies b(flat);
+  const auto   message = [&](const BasisKind kind, const std::function<void(BasisIngredients &)> &remove) {
+    BasisIngredients in = b.ingredients();
+    remove(in);
+    try
+      {
+        reduced_basis(kind, in);
+      }
+    catch (const SolverError &error)
+      {
+        return std::string(error.what());
+      }
+    return std::string();
+  };
+  const auto names = [&](const std::string &text, const std::string &what) {
+    EXPECT_NE(text.find(what), std::string::npos) << text;
+  };
+  names(message(BasisKind::free, [](auto &in) { in.disc_free = nullptr; }), "Phi_f^D, which is missing or empty");
+  names(message(BasisKind::mixed, [](auto &in) { in.pins_sliding = nullptr; }), "Phi_s^P, which is missing or empty");
+  names(message(BasisKind::mixed, [](auto &in) { in.pins_sliding = nullptr; }), "reduced basis `mixed`");
+  names(message(BasisKind::real_tangential, [](auto &in) { in.inverse = nullptr; }), "UpdatedInverse");
+  names(message(BasisKind::real, [](auto &in) { in.real = nullptr; }), "Phi_R");
+  names(message(BasisKind::free, [](auto &in) { in.static_modes = nullptr; }), "StaticModes");
+  names(message(BasisKind::pod, [](auto &) {}), "complex modes");
+  names(message(BasisKind::residual_grown, [](auto &) {}), "grow them first");
+  EXPECT_EQ(message(BasisKind::free, [](auto &in) { in.real = nullptr; }), "");
+}
