@@ -64,6 +64,19 @@ namespace Squeal
         }
     }
 
+    /// φᴴ M φ = 1 for every vector, its entry of largest modulus real and positive.
+    void normalize(const SparseMatrix &M, MultiVector &real_part, MultiVector &imaginary_part)
+    {
+      fix_phase(real_part, imaginary_part);
+      const auto re = column_products(real_part, M * real_part), im = column_products(imaginary_part, M * imaginary_part);
+      for (std::size_t j = 0; j < re.size(); ++j)
+        {
+          const double factor = 1. / std::sqrt(re[j] + im[j]);
+          real_part(j)->Scale(factor);
+          imaginary_part(j)->Scale(factor);
+        }
+    }
+
     MultiVector permuted(const MultiVector &X, const std::vector<int> &order)
     {
       MultiVector result(X.Map(), X.NumVectors());
@@ -138,8 +151,9 @@ namespace Squeal
     for (int j = 0; j < k; ++j)
       sorted[j] = modes.lambda[order[j]];
     modes.lambda         = sorted;
-    modes.real_part      = std::make_shared<MultiVector>(permuted(*modes.real_part, order));
-    modes.imaginary_part = std::make_shared<MultiVector>(permuted(*modes.imaginary_part, order));
+    for (const auto part : {&modes.real_part, &modes.imaginary_part, &modes.left_real_part, &modes.left_imaginary_part})
+      if (*part)
+        *part = std::make_shared<MultiVector>(permuted(**part, order));
     if (!modes.estimated_errors.empty())
       {
         const auto errors = modes.estimated_errors;
@@ -147,16 +161,9 @@ namespace Squeal
           modes.estimated_errors[j] = errors[order[j]];
       }
 
-    // φᴴ M φ = 1
-    fix_phase(*modes.real_part, *modes.imaginary_part);
-    const auto mass_products = [&](const MultiVector &X) { return column_products(X, *system.frictionless.mass * X); };
-    const auto m_re = mass_products(*modes.real_part), m_im = mass_products(*modes.imaginary_part);
-    for (int j = 0; j < k; ++j)
-      {
-        const double factor = 1. / std::sqrt(m_re[j] + m_im[j]);
-        (*modes.real_part)(j)->Scale(factor);
-        (*modes.imaginary_part)(j)->Scale(factor);
-      }
+    normalize(*system.frictionless.mass, *modes.real_part, *modes.imaginary_part);
+    if (modes.left_real_part)
+      normalize(*system.frictionless.mass, *modes.left_real_part, *modes.left_imaginary_part);
 
     // Residuals
     const MultiVector X  = join({modes.real_part.get(), modes.imaginary_part.get()});

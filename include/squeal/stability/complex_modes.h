@@ -18,7 +18,8 @@ namespace Squeal
   struct ComplexModes
   {
     std::vector<std::complex<double>> lambda;                   ///< [rad/s]
-    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< n × k
+    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< φ_c, n × k
+    std::shared_ptr<MultiVector>      left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null where the method gives none
     std::vector<double>               residuals;                ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
     std::vector<double>               energy_residuals;         ///< ε_res, eq. (16) of the paper [-]
     std::vector<double>               estimated_errors;         ///< |δλ| / |λ| [-]; empty where the method gives none
@@ -36,8 +37,8 @@ namespace Squeal
                               bool                                     left = false);
 
   /**
-   * Normalises the modes to φᴴ M_c φ = 1 with the entry of largest modulus
-   * real, sorts them by frequency, and computes both residuals:
+   * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest
+   * modulus real, sorts them by frequency, and computes both residuals:
    *
    *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
    *

@@ -2,6 +2,9 @@
 
 #include <squeal/base/progress.h>
 #include <squeal/stability/complex_modes.h>
+#include <squeal/stability/reduced_modes.h>
+
+#include <vector>
 
 namespace Squeal
 {
@@ -14,31 +17,46 @@ namespace Squeal
     int    maximum_steps     = 30;
   };
 
+  /// A two-sided basis grown by residuals, with what it gives at the friction coefficient of the largest error.
+  struct GrownBasis
+  {
+    ReducedModel        model; ///< its basis is M_c-orthonormal
+    ReducedModes        modes;
+    EigenvalueEstimates estimates;
+    double              worst_error; ///< largest estimated |δλ| / |λ| at all friction coefficients [-]
+    int                 n_growths;
+  };
+
   /**
-   * Complex modes by residual iteration (Bobillot; section 4.3 of the paper),
-   * made two-sided. The basis starts from the real modes Φ_R and their
-   * responses to friction and damping of first order, right and left,
+   * Grows a basis by residuals (Bobillot; section 4.3 of the paper), made
+   * two-sided, until the estimated errors of all modes in the band are below
+   * the tolerance at every one of the @p friction_coefficients. It starts from
+   * the real modes Φ_R and their responses to friction and damping of first
+   * order, right and left,
    *
    *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R,
    *
-   * and grows by the displacement residuals K_c⁻¹ R_F and K_c⁻¹ L_F of the right
-   * and left reduced eigenvectors of all modes that are not accurate yet,
-   * compressed by their principal axes in the M-norm. The error of an
-   * eigenvalue is estimated from both residuals: with R_F = Q(λ)φ, L_F = Q(λ)ᵀψ
-   * (ψᵀ the left eigenvector, no conjugate) the next Galerkin step changes λ by
-   *
-   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
-   *
-   * of which the smaller root is taken: near a coalescence ψᵀQ'φ vanishes, and
-   * the estimate goes over to the square root that holds there.
+   * and grows, where the error is largest, by the displacement residuals K_c⁻¹ R_F
+   * and K_c⁻¹ L_F of the right and left reduced eigenvectors of all modes that
+   * are not accurate yet, compressed by their principal axes in the M-norm. See
+   * estimate_eigenvalues() for the error of an eigenvalue.
    *
    * One Cholesky factor of K_c serves every step and every μ.
    *
    * @param real_modes Φ_R, n × n_R, M-orthonormal
    * @param inverse    factor of K_c (or of the shifted stiffness) and K_c⁻¹ A
    *
-   * Throws SolverError if the basis reaches its largest size before the tolerance.
+   * Throws SolverError if the basis reaches its largest size before the
+   * tolerance. @p system must outlive the result.
    */
+  GrownBasis grow_residual_basis(const CoupledSystem            &system,
+                                 const UpdatedInverse           &inverse,
+                                 const MultiVector              &real_modes,
+                                 const std::vector<double>      &friction_coefficients,
+                                 const ResidualIterationOptions &options,
+                                 Progress                       &progress);
+
+  /// Complex modes, right and left, from a basis grown at friction coefficient @p mu.
   ComplexModes residual_iteration(const CoupledSystem            &system,
                                   const UpdatedInverse           &inverse,
                                   const MultiVector              &real_modes,

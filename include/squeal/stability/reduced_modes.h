@@ -1,0 +1,113 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+#include <squeal/reduction/reduced_model.h>
+#include <squeal/stability/complex_modes.h>
+
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
+  struct ReducedModes
+  {
+    double        friction_coefficient = 0.;
+    ReducedPencil pencil;           ///< at that friction coefficient
+    DenseMatrix   mass, stiffness;  ///< TᵀM_cT and TᵀK_cT: the norms
+
+    std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
+    ComplexDenseMatrix                right;  ///< φ_r, r × k
+    ComplexDenseMatrix                left;   ///< ψ_r, r × k: ψ_rᵀ Q_r(λ) = 0, no conjugate
+
+    std::vector<double> real_values; ///< real λ but zero, ascending [1/s]
+    int                 n_zeros = 0; ///< λ = 0: two for each rigid-body mode without damping
+  };
+
+  /// Whether modes beyond the end of the band are left out.
+  enum class BandEnd
+  {
+    cut,
+    open ///< reduced modes are kept whatever their frequency: counterparts of reference modes lie among them
+  };
+
+  /**
+   * All modes of @p model at friction coefficient @p mu. Real λ and zeros,
+   * those of rigid-body motions, are told apart from oscillating modes by
+   * parts of @p largest_frequency [rad/s], the end of the band.
+   */
+  ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_frequency, BandEnd end = BandEnd::cut);
+
+  /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
+  ReducedModes reduced_real_modes(const ReducedModel &model, double largest_frequency, BandEnd end = BandEnd::cut);
+
+  /// Some of the modes, in the order of @p chosen.
+  ReducedModes selected(const ReducedModes &modes, const std::vector<int> &chosen);
+
+  /// Whether a mode grows.
+  enum class Verdict
+  {
+    stable,
+    unstable,
+    undecided ///< at the accuracy of the reduction
+  };
+
+  template <>
+  struct EnumTable<Verdict>
+  {
+    static constexpr std::array<EnumName<Verdict>, 3> names = {
+      {{Verdict::stable, "stable"}, {Verdict::unstable, "unstable"}, {Verdict::undecided, "undecided"}}};
+  };
+
+  /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
+  struct EigenvalueEstimates
+  {
+    std::vector<std::complex<double>> corrections;      ///< δλ: λ + δλ is the better value [rad/s]
+    std::vector<double>               errors;           ///< |δλ| / |λ| [-]
+    std::vector<double>               conditions;       ///< κ [-]
+    std::vector<bool>                 claimed;          ///< no coalescence within reach: δλ means something
+    std::vector<double>               uncertainties;    ///< |δλ| and what close modes add to it [rad/s]
+    std::vector<Verdict>              verdicts;
+    std::vector<double>               energy_residuals; ///< ε_res, eq. (16) [-]
+    MultiVector                       right, left;      ///< K_c⁻¹ R_F and K_c⁻¹ L_F, n × 2k: real, then imaginary parts
+  };
+
+  /**
+   * Errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and
+   * L_F = Q(λ)ᵀψ with φ = T φ_r, ψ = T ψ_r: the next Galerkin step changes λ by
+   *
+   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
+   *
+   * of which the smaller root is taken. One block solve on each side.
+   *
+   * The condition number of an eigenvalue,
+   *
+   *   κ = 2 |λ| ‖ψ‖_M ‖φ‖_M / |ψᵀQ'(λ)φ|,
+   *
+   * is one for a symmetric problem and infinite at a coalescence: a relative
+   * change ε of the matrices moves λ by κ ε/2 |λ| at most. Two modes may coalesce
+   * within the error of the reduction if
+   *
+   *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
+   *
+   * with a safety factor s = 3. An estimate is not claimed where that is so or
+   * where κ > 1000. The uncertainty of λ_i is |δλ_i| + Σ |g_ij| over the modes j
+   * that may coalesce with it (Gershgorin's bound).
+   *
+   * The verdict compares the growth rate with s times the uncertainty. It is
+   * open where κ > 1000. Without damping Re λ = 0 cannot change but by a
+   * coalescence: such a mode is stable unless one is within reach. Growth of
+   * less than 10⁻⁸ per radian counts as none.
+   *
+   * Where @p inverse has a shift, its stiffness stands for K_c.
+   */
+  EigenvalueEstimates
+  estimate_eigenvalues(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
+
+  /// Right and left vectors at full order, with their residuals; @p estimates may be null.
+  ComplexModes full_order_modes(const CoupledSystem       &system,
+                                const UpdatedInverse      &inverse,
+                                const ReducedModel        &model,
+                                const ReducedModes        &modes,
+                                const EigenvalueEstimates *estimates);
+} // namespace Squeal
