@@ -378,6 +378,15 @@ namespace Squeal
     return labels;
   }
 
+  std::string pin_family(const std::string &label)
+  {
+    // A pin's label is a letter and a number; those of the disc hold a hyphen inside.
+    const std::string name = label.substr(0, label.find(' '));
+    const bool        pin  = name.size() > 1 && std::string("FTL").find(name[0]) != std::string::npos &&
+                     std::all_of(name.begin() + 1, name.end(), [](const char c) { return c >= '0' && c <= '9'; });
+    return pin ? name : std::string();
+  }
+
   void mark_doublets(std::vector<std::string> &labels)
   {
     std::map<std::string, std::vector<std::size_t>> places;

@@ -1,6 +1,8 @@
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/stability/reduced_modes.h>
 
+#include <Epetra_Comm.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -79,6 +81,27 @@ namespace Squeal
       modes.n_zeros += static_cast<int>(values.end() - end);
       values.erase(end, values.end());
       std::sort(values.begin(), values.end());
+    }
+
+    /// Replaces the modes by those of process 0: vectors of a multiple eigenvalue may differ between processes.
+    void agree_on_modes(const Epetra_Comm &comm, ReducedModes &modes)
+    {
+      if (comm.NumProc() == 1)
+        return;
+      const int r         = modes.mass.n_rows();
+      int       counts[3] = {static_cast<int>(modes.lambda.size()), static_cast<int>(modes.real_values.size()), modes.n_zeros};
+      comm.Broadcast(counts, 3, 0);
+      const int k = counts[0];
+      modes.lambda.resize(k);
+      modes.real_values.resize(counts[1]);
+      modes.n_zeros = counts[2];
+      if (modes.right.n_columns() != k)
+        modes.right = modes.left = ComplexDenseMatrix(r, k);
+      const auto broadcast = [&](Complex *values, const int n) { comm.Broadcast(reinterpret_cast<double *>(values), 2 * n, 0); };
+      broadcast(modes.lambda.data(), k);
+      broadcast(modes.right.column(), r * k);
+      broadcast(modes.left.column(), r * k);
+      comm.Broadcast(modes.real_values.data(), counts[1], 0);
     }
 
     double band_limit(const double largest_frequency, const BandEnd end)
@@ -164,6 +187,7 @@ namespace Squeal
     modes.left                = std::move(found.left);
     modes.real_values         = std::move(found.real_values);
     separate_real(modes, largest_frequency);
+    agree_on_modes(model.basis().Comm(), modes);
     return modes;
   }
 
@@ -192,6 +216,7 @@ namespace Squeal
     for (std::size_t j = 0; j < kept.size(); ++j)
       std::copy(vectors.column(kept[j]), vectors.column(kept[j]) + vectors.n_rows(), modes.right.column(static_cast<int>(j)));
     modes.left = modes.right;
+    agree_on_modes(model.basis().Comm(), modes);
     return modes;
   }
 

@@ -419,7 +419,7 @@ TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
           double nearest = std::numeric_limits<double>::infinity();
           for (const Complex &l : reduced.values)
             nearest = std::min(nearest, std::abs(l - full.values[j]) / std::abs(l));
-          EXPECT_LT(nearest, 1e-9) << "mode " << j;
+          EXPECT_LT(nearest, 1e-10) << "mode " << j;
         }
     }
 

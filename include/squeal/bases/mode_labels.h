@@ -37,6 +37,9 @@ namespace Squeal
   /// Label of a mode that resembles none of the component modes left for it.
   inline constexpr const char *no_label = "unnamed";
 
+  /// Family and order of a pin mode's label, without the sign of a doublet: `F1`; empty for any other label.
+  std::string pin_family(const std::string &label);
+
   /// Suffix ` -` and ` +`, in order of appearance, to labels that occur exactly twice; none to no_label.
   void mark_doublets(std::vector<std::string> &labels);
 } // namespace Squeal

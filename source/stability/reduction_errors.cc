@@ -1,0 +1,277 @@
+#include <squeal/base/assignment.h>
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/mode_labels.h>
+#include <squeal/stability/reduction_errors.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// Directions of a cluster whose squared M-norm is below this part of the largest are rounding errors.
+    constexpr double dependent = 1e-12;
+    /// Weight of MAC-M of single modes beside the share in the span of their cluster.
+    constexpr double member_weight = 0.1;
+    /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
+    constexpr double far = 0.3;
+
+    /// Xᴴ M Y from Gram matrices of [Re X, Im X] and [Re Y, Im Y].
+    ComplexDenseMatrix hermitian_products(const DenseMatrix &G)
+    {
+      const int          m = G.n_rows() / 2, n = G.n_columns() / 2;
+      ComplexDenseMatrix result(m, n);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < m; ++i)
+          result(i, j) = {G(i, j) + G(m + i, n + j), G(i, n + j) - G(m + i, j)};
+      return result;
+    }
+
+    ComplexDenseMatrix to_complex(const DenseMatrix &A)
+    {
+      ComplexDenseMatrix result(A.n_rows(), A.n_columns());
+      std::copy(A.column(), A.column(A.n_columns()), result.column());
+      return result;
+    }
+
+    /// Rows and columns of A.
+    ComplexDenseMatrix submatrix(const ComplexDenseMatrix &A, const std::vector<int> &rows, const std::vector<int> &columns)
+    {
+      ComplexDenseMatrix result(rows.size(), columns.size());
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        for (std::size_t i = 0; i < rows.size(); ++i)
+          result(i, j) = A(rows[i], columns[j]);
+      return result;
+    }
+
+    /// Rows of A.
+    ComplexDenseMatrix rows(const ComplexDenseMatrix &A, const std::vector<int> &chosen)
+    {
+      std::vector<int> columns(A.n_columns());
+      std::iota(columns.begin(), columns.end(), 0);
+      return submatrix(A, chosen, columns);
+    }
+
+    /// The real matrix that does to [Re x; Im x] what A does to x.
+    DenseMatrix real_form(const ComplexDenseMatrix &A)
+    {
+      const int   m = A.n_rows(), n = A.n_columns();
+      DenseMatrix result(2 * m, 2 * n);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < m; ++i)
+          {
+            result(i, j) = result(m + i, n + j) = A(i, j).real();
+            result(m + i, j)                    = A(i, j).imag();
+            result(i, n + j)                    = -A(i, j).imag();
+          }
+      return result;
+    }
+
+    /// W with Wᵀ G W = 1 for a symmetric positive semidefinite G, without the directions that are rounding errors.
+    DenseMatrix whitening(DenseMatrix G)
+    {
+      const auto        values = symmetric_eigenvalues(G);
+      const int         n      = values.size();
+      const int         first  = std::upper_bound(values.begin(), values.end(), dependent * values.back()) - values.begin();
+      DenseMatrix       W      = columns(G, first, n - first);
+      for (int j = 0; j < W.n_columns(); ++j)
+        for (int i = 0; i < n; ++i)
+          W(i, j) /= std::sqrt(values[first + j]);
+      return W;
+    }
+
+    /// sin² of the largest principal angle between two sets of vectors with Gram matrices A and B and products C.
+    double largest_angle(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, const ComplexDenseMatrix &C)
+    {
+      const DenseMatrix         products = multiply(whitening(real_form(A)), multiply(real_form(C), whitening(real_form(B))), true);
+      const std::vector<double> cosines  = singular_values(products).values;
+      return std::max(0., 1. - cosines.back() * cosines.back());
+    }
+
+    /// Parts of ψᴴMψ that lie in the span of vectors with Gram matrix A, of which C are the products with all ψ; B those of ψ.
+    std::vector<double> shares_in_span(const ComplexDenseMatrix &A, const ComplexDenseMatrix &C, const ComplexDenseMatrix &B)
+    {
+      const DenseMatrix   components = multiply(whitening(real_form(A)), real_form(C), true);
+      std::vector<double> shares(C.n_columns());
+      for (int j = 0; j < C.n_columns(); ++j)
+        {
+          for (int i = 0; i < components.n_rows(); ++i)
+            shares[j] += components(i, j) * components(i, j);
+          shares[j] /= B(j, j).real();
+        }
+      return shares;
+    }
+
+    /// Number of the cluster of each λ: chains of neighbours within the tolerance.
+    std::vector<int> clusters(const std::vector<Complex> &lambda, const double tolerance)
+    {
+      std::vector<int> cluster(lambda.size());
+      std::iota(cluster.begin(), cluster.end(), 0);
+      for (std::size_t i = 0; i < lambda.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+          if (cluster[i] != cluster[j] && std::abs(lambda[i] - lambda[j]) <= tolerance * std::abs(lambda[i]))
+            std::replace(cluster.begin(), cluster.end(), cluster[i], cluster[j]);
+      return cluster;
+    }
+
+    std::string body(const std::string &label)
+    {
+      return label == no_label ? no_label : pin_family(label).empty() ? "disc" : "pins";
+    }
+  } // namespace
+
+  ComplexModes undamped_modes(const SymmetricModes &modes)
+  {
+    ComplexModes result;
+    result.n_rigid_body = modes.n_rigid_body;
+    const int k         = static_cast<int>(modes.eigenvalues.size()) - modes.n_rigid_body;
+    if (k == 0)
+      return result;
+    for (int j = 0; j < k; ++j)
+      result.lambda.emplace_back(0., std::sqrt(modes.eigenvalues[modes.n_rigid_body + j]));
+    const MultiVector elastic = view(*modes.vectors, modes.n_rigid_body, k);
+    result.real_part          = std::make_shared<MultiVector>(elastic);
+    result.imaginary_part     = std::make_shared<MultiVector>(elastic.Map(), k);
+    result.residuals.assign(modes.residuals.begin() + modes.n_rigid_body, modes.residuals.end());
+    return result;
+  }
+
+  CoupledSystem undamped(const CoupledSystem &system)
+  {
+    CoupledSystem result        = system;
+    result.frictionless.damping = nullptr;
+    result.normal_damping       = nullptr;
+    return result;
+  }
+
+  std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
+                                          const UpdatedInverse &inverse,
+                                          const ReducedModel   &model,
+                                          const ReducedModes   &modes,
+                                          const ComplexModes   &reference,
+                                          const ErrorOptions   &options)
+  {
+    const int k = reference.lambda.size(), n_reduced = modes.lambda.size();
+    if (k == 0)
+      return {};
+    if (n_reduced < k)
+      throw SolverError("the reduced model has " + std::to_string(n_reduced) + " oscillating modes, the reference " + std::to_string(k),
+                        "errors of a reduced model", "take a larger basis, and all of its modes");
+
+    // Inner products in the mass of the reference modes, of the reduced ones, and of both
+    const MultiVector        X  = join({reference.real_part.get(), reference.imaginary_part.get()});
+    const MultiVector        MX = *system.frictionless.mass * X;
+    const ComplexDenseMatrix A  = hermitian_products(gram(X, MX));
+    const ComplexDenseMatrix B  = multiply(modes.right, multiply(to_complex(modes.mass), modes.right), true);
+    const DenseMatrix        XT = gram(MX, model.basis());
+    ComplexDenseMatrix       C(k, XT.n_columns());
+    for (int j = 0; j < C.n_columns(); ++j)
+      for (int i = 0; i < k; ++i)
+        C(i, j) = {XT(i, j), -XT(k + i, j)};
+    C = multiply(C, modes.right);
+
+    // Clusters
+    const std::vector<int>        cluster = clusters(reference.lambda, options.cluster_tolerance);
+    std::vector<std::vector<int>> members(k);
+    for (int i = 0; i < k; ++i)
+      members[cluster[i]].push_back(i);
+
+    // Counterparts: the span of the cluster decides which reduced modes belong to it, MAC-M of single modes to which member
+    std::vector<std::vector<double>> shares(k);
+    for (int c = 0; c < k; ++c)
+      if (!members[c].empty())
+        shares[c] = shares_in_span(submatrix(A, members[c], members[c]), rows(C, members[c]), B);
+    const auto mac  = [&](const int i, const int j) { return std::norm(C(i, j)) / (A(i, i).real() * B(j, j).real()); };
+    const auto gain = [&](const int i, const int j) {
+      const double distance = std::abs(modes.lambda[j] - reference.lambda[i]) / std::abs(reference.lambda[i]);
+      return distance < far ? shares[cluster[i]][j] + member_weight * mac(i, j) : -1.;
+    };
+    std::vector<int> match = best_assignment(k, n_reduced, gain);
+    X.Comm().Broadcast(match.data(), k, 0); // ties may go either way
+    const ReducedModes        chosen    = selected(modes, match);
+    const EigenvalueEstimates estimates = estimate_eigenvalues(system, inverse, model, chosen);
+
+    // Angles
+    std::vector<double> angle(k);
+    for (int c = 0; c < k; ++c)
+      if (!members[c].empty())
+        {
+          std::vector<int> counterparts;
+          for (const int i : members[c])
+            counterparts.push_back(match[i]);
+          angle[c] = largest_angle(submatrix(A, members[c], members[c]), submatrix(B, counterparts, counterparts),
+                                   submatrix(C, members[c], counterparts));
+        }
+
+    std::vector<ModeError> errors;
+    for (int i = 0; i < k; ++i)
+      {
+        const Complex         lambda = reference.lambda[i], found = chosen.lambda[i], corrected = found + estimates.corrections[i];
+        const ModalQuantities exact = modal_quantities(lambda), reduced = modal_quantities(found);
+        ModeError             error;
+        error.reference       = lambda;
+        error.reduced         = found;
+        error.match           = match[i];
+        error.residual        = estimates.energy_residuals[i];
+        error.shape           = std::max(0., 1. - mac(i, match[i]));
+        error.frequency       = std::abs(found.imag() - lambda.imag()) / lambda.imag();
+        error.divergence      = std::abs(reduced.divergence_rate - exact.divergence_rate);
+        error.eigenvalue      = std::abs(found - lambda) / std::abs(lambda);
+        error.cluster_size    = members[cluster[i]].size();
+        error.subspace        = angle[cluster[i]];
+        error.corrected       = corrected;
+        error.corrected_error = std::abs(corrected - lambda) / std::abs(lambda);
+        error.estimated_error = estimates.errors[i];
+        error.estimate_ratio  =
+          found != lambda ? std::abs(estimates.corrections[i]) / std::abs(found - lambda) : std::numeric_limits<double>::infinity();
+        error.condition       = estimates.conditions[i];
+        error.claimed         = estimates.claimed[i];
+        error.verdict         = estimates.verdicts[i];
+        errors.push_back(error);
+      }
+    return errors;
+  }
+
+  std::vector<std::string> frictionless_groups(const std::vector<std::string> &labels)
+  {
+    std::vector<std::string> groups;
+    for (const std::string &label : labels)
+      groups.push_back(body(label) == "pins" ? pin_family(label) : body(label));
+    return groups;
+  }
+
+  std::vector<std::string> friction_groups(const std::vector<std::string> &labels, const std::vector<bool> &unstable)
+  {
+    std::vector<std::string> groups;
+    for (std::size_t j = 0; j < labels.size(); ++j)
+      groups.push_back(body(labels[j]) == "pins" ? (unstable[j] ? "unstable pins" : "other pins") : body(labels[j]));
+    return groups;
+  }
+
+  std::vector<GroupError> largest_errors(const std::vector<ModeError> &errors, const std::vector<std::string> &groups)
+  {
+    std::vector<GroupError> result;
+    for (std::size_t j = 0; j < errors.size(); ++j)
+      {
+        auto it = std::find_if(result.begin(), result.end(), [&](const GroupError &group) { return group.group == groups[j]; });
+        if (it == result.end())
+          it = result.insert(result.end(), GroupError{groups[j], 0, 0., 0., 0., 0., 0., 0., 0.});
+        ++it->n_modes;
+        const auto raise = [](double &largest, const double value) { largest = std::max(largest, value); };
+        raise(it->residual, errors[j].residual);
+        raise(it->shape, errors[j].shape);
+        raise(it->frequency, errors[j].frequency);
+        raise(it->divergence, errors[j].divergence);
+        raise(it->eigenvalue, errors[j].eigenvalue);
+        raise(it->subspace, errors[j].subspace);
+        raise(it->corrected_error, errors[j].corrected_error);
+      }
+    return result;
+  }
+} // namespace Squeal
