@@ -228,7 +228,8 @@ namespace Squeal
         error.corrected       = corrected;
         error.corrected_error = std::abs(corrected - lambda) / std::abs(lambda);
         error.estimated_error = estimates.errors[i];
-        error.estimate_ratio  = found != lambda ? std::abs(estimates.corrections[i]) / std::abs(found - lambda) : std::numeric_limits<double>::infinity();
+        error.estimate_ratio  =
+          found != lambda ? std::abs(estimates.corrections[i]) / std::abs(found - lambda) : std::numeric_limits<double>::infinity();
         error.condition       = estimates.conditions[i];
         error.claimed         = estimates.claimed[i];
         error.verdict         = estimates.verdicts[i];

@@ -58,7 +58,8 @@ namespace
   struct Bodies
   {
     explicit Bodies(const Case &c, const double component_band = 2.)
-      : s(mapped(extrude(polar_plan(0.1505, 0.3155, 3, 18, {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::top, 3, 2, 0, 1}, {Plan::Side::bottom, 0, 2, 1, 1}}),
+      : s(mapped(extrude(polar_plan(0.1505, 0.3155, 3, 18,
+                                    {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::top, 3, 2, 0, 1}, {Plan::Side::bottom, 0, 2, 1, 1}}),
                          layers(1, 2)),
                  [c](const Point3 &p) {
                    return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};

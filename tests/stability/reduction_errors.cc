@@ -69,7 +69,8 @@ namespace
    * and a stiff third one by which each of the others is known too stiff: eliminated
    * statically, it takes c²/k33 from the diagonal.
    */
-  CoupledSystem flutter(const double k11, const double k22, const double k12, const double k_c, const double c, const double k33, const double damping)
+  CoupledSystem
+  flutter(const double k11, const double k22, const double k12, const double k_c, const double c, const double k33, const double damping)
   {
     const Epetra_Map map = rows(3), contact = rows(1);
     CoupledSystem    result;
@@ -140,8 +141,8 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
 
       const int         j = &error - errors.data();
       const auto       &M = *r.s.coupled.frictionless.mass;
-      const MultiVector X = join({&*found.real_part, &*found.imaginary_part}), re = view(*r.complex.real_part, j, 1), im = view(*r.complex.imaginary_part, j, 1),
-                        Y   = join({&re, &im});
+      const MultiVector X   = join({&*found.real_part, &*found.imaginary_part});
+      const MultiVector re  = view(*r.complex.real_part, j, 1), im = view(*r.complex.imaginary_part, j, 1), Y = join({&re, &im});
       const DenseMatrix G   = gram(Y, M * X);
       const double      mac = std::norm(Complex(G(0, 0) + G(1, 1), G(0, 1) - G(1, 0)));
       EXPECT_NEAR(error.shape, 1. - mac, 1e-10);
@@ -302,7 +303,8 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
         for (int j = 0; j < 2; ++j)
           {
             // Members of an unstable pair have one frequency: either may come first.
-            const Complex nearest = std::abs(exact.lambda[j] - modes.lambda[j]) < std::abs(exact.lambda[1 - j] - modes.lambda[j]) ? exact.lambda[j] : exact.lambda[1 - j];
+            const Complex same = exact.lambda[j], other = exact.lambda[1 - j];
+            const Complex nearest = std::abs(same - modes.lambda[j]) < std::abs(other - modes.lambda[j]) ? same : other;
             const Complex error   = nearest - modes.lambda[j];
             EXPECT_TRUE(estimates.claimed[j]);
             EXPECT_LT(std::abs(estimates.corrections[j] - error), 0.05 * std::abs(error)) << "factor " << factor << ", mode " << j;
@@ -416,10 +418,12 @@ TEST(GrownBasis, LeftModesAreThoseOfTheTransposedProblem)
       const auto &M     = *s.coupled.frictionless.mass;
       ASSERT_NE(modes.left_real_part, nullptr);
       const MultiVector L  = force_residuals(s.coupled, mu, modes.lambda, *modes.left_real_part, *modes.left_imaginary_part, true),
-                        KX = *s.coupled.frictionless.stiffness * *modes.left_real_part, KY = *s.coupled.frictionless.stiffness * *modes.left_imaginary_part;
+                        KX = *s.coupled.frictionless.stiffness * *modes.left_real_part,
+                        KY = *s.coupled.frictionless.stiffness * *modes.left_imaginary_part;
       const auto residual = column_norms(L), re = column_norms(KX), im = column_norms(KY);
       const int  k = modes.lambda.size();
-      const DenseMatrix m_re = gram(*modes.left_real_part, M * *modes.left_real_part), m_im = gram(*modes.left_imaginary_part, M * *modes.left_imaginary_part);
+      const DenseMatrix m_re = gram(*modes.left_real_part, M * *modes.left_real_part),
+                        m_im = gram(*modes.left_imaginary_part, M * *modes.left_imaginary_part);
       for (int j = 0; j < k; ++j)
         {
           EXPECT_NEAR(m_re(j, j) + m_im(j, j), 1., 1e-12);

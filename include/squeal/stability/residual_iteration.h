@@ -34,27 +34,12 @@ namespace Squeal
    * the real modes Φ_R and their responses to friction and damping of first
    * order, right and left,
    *
-   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R
+   *   K_c⁻¹ A V_K Φ_R,  K_c⁻¹ V_Kᵀ Aᵀ Φ_R,  K_c⁻¹ C_c Φ_R,
    *
-<<<<<<< HEAD
-   * (that to modal damping, K_c⁻¹ M_c Φ_R diag(2 ζ ω) = Φ_R diag(2 ζ / ω), is in
-   * their span already), and grows by the displacement residuals K_c⁻¹ R_F and
-   * K_c⁻¹ L_F of the right and left reduced eigenvectors of all modes that are
-   * not accurate yet, compressed by their principal axes in the M-norm. The
-   * error of an eigenvalue is estimated from both residuals: with R_F = Q(λ)φ,
-   * L_F = Q(λ)ᵀψ (ψᵀ the left eigenvector, no conjugate) the next Galerkin step
-   * changes λ by
-   *
-   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
-   *
-   * of which the smaller root is taken: near a coalescence ψᵀQ'φ vanishes, and
-   * the estimate goes over to the square root that holds there.
-=======
    * and grows, where the error is largest, by the displacement residuals K_c⁻¹ R_F
    * and K_c⁻¹ L_F of the right and left reduced eigenvectors of all modes that
    * are not accurate yet, compressed by their principal axes in the M-norm. See
    * estimate_eigenvalues() for the error of an eigenvalue.
->>>>>>> reduction
    *
    * One Cholesky factor of K_c serves every step and every μ.
    *
