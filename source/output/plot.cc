@@ -102,7 +102,7 @@ namespace Squeal
       std::vector<const PlotSeries *> key;
       for (const PlotPanel &panel : plot.panels)
         for (const PlotSeries &series : panel.series)
-          if (!series.title.empty() &&
+          if (!series.title.empty() && !is_empty(panel, series) &&
               std::none_of(key.begin(), key.end(), [&](const PlotSeries *other) { return other->title == series.title; }))
             key.push_back(&series);
       const int per_line = std::max(1, n_columns * panel_width / 230), key_lines = (key.size() + per_line - 1) / per_line;
@@ -153,7 +153,7 @@ namespace Squeal
                   ++block;
                 }
             }
-          stream << (separator == "plot " ? "plot [0:1][0:1] NaN\n" : "\n") << "unset label 1000\n";
+          stream << (separator == "plot " ? "unset logscale\nplot [0:1][0:1] NaN\n" : "\n") << "unset label 1000\n";
         }
 
       if (!key.empty())
