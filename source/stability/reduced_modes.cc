@@ -267,19 +267,25 @@ namespace Squeal
     // Modes that may coalesce
     for (int i = 0; i < k; ++i)
       {
-        bool   alone       = true;
+        bool   alone = true, apart = true;
         double uncertainty = std::abs(result.corrections[i]);
         for (int j = 0; j < k; ++j)
-          if (j != i && 4. * safety * safety * std::abs(E(i, j) * E(j, i)) >=
-                          std::norm(modes.lambda[i] - modes.lambda[j]) * std::abs(derivatives[i] * derivatives[j]))
-            {
-              alone = false;
-              uncertainty += std::abs(E(i, j)) / std::abs(derivatives[i]);
-            }
+          {
+            // Two neutral modes may meet where their errors differ by more than what separates them
+            const double shift = safety * std::abs(result.corrections[i] - result.corrections[j]);
+            if (shift >= std::abs(modes.lambda[i] - modes.lambda[j]) && shift > negligible_divergence * std::abs(modes.lambda[i]))
+              apart = false;
+            if (j != i && 4. * safety * safety * std::abs(E(i, j) * E(j, i)) >=
+                            std::norm(modes.lambda[i] - modes.lambda[j]) * std::abs(derivatives[i] * derivatives[j]))
+              {
+                alone = false;
+                uncertainty += std::abs(E(i, j)) / std::abs(derivatives[i]);
+              }
+          }
         const bool well_conditioned = result.conditions[i] <= largest_condition;
         result.claimed.push_back(alone && well_conditioned);
         result.uncertainties.push_back(uncertainty);
-        result.verdicts.push_back(verdict(modes.lambda[i], uncertainty, well_conditioned, alone && !modes.pencil.has_damping));
+        result.verdicts.push_back(verdict(modes.lambda[i], uncertainty, well_conditioned, alone && apart && !modes.pencil.has_damping));
       }
     return result;
   }

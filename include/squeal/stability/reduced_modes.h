@@ -96,8 +96,9 @@ namespace Squeal
    *
    * The verdict compares the growth rate with s times the uncertainty. It is
    * open where κ > 1000. Without damping Re λ = 0 cannot change but by a
-   * coalescence: such a mode is stable unless one is within reach. Growth of
-   * less than 10⁻⁸ per radian counts as none.
+   * coalescence: such a mode is stable unless one is within reach, as above or
+   * because s |δλ_i − δλ_j| ≥ |λ_i − λ_j|. Growth of less than 10⁻⁸ per radian
+   * counts as none.
    *
    * Where @p inverse has a shift, its stiffness stands for K_c.
    */
