@@ -18,6 +18,9 @@ namespace Squeal
     /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
     constexpr double rigid_body_threshold = 1e-9;
 
+    /// Starts that may find nothing new, the last of them with the other solver.
+    constexpr int most_vain_starts = 4;
+
     /// Systems up to this size are solved densely.
     constexpr int largest_dense_system = 300;
 
@@ -113,7 +116,7 @@ namespace Squeal
                     continue;
                   }
               }
-            if (lift_limit() || ++n_vain < 3)
+            if (lift_limit() || ++n_vain < most_vain_starts)
               continue;
             fail_incomplete(n_found);
           }
@@ -147,7 +150,9 @@ namespace Squeal
         request.seed       = options.seed + 7919 * attempt;
         request.attempt    = n_vain;
         request.what       = options.what;
-        return options.solver == RealSolver::anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
+        // Where the chosen solver finds no more, the other one may
+        const bool anasazi = (options.solver == RealSolver::anasazi) == (n_vain < most_vain_starts - 1);
+        return anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
       }
 
       /**
