@@ -282,8 +282,10 @@ TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
   no_higher(found[BasisKind::free_tangential], found[BasisKind::free_rubbing], "free + t.a.m. contains r.a.m.");
   no_higher(found[BasisKind::fixed_tangential], found[BasisKind::fixed], "fixed + t.a.m.");
   no_higher(found[BasisKind::mixed_tangential], found[BasisKind::mixed], "mixed + t.a.m.");
+  // Responses of a free disc are next to rigid, and orthonormalising them costs a digit.
+  const double exactness = b.real.n_rigid_body > 0 ? 1e-7 : 1e-8;
   for (const BasisKind kind : real_kinds)
-    EXPECT_LT(error(found[kind]), 1e-8) << to_string(kind);
+    EXPECT_LT(error(found[kind]), exactness) << to_string(kind);
   for (const BasisKind kind : {BasisKind::free, BasisKind::fixed, BasisKind::mixed})
     {
       const auto enriched = values(more, kind);
