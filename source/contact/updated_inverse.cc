@@ -4,24 +4,12 @@
 
 namespace Squeal
 {
-  namespace
-  {
-    /// A as vectors.
-    MultiVector to_vectors(const SparseMatrix &A)
-    {
-      MultiVector identity(A.DomainMap(), A.NumGlobalCols());
-      for (int i = 0; i < identity.MyLength(); ++i)
-        identity.ReplaceMyValue(i, A.DomainMap().GID(i), 1.);
-      return A * identity;
-    }
-  } // namespace
-
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
   {
     V      = pencil_at({system.normal_mass, system.normal_damping, system.normal_stiffness}, shift);
     factor = factorize_positive_definite(*pencil_at(system.frictionless, shift), library, "stiffness of the coupled system without friction");
 
-    const MultiVector A = to_vectors(*system.friction_forces);
+    const MultiVector A = *system.friction_forces * unit_vectors(system.friction_forces->DomainMap());
     X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());
     factor->apply(A, *X);
     VX = replicate(*V * *X);
