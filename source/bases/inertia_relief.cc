@@ -77,9 +77,4 @@ namespace Squeal
   {
     return N.get();
   }
-
-  double InertiaRelief::n_factor_entries() const
-  {
-    return factor->n_factor_entries();
-  }
 } // namespace Squeal

@@ -24,9 +24,4 @@ namespace Squeal
   {
     return solver.rigid_body_modes();
   }
-
-  double StaticResponse::n_factor_entries() const
-  {
-    return solver.n_factor_entries();
-  }
 } // namespace Squeal

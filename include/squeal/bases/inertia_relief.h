@@ -40,9 +40,6 @@ namespace Squeal
     /// N; null if K is positive definite.
     const MultiVector *rigid_body_modes() const;
 
-    /// Entries of the factor; 0 where the library does not tell.
-    double n_factor_entries() const;
-
   private:
     std::shared_ptr<const SparseMatrix> K;
     std::unique_ptr<MultiVector>        N, MN;

@@ -35,9 +35,6 @@ namespace Squeal
     /// N, n × k, M-orthonormal; null if the mounts hold the disc.
     const MultiVector *rigid_body_modes() const;
 
-    /// Entries of the factor; 0 where the library does not tell.
-    double n_factor_entries() const;
-
   private:
     InertiaRelief solver;
   };
