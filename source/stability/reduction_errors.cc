@@ -261,7 +261,7 @@ namespace Squeal
       {
         auto it = std::find_if(result.begin(), result.end(), [&](const GroupError &group) { return group.group == groups[j]; });
         if (it == result.end())
-          it = result.insert(result.end(), GroupError{groups[j], 0, 0., 0., 0., 0., 0., 0., 0.});
+          it = result.insert(result.end(), GroupError{groups[j], 0, 0., 0., 0., 0., 0., 0., 0., 0., 0.});
         ++it->n_modes;
         const auto raise = [](double &largest, const double value) { largest = std::max(largest, value); };
         raise(it->residual, errors[j].residual);
@@ -271,6 +271,9 @@ namespace Squeal
         raise(it->eigenvalue, errors[j].eigenvalue);
         raise(it->subspace, errors[j].subspace);
         raise(it->corrected_error, errors[j].corrected_error);
+        const double corrected = modal_quantities(errors[j].corrected).divergence_rate;
+        raise(it->estimated_divergence, std::abs(corrected - modal_quantities(errors[j].reduced).divergence_rate));
+        raise(it->corrected_divergence, std::abs(corrected - modal_quantities(errors[j].reference).divergence_rate));
       }
     return result;
   }

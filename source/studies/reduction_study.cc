@@ -208,38 +208,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------ tables
 
-    double divergence(const std::complex<double> &lambda)
-    {
-      return modal_quantities(lambda).divergence_rate;
-    }
-
-    /// Largest errors of a group of modes, as `reduction_errors.csv` has them.
-    struct GroupMaxima
-    {
-      double residual = 0., shape = 0., frequency = 0., divergence = 0., estimated = 0., corrected = 0., subspace = 0., eigenvalue = 0.;
-    };
-
-    GroupMaxima maxima(const std::vector<ModeError> &errors, const std::vector<std::string> &groups, const std::string &group)
-    {
-      GroupMaxima result;
-      const auto  raise = [](double &largest, const double value) { largest = std::max(largest, value); };
-      for (std::size_t j = 0; j < errors.size(); ++j)
-        if (groups[j] == group)
-          {
-            const ModeError &e = errors[j];
-            raise(result.residual, e.residual);
-            raise(result.shape, e.shape);
-            raise(result.frequency, e.frequency);
-            raise(result.divergence, e.divergence);
-            raise(result.estimated, std::abs(divergence(e.corrected) - divergence(e.reduced)));
-            raise(result.corrected, std::abs(divergence(e.corrected) - divergence(e.reference)));
-            raise(result.subspace, e.subspace);
-            raise(result.eigenvalue, e.eigenvalue);
-          }
-      return result;
-    }
-
-    Table error_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups, const std::vector<std::string> &order)
+    Table error_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups)
     {
       Table table({{"basis", ""},
                    {"n_r0", "-"},
@@ -257,13 +226,10 @@ namespace Squeal
                    {"lambda", "-", 1, true},
                    {"component modes", ""}});
       for (const Candidate &candidate : candidates)
-        for (const std::string &group : order)
-          {
-            const GroupMaxima m = maxima(candidate.errors, groups, group);
-            table.add_row({candidate.name, static_cast<long>(candidate.basis.n_r0), static_cast<long>(candidate.n_r), group, m.residual,
-                           m.shape, m.frequency, m.divergence, m.estimated, m.corrected, candidate.build_seconds, candidate.solve_seconds,
-                           m.subspace, m.eigenvalue, candidate.truncation});
-          }
+        for (const GroupError &m : largest_errors(candidate.errors, groups))
+          table.add_row({candidate.name, static_cast<long>(candidate.basis.n_r0), static_cast<long>(candidate.n_r), m.group, m.residual, m.shape,
+                         m.frequency, m.divergence, m.estimated_divergence, m.corrected_divergence, candidate.build_seconds,
+                         candidate.solve_seconds, m.subspace, m.eigenvalue, candidate.truncation});
       return table;
     }
 
@@ -396,15 +362,15 @@ namespace Squeal
       if (truncations.empty())
         truncations.push_back("");
       for (const std::string &truncation : truncations)
-        for (const std::string &group : order)
+        for (std::size_t group = 0; group < order.size(); ++group)
           {
-            PlotPanel panel{group + (truncations.size() > 1 ? ", component modes to " + truncation : ""), "", "largest error", false, true,
+            PlotPanel panel{order[group] + (truncations.size() > 1 ? ", component modes to " + truncation : ""), "", "largest error", false, true,
                             {"res", "mac", "frq", "div"}, {}};
             for (const Candidate &candidate : candidates)
               if (candidate.truncation.empty() || candidate.truncation == truncation)
                 {
-                  const GroupMaxima m      = maxima(candidate.errors, groups, group);
-                  const int         number = std::find(names.begin(), names.end(), candidate.name) - names.begin();
+                  const GroupError m      = largest_errors(candidate.errors, groups)[group];
+                  const int        number = std::find(names.begin(), names.end(), candidate.name) - names.begin();
                   // Marks beside each other, so that equal values stay visible
                   const double offset = names.size() > 1 ? 0.7 * (number / (names.size() - 1.) - 0.5) : 0.;
                   PlotSeries   series{candidate.name, {}, {}, PlotSeries::Style::points, number, number};
@@ -675,7 +641,7 @@ namespace Squeal
 
     // ----------------------------------------------------------------- results
     run.write_table("reduction_bases", basis_table(candidates, coupled.map().NumGlobalElements(), full_seconds));
-    run.write_table("reduction_errors", error_table(candidates, groups, order));
+    run.write_table("reduction_errors", error_table(candidates, groups));
     run.write_table("reduction_estimates", estimate_table(candidates, unstable));
     run.folder().write("reduction_modes.csv", [&](std::ostream &stream) { mode_table(candidates, labels, groups).write_csv(stream); });
     const bool is_drawn =
