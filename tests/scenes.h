@@ -176,8 +176,9 @@ namespace Squeal::Testing
       , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))
-      , contact_damping(Squeal::contact_damping(contact, radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation)))
-      , coupled(couple(system, contact, contact_damping))
+      , damping{radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation), {}}
+      , contact_damping(Squeal::contact_damping(contact, damping))
+      , coupled(couple(system, contact, damping))
     {}
 
     HexMesh                             mesh;
@@ -186,6 +187,7 @@ namespace Squeal::Testing
     ContactInterface                    interface;
     ContactOperators                    contact;
     SecondOrderSystem                   system;
+    ContactDamping                      damping;         ///< c_b
     std::shared_ptr<const SparseMatrix> contact_damping; ///< C_b
     CoupledSystem                       coupled;
   };

@@ -11,20 +11,45 @@ namespace Squeal
 {
   namespace
   {
-    /// Pᵀ diag(c) P; null if all c vanish.
-    std::shared_ptr<const SparseMatrix> damping_along(const SparseMatrix &P, const std::vector<double> &coefficients)
+    using Matrix = std::shared_ptr<const SparseMatrix>;
+
+    bool all_zero(const std::vector<double> &coefficients)
     {
-      if (std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; }))
+      return std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; });
+    }
+
+    Epetra_Vector on_map(const Epetra_Map &map, const std::vector<double> &values)
+    {
+      Epetra_Vector result(map);
+      for (int i = 0; i < result.MyLength(); ++i)
+        result[i] = values[map.GID(i)];
+      return result;
+    }
+
+    /// Pᵀ diag(c) P; null if all c vanish.
+    Matrix damping_along(const SparseMatrix &P, const std::vector<double> &coefficients)
+    {
+      if (all_zero(coefficients))
         return nullptr;
 
-      Epetra_Vector c(P.RowMap());
-      for (int i = 0; i < c.MyLength(); ++i)
-        c[i] = coefficients[P.RowMap().GID(i)];
       SparseMatrix scaled(P);
-      scaled.LeftScale(c);
+      scaled.LeftScale(on_map(P.RowMap(), coefficients));
       return multiply(P, scaled, true, false);
     }
+
+    /// A + B; a missing one counts as zero.
+    Matrix sum(const Matrix &A, const Matrix &B)
+    {
+      if (A && B)
+        return add(1., *A, 1., *B);
+      return A ? A : B;
+    }
   } // namespace
+
+  bool ContactDamping::is_zero() const
+  {
+    return all_zero(radial) && all_zero(sliding);
+  }
 
   const Epetra_Map &CoupledSystem::map() const
   {
@@ -46,18 +71,12 @@ namespace Squeal
     return result;
   }
 
-  std::shared_ptr<const SparseMatrix>
-  contact_damping(const ContactOperators &contact, const std::vector<double> &c_b, const std::vector<double> &c_t)
+  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping)
   {
-    const auto along_b = damping_along(*contact.radial, c_b), along_t = damping_along(*contact.tangential, c_t);
-    if (along_b && along_t)
-      return add(1., *along_b, 1., *along_t);
-    return along_b ? along_b : along_t;
+    return sum(damping_along(*contact.radial, damping.radial), damping_along(*contact.tangential, damping.sliding));
   }
 
-  CoupledSystem couple(const SecondOrderSystem                   &system,
-                       const ContactOperators                    &contact,
-                       const std::shared_ptr<const SparseMatrix> &contact_damping)
+  CoupledSystem couple(const SecondOrderSystem &system, const ContactOperators &contact, const ContactDamping &damping)
   {
     const SparseMatrix &T_c = *contact.kernel;
 
@@ -65,13 +84,11 @@ namespace Squeal
     coupled.kernel                 = contact.kernel;
     coupled.frictionless.mass      = congruence(*system.mass, T_c);
     coupled.frictionless.stiffness = congruence(*system.stiffness, T_c);
-    std::shared_ptr<const SparseMatrix> damping = system.damping;
-    if (contact_damping)
-      damping = damping ? add(1., *damping, 1., *contact_damping) : contact_damping;
-    if (damping)
-      coupled.frictionless.damping = congruence(*damping, T_c);
+    if (system.damping)
+      coupled.body_damping = congruence(*system.damping, T_c);
 
     coupled.friction_forces = multiply(T_c, *contact.tangential, true, true);
+    coupled.radial_motion   = multiply(*contact.radial, T_c, false, false);
     const auto half_reaction = [&](const SparseMatrix &matrix) {
       auto V = multiply(*multiply(*contact.normal, matrix, false, false), T_c, false, false);
       V->Scale(0.5);
@@ -81,7 +98,34 @@ namespace Squeal
     if (system.damping)
       coupled.normal_damping = half_reaction(*system.damping);
     coupled.normal_mass = half_reaction(*system.mass);
-    return coupled;
+    return with_contact_damping(coupled, damping);
+  }
+
+  CoupledSystem with_contact_damping(const CoupledSystem &system, const ContactDamping &damping)
+  {
+    CoupledSystem result   = system;
+    result.contact_damping = damping;
+    Matrix along_t;
+    if (!all_zero(damping.sliding))
+      {
+        const SparseMatrix &A = *system.friction_forces;
+        SparseMatrix        scaled(A);
+        scaled.RightScale(on_map(A.DomainMap(), damping.sliding));
+        along_t = multiply(scaled, A, false, true);
+      }
+    result.frictionless.damping = sum(system.body_damping, sum(damping_along(*system.radial_motion, damping.radial), along_t));
+    return result;
+  }
+
+  CoupledSystem undamped(const CoupledSystem &system)
+  {
+    CoupledSystem result        = system;
+    result.frictionless.damping = nullptr;
+    result.body_damping         = nullptr;
+    result.normal_damping       = nullptr;
+    result.modal_damping        = nullptr;
+    result.contact_damping      = {};
+    return result;
   }
 
   SecondOrderSystem with_friction(const CoupledSystem &system, const double mu)

@@ -29,6 +29,15 @@ namespace Squeal
           }
       matrix = std::move(result);
     }
+
+    /// diag(c) X
+    DenseMatrix rows_scaled(DenseMatrix X, const std::vector<double> &c)
+    {
+      for (int j = 0; j < X.n_columns(); ++j)
+        for (int i = 0; i < X.n_rows(); ++i)
+          X(i, j) *= c[i];
+      return X;
+    }
   } // namespace
 
   ReducedModel::ReducedModel(const CoupledSystem &system)
@@ -38,28 +47,34 @@ namespace Squeal
   void ReducedModel::extend(const MultiVector &vectors)
   {
     T = std::make_unique<MultiVector>(T ? join({T.get(), &vectors}) : vectors);
-
-    const SecondOrderSystem &matrices = system.frictionless;
-    border(M, gram(*T, *matrices.mass * vectors));
-    border(K, gram(*T, *matrices.stiffness * vectors));
-    if (system.has_damping())
-      border(C, gram(*T, system.damping_times(vectors)));
-
-    A          = append_columns(A, replicate(transpose_times(*system.friction_forces, vectors)));
-    V_K        = append_columns(V_K, replicate(*system.normal_stiffness * vectors));
-    V_M        = append_columns(V_M, replicate(*system.normal_mass * vectors));
-    friction_K = multiply(A, V_K, true);
-    friction_M = multiply(A, V_M, true);
+    border(parts.mass, gram(*T, *system.frictionless.mass * vectors));
+    border(parts.stiffness, gram(*T, *system.frictionless.stiffness * vectors));
+    if (system.body_damping || system.modal_damping)
+      {
+        MultiVector forces(vectors.Map(), vectors.NumVectors());
+        if (system.body_damping)
+          forces.Update(1., *system.body_damping * vectors, 1.);
+        if (system.modal_damping)
+          forces.Update(1., *system.modal_damping * vectors, 1.);
+        border(parts.body_damping, gram(*T, forces));
+      }
+    const auto append = [](DenseMatrix &part, const MultiVector &columns) { part = append_columns(part, replicate(columns)); };
+    append(parts.friction_forces, transpose_times(*system.friction_forces, vectors));
+    append(parts.radial_motion, *system.radial_motion * vectors);
+    append(parts.normal_stiffness, *system.normal_stiffness * vectors);
+    append(parts.normal_mass, *system.normal_mass * vectors);
+    friction_K = multiply(parts.friction_forces, parts.normal_stiffness, true);
+    friction_M = multiply(parts.friction_forces, parts.normal_mass, true);
     if (system.normal_damping)
       {
-        V_C        = append_columns(V_C, replicate(*system.normal_damping * vectors));
-        friction_C = multiply(A, V_C, true);
+        append(parts.normal_damping, *system.normal_damping * vectors);
+        friction_C = multiply(parts.friction_forces, parts.normal_damping, true);
       }
   }
 
   int ReducedModel::size() const
   {
-    return M.n_rows();
+    return parts.mass.n_rows();
   }
 
   const MultiVector &ReducedModel::basis() const
@@ -67,8 +82,28 @@ namespace Squeal
     return *T;
   }
 
+  const ReducedModel::Blocks &ReducedModel::blocks() const
+  {
+    return parts;
+  }
+
   ReducedPencil ReducedModel::at(const double mu) const
   {
-    return {add(M, friction_M, -mu), system.normal_damping ? add(C, friction_C, -mu) : C, add(K, friction_K, -mu), C.n_rows() > 0};
+    return at(mu, system.contact_damping);
+  }
+
+  ReducedPencil ReducedModel::at(const double mu, const ContactDamping &damping) const
+  {
+    ReducedPencil pencil{add(parts.mass, friction_M, -mu), parts.body_damping, add(parts.stiffness, friction_K, -mu), false};
+    pencil.has_damping = parts.body_damping.n_rows() > 0 || !damping.is_zero();
+    if (pencil.has_damping && parts.body_damping.n_rows() == 0)
+      pencil.damping = DenseMatrix(size(), size());
+    if (system.normal_damping)
+      pencil.damping = add(pencil.damping, friction_C, -mu);
+    for (const auto &[motion, coefficients] : {std::make_pair(&parts.radial_motion, &damping.radial),
+                                               std::make_pair(&parts.friction_forces, &damping.sliding)})
+      if (pencil.has_damping && !coefficients->empty())
+        pencil.damping = add(pencil.damping, multiply(*motion, rows_scaled(*motion, *coefficients), true));
+    return pencil;
   }
 } // namespace Squeal

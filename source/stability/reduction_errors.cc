@@ -142,14 +142,6 @@ namespace Squeal
     return result;
   }
 
-  CoupledSystem undamped(const CoupledSystem &system)
-  {
-    CoupledSystem result        = system;
-    result.frictionless.damping = nullptr;
-    result.normal_damping       = nullptr;
-    return result;
-  }
-
   std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
                                           const UpdatedInverse &inverse,
                                           const ReducedModel   &model,

@@ -86,9 +86,9 @@ namespace Squeal
       }
     const bool all         = result.closed.size() == scene.interface.size();
     result.contact         = all ? scene.contact : contact_operators(*scene.model, result.interface);
-    result.contact_damping = contact_damping(result.contact, radial_dissipation(result.interface, reactions, operation),
-                                             sliding_dissipation(reactions, operation));
-    result.coupled         = couple(scene.system, result.contact, result.contact_damping);
+    result.coupled         = couple(
+      scene.system, result.contact,
+      {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)});
     return result;
   }
 

@@ -217,8 +217,8 @@ TEST_P(Contact, DampingTracesTheCoefficients)
   diagonal.Comm().SumAll(&local, &trace, 1);
   EXPECT_NEAR(trace / sum, 1., 1e-13);
   const std::vector<double> zeros(c_b.size(), 0.);
-  EXPECT_EQ(contact_damping(s.contact, zeros), nullptr);
-  EXPECT_EQ(contact_damping(s.contact, zeros, zeros), nullptr);
+  EXPECT_EQ(contact_damping(s.contact, {zeros, {}}), nullptr);
+  EXPECT_EQ(contact_damping(s.contact, {zeros, zeros}), nullptr);
 }
 
 
@@ -234,15 +234,15 @@ TEST_P(Contact, DampingOfSpeedDependentFrictionActsAlongT)
       c_t.push_back(-3. + c % 5); // of either sign
     }
   const auto diagonal = [&](const std::vector<double> &values) { return Testing::diagonal(P_t.RowMap(), [&](const int c) { return values[c]; }); };
-  const auto both     = contact_damping(s.contact, c_b, c_t);
-  const auto along_t  = contact_damping(s.contact, std::vector<double>(c_b.size(), 0.), c_t);
-  EXPECT_LT(difference(*both, *add(1., *contact_damping(s.contact, c_b), 1., *along_t)), 1e-15);
+  const auto both     = contact_damping(s.contact, {c_b, c_t});
+  const auto along_t  = contact_damping(s.contact, {{}, c_t});
+  EXPECT_LT(difference(*both, *add(1., *contact_damping(s.contact, {c_b, {}}), 1., *along_t)), 1e-15);
 
   // P_t C = 2 diag(c_t) P_t, P_b C = 2 diag(c_b) P_b; friction takes no part: P_n C = 0
   EXPECT_LT(difference(*multiply(P_t, *both), *add(2., *multiply(*diagonal(c_t), P_t), 0., P_t)), 1e-14);
   EXPECT_LT(difference(*multiply(P_b, *both), *add(2., *multiply(*diagonal(c_b), P_b), 0., P_b)), 1e-14);
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, *both)), 1e-14 * max_norm(*both));
-  const CoupledSystem coupled = couple(s.system, s.contact, both);
+  const CoupledSystem coupled = couple(s.system, s.contact, {c_b, c_t});
   EXPECT_EQ(coupled.normal_damping, nullptr);
   EXPECT_LT(symmetry_defect(*coupled.frictionless.damping), 1e-14);
   EXPECT_EQ(with_friction(coupled, 0.4).damping, coupled.frictionless.damping);

@@ -176,7 +176,7 @@ TEST(ComplexModes, UndampedSpectrumIsSymmetric)
   const auto without = krylov(s.coupled, mu);
   auto       zero    = std::make_shared<SparseMatrix>(*s.coupled.frictionless.mass);
   zero->PutScalar(0.);
-  s.coupled.frictionless.damping = zero;
+  s.coupled.frictionless.damping = s.coupled.body_damping = zero;
   const auto modes               = krylov(s.coupled, mu);
   ASSERT_GT(n_unstable(modes), 0);
   std::vector<Complex> reflected;

@@ -152,10 +152,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
 
       // With friction C̃ = α M̃ + β K̃: each undamped λ_0, of either growth, becomes the root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
-      CoupledSystem undamped       = s.coupled;
-      undamped.frictionless.damping = nullptr;
-      undamped.normal_damping       = nullptr;
-      const auto           growing  = krylov(undamped, mu);
+      const auto           growing = krylov(undamped(s.coupled), mu);
       std::vector<Complex> shifted;
       for (const Complex &l : growing.lambda)
         {
@@ -213,7 +210,7 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
 TEST(RayleighDamping, TwoBodiesFromTheEquations)
 {
   const TwoBodies two;
-  CoupledSystem   coupled = couple(two.system, two.contact, nullptr);
+  CoupledSystem   coupled = couple(two.system, two.contact);
   bool            stable = false, unstable = false;
   for (const double friction : {0., 0.3, 0.9, 1.5})
     {
@@ -278,7 +275,7 @@ TEST(SpeedDependentFriction, MassOnASpring)
   for (const double slope : {falling, -1.001 * c / N, -0.999 * c / N, 0., 0.4})
     {
       const double        R       = -0.5 * (c + slope * N) / m;
-      const CoupledSystem coupled = couple(system, contact, contact_damping(contact, {0.}, {slope * N}));
+      const CoupledSystem coupled = couple(system, contact, {{0.}, {slope * N}});
       for (const auto &values : solutions(coupled, friction(w_0)))
         {
           ASSERT_EQ(values.size(), 1u);
@@ -345,7 +342,7 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
     {
       const Scene               s(mesh_of(skewed_pins), others ? damped(mounted()) : mounted(), operating());
       const std::vector<double> c_b(s.interface.size(), others ? 50. : 0.), c_t(s.interface.size(), others ? -20. : 0.);
-      const CoupledSystem       bare   = couple(s.system, s.contact, contact_damping(s.contact, c_b, c_t));
+      const CoupledSystem       bare   = couple(s.system, s.contact, {c_b, c_t});
       const auto                system = with_modal_damping(bare, real_modes(bare));
       const auto                reference = krylov(system, mu);
       for (const double tolerance : {1e-4, 1e-8})

@@ -79,10 +79,10 @@ namespace
       return i == 0 ? Row{{0, k11 + c * c / k33}, {1, k12}, {2, c}} : i == 1 ? Row{{0, k12}, {1, k22}} : Row{{0, c}, {2, k33}};
     });
     if (damping != 0.)
-      result.frictionless.damping = Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; });
+      result.frictionless.damping = result.body_damping = Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; });
     result.friction_forces  = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
     result.normal_stiffness = sparse(contact, map, [k_c](int) { return Row{{1, k_c}}; });
-    result.normal_mass      = sparse(contact, map, [](int) { return Row{}; });
+    result.normal_mass = result.radial_motion = sparse(contact, map, [](int) { return Row{}; });
     result.kernel           = Testing::diagonal(map, [](int) { return 1.; });
     return result;
   }
@@ -211,7 +211,7 @@ TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
   const std::vector<double> k   = {1., 1., 1.0005, 4., 9., 16.};
   system.frictionless.stiffness = Testing::diagonal(map, [k](const int i) { return k[i]; });
   system.friction_forces        = sparse(map, contact, [](int) { return Row{}; });
-  system.normal_stiffness = system.normal_mass = sparse(contact, map, [](int) { return Row{}; });
+  system.normal_stiffness = system.normal_mass = system.radial_motion = sparse(contact, map, [](int) { return Row{}; });
   system.kernel                                = Testing::diagonal(map, [](int) { return 1.; });
   const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
 

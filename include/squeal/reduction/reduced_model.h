@@ -15,10 +15,11 @@ namespace Squeal
 
   /**
    * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12)
-   * and (13) of the paper). Friction being affine in μ, blocks projected once
-   * serve every friction coefficient:
+   * and (13) of the paper). Friction being affine in μ and contact damping in its
+   * coefficients, blocks projected once serve every friction coefficient, load
+   * and speed:
    *
-   *   Tᵀ M_c T,  Tᵀ (C_c + C_m) T,  Tᵀ K_c T,  (Tᵀ A)(V_M T),  (Tᵀ A)(V_C T),  (Tᵀ A)(V_K T)
+   *   Tᵀ M_c T,  Tᵀ (T_cᵀ C T_c + C_m) T,  Tᵀ K_c T,  Aᵀ T,  R T,  V_M T,  V_C T,  V_K T
    *
    * A basis grows by extend(), which projects only what is new.
    */
@@ -37,15 +38,25 @@ namespace Squeal
     /// T, n × r.
     const MultiVector &basis() const;
 
-    /// M_r − μ A_r V_Mr, C_r − μ A_r V_Cr, K_r − μ A_r V_Kr.
+    /// M_r − μ A_r V_Mr, C_r − μ A_r V_Cr, K_r − μ A_r V_Kr with the system's contact damping.
     ReducedPencil at(double friction_coefficient) const;
+
+    /// The same with other contact damping: C_r = Tᵀ (T_cᵀ C T_c + C_m) T + (R T)ᵀ diag(c_b) R T + TᵀA diag(c_t) AᵀT.
+    ReducedPencil at(double friction_coefficient, const ContactDamping &damping) const;
+
+    /// The parts of the projection, each with r columns. Empty where the system has no such part.
+    struct Blocks
+    {
+      DenseMatrix mass, body_damping, stiffness;                    ///< TᵀM_cT, Tᵀ(T_cᵀCT_c + C_m)T, TᵀK_cT
+      DenseMatrix friction_forces, radial_motion;                   ///< AᵀT and R T, n_c × r
+      DenseMatrix normal_stiffness, normal_damping, normal_mass;    ///< V T, n_c × r
+    };
+    const Blocks &blocks() const;
 
   private:
     const CoupledSystem         &system;
     std::unique_ptr<MultiVector> T;
-    DenseMatrix                  M, C, K;       ///< r × r
+    Blocks                       parts;
     DenseMatrix                  friction_K, friction_C, friction_M; ///< (Tᵀ A)(V T), r × r
-    DenseMatrix                  A;             ///< Aᵀ T, n_c × r
-    DenseMatrix                  V_K, V_C, V_M; ///< V T, n_c × r
   };
 } // namespace Squeal

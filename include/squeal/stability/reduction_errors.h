@@ -42,9 +42,6 @@ namespace Squeal
   /// Real modes as complex ones, λ = iω, without those of rigid-body motions.
   ComplexModes undamped_modes(const SymmetricModes &modes);
 
-  /// The system without friction's share in damping and without damping itself, for frictionless studies.
-  CoupledSystem undamped(const CoupledSystem &system);
-
   /**
    * Errors of reduced modes, one entry for each of the @p reference modes. Their
    * counterparts are found by the mass-weighted criterion

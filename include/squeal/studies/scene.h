@@ -34,7 +34,6 @@ namespace Squeal
     std::vector<unsigned int>           closed;    ///< numbers of the closed pairs: S_0
     ContactInterface                    interface; ///< S_0
     ContactOperators                    contact;   ///< of S_0
-    std::shared_ptr<const SparseMatrix> contact_damping; ///< along b and t; null: none
     CoupledSystem                       coupled;
 
     /// Values of the closed pairs, set among those of all pairs; the others are zero.
