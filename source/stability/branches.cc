@@ -358,8 +358,26 @@ namespace Squeal
           }
         const bool multiple = search.kind == Search::coalescence &&
                               std::abs(before - lambda(partner, k)) <= indistinguishable * std::abs(before);
-        search.at_once      = k == 0 && onset && is_neutral(before) && (search.kind == Search::growth || multiple);
+        enclose(search);
+        search.at_once      = search.interval == 0 && onset && is_neutral(before) && (search.kind == Search::growth || multiple);
         searches.push_back(search);
+      }
+
+      /**
+       * Moves the interval of a threshold to where the function itself changes
+       * sign: the growth of a mode is seen only beyond what is negligible.
+       */
+      void enclose(Search &search) const
+      {
+        const int direction = search.upward ? -1 : 1;
+        for (int k = search.upward ? search.interval : search.interval + 1;; k += direction)
+          {
+            const auto f = value(search, k);
+            if (f && *f <= 0.)
+              search.interval = search.upward ? k : k - 1;
+            if (!f || *f <= 0. || !is_neutral(lambda(search.branch, k)))
+              return;
+          }
       }
 
       /// The branch with −R + iω where this one has R + iω, or -1.
@@ -489,8 +507,9 @@ namespace Squeal
             if (q > l && q < r)
               x = q;
           }
+        // Beyond the zero, seen from the nearer end: the interval closes, and no point lies on a coalescence, where vectors are lost
         const double margin = 0.5 * std::min(tolerance(k), r - l);
-        return std::clamp(x, l + margin, r - margin);
+        return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
       }
 
       /**

@@ -22,6 +22,8 @@ namespace Squeal
     constexpr double parallel = 0.7;
     /// Norm of what Gram and Schmidt leave of a dependent unit vector.
     constexpr double dependent = 1e-13;
+    /// The same of vectors so close to a coalescence that rounding decides on the rest.
+    constexpr double defective = 1e-7;
     /// |Im δ²| / |δ²| of a real δ².
     constexpr double real_discriminant = 1e-6;
 
@@ -33,10 +35,21 @@ namespace Squeal
       return sum;
     }
 
-    /// cos² of the largest angle between two subspaces; 0 if their dimensions differ.
-    double agreement_of(const OrthonormalBasis &first, const OrthonormalBasis &second)
+    /// Orthonormal basis without directions that are rounding errors.
+    ComplexDenseMatrix safe_basis(const ComplexDenseMatrix &X)
     {
-      const ComplexDenseMatrix C = multiply(first.Q, second.Q, true);
+      const OrthonormalBasis basis = orthonormal_basis(X);
+      std::vector<int>       kept;
+      for (int j = 0; j < X.n_columns(); ++j)
+        if (basis.R(j, j).real() > defective)
+          kept.push_back(j);
+      return selected_columns(basis.Q, kept);
+    }
+
+    /// cos² of the largest angle between two subspaces; of a smaller one and its image, where vectors are parallel.
+    double agreement_of(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
+    {
+      const ComplexDenseMatrix C = multiply(safe_basis(first), safe_basis(second), true);
       const int                m = C.n_rows(), n = C.n_columns();
       DenseMatrix              real(2 * m, 2 * n);
       for (int j = 0; j < n; ++j)
@@ -46,7 +59,7 @@ namespace Squeal
             real(m + i, j)                  = C(i, j).imag();
             real(i, n + j)                  = -C(i, j).imag();
           }
-      const double cosine = singular_values(real).values.back();
+      const double cosine = singular_values(real).values.back(); // of as many as the smaller subspace has
       return cosine * cosine;
     }
 
@@ -264,8 +277,7 @@ namespace Squeal
       {
         double smallest = 1.;
         for (const auto vectors : {&Side::right, &Side::left})
-          smallest = std::min(smallest, agreement_of(orthonormal_basis(selected_columns(a.*vectors, first)),
-                                                     orthonormal_basis(selected_columns(b.*vectors, second))));
+          smallest = std::min(smallest, agreement_of(selected_columns(a.*vectors, first), selected_columns(b.*vectors, second)));
         if (smallest < agreement)
           links.blocks.push_back({first, second, false});
         else
@@ -276,7 +288,7 @@ namespace Squeal
       void divide(const std::vector<int> &first, const std::vector<int> &second)
       {
         const int n = static_cast<int>(first.size());
-        if (n == 1)
+        if (n == 1 || a.indistinguishable_modes(first) || b.indistinguishable_modes(second))
           {
             links.blocks.push_back({first, second, true});
             return;
@@ -288,7 +300,7 @@ namespace Squeal
             const Transformation X = transformation(selected_columns(a.*vectors, first), selected_columns(b.*vectors, second));
             if (!X.exists)
               {
-                links.blocks.push_back({first, second, a.indistinguishable_modes(first) || b.indistinguishable_modes(second)});
+                links.blocks.push_back({first, second, false});
                 return;
               }
             for (int j = 0; j < n; ++j)
@@ -302,8 +314,7 @@ namespace Squeal
         const bool exceptional = n == 2 && pair_sign(a.point.lambda[first[0]], a.point.lambda[first[1]]) *
                                                pair_sign(b.point.lambda[second[0]], b.point.lambda[second[1]]) <
                                              0;
-        links.blocks.push_back(
-          {first, second, exceptional || a.indistinguishable_modes(first) || b.indistinguishable_modes(second)});
+        links.blocks.push_back({first, second, exceptional});
       }
 
       /// Divides a block by T, summed over groups; false if nothing can be divided.

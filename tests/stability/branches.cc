@@ -282,3 +282,297 @@ TEST(Branches, NarrowWindowsOfInstabilityAreFound)
       EXPECT_EQ(chart.n_doubtful_steps, 0);
     }
 }
+
+
+
+TEST(Branches, MultipleModesAreFollowedAcrossOthers)
+{
+  // A twelvefold λ² = −5 whose vectors are mixed anew at each point; two others cross it, one of them veering with a third
+  std::mt19937                     generator(7);
+  std::normal_distribution<double> normal;
+  Family                           family;
+  family.stiffness = [](const double mu) {
+    DenseMatrix K(15, 15);
+    for (int i = 0; i < 12; ++i)
+      K(i, i) = 5.;
+    K(12, 12) = 4. + 2. * mu;
+    K(13, 13) = 6. - 2. * mu;
+    K(14, 14) = 5.4;
+    K(13, 14) = K(14, 13) = 0.1;
+    return K;
+  };
+  family.disturb = [&](ChartPoint &point) {
+    std::vector<int> multiple;
+    for (std::size_t j = 0; j < point.lambda.size(); ++j)
+      if (std::abs(point.lambda[j] - Complex(0., std::sqrt(5.))) < 1e-9)
+        multiple.push_back(j);
+    for (auto *vectors : {&point.right, &point.left})
+      for (std::size_t pass = 0; pass < multiple.size(); ++pass)
+        for (const int i : multiple)
+          for (const int j : multiple)
+            if (i < j)
+              {
+                const double angle = normal(generator), c = std::cos(angle), s = std::sin(angle);
+                for (int row = 0; row < vectors->n_rows(); ++row)
+                  {
+                    const Complex x = (*vectors)(row, i), y = (*vectors)(row, j);
+                    (*vectors)(row, i) = c * x + s * y;
+                    (*vectors)(row, j) = c * y - s * x;
+                  }
+              }
+  };
+  // One of the grids meets the crossing of the twelve by a thirteenth
+  for (const int n_steps : {3, 10, 33})
+    {
+      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+      report("multiple", chart);
+      EXPECT_TRUE(chart.thresholds.empty());
+      ASSERT_EQ(chart.branches.size(), 15u);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+      for (std::size_t k = 0; k < chart.points.size(); ++k)
+        {
+          int n_multiple = 0, n_rising = 0;
+          for (int branch = 0; branch < 15; ++branch)
+            {
+              const double mu = chart.points[k].friction_coefficient, omega = value(chart, branch, k).imag();
+              const bool   multiple = std::abs(value(chart, branch, 0).imag() - std::sqrt(5.)) < 1e-9;
+              const bool   rising   = std::abs(value(chart, branch, 0).imag() - 2.) < 1e-9;
+              if (multiple)
+                n_multiple += std::abs(omega - std::sqrt(5.)) < 1e-9;
+              if (rising)
+                n_rising += std::abs(omega - std::sqrt(4. + 2. * mu)) < 1e-9;
+            }
+          EXPECT_EQ(n_multiple, 12);
+          EXPECT_EQ(n_rising, 1);
+        }
+    }
+}
+
+
+
+TEST(Branches, DoubleModesMayGrowAtOnce)
+{
+  // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
+  Family family;
+  family.stiffness = [](const double mu) {
+    return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}});
+  };
+  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise());
+  report("at once", chart);
+  ASSERT_EQ(chart.thresholds.size(), 2u);
+  EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
+  EXPECT_EQ(chart.thresholds[0].mechanism, ThresholdMechanism::coalescence);
+  EXPECT_GE(chart.thresholds[0].partner, 0);
+  EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.05, 1e-10);
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+}
+
+
+
+TEST(Branches, DampingThatGrowsWithFriction)
+{
+  // C = μ diag(c (μ − 0.2), −1, 1) / 100: onset at 0.2, at once, and never
+  Family family;
+  family.stiffness = [](double) { return matrix({{1., 0., 0.}, {0., 2., 0.}, {0., 0., 3.}}); };
+  family.damping   = [](const double mu) {
+    DenseMatrix C(3, 3);
+    C(0, 0) = -0.01 * mu * (mu - 0.2);
+    C(1, 1) = -0.01 * mu;
+    C(2, 2) = 0.01 * mu;
+    return C;
+  };
+  for (const int n_steps : {3, 10})
+    {
+      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+      report("damping by friction", chart);
+      ASSERT_EQ(chart.thresholds.size(), 2u);
+      EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
+      EXPECT_EQ(chart.thresholds[0].branch, 1);
+      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.2, 1e-10);
+      EXPECT_EQ(chart.thresholds[1].branch, 0);
+    }
+}
+
+
+
+TEST(Branches, BandCrossingsInClosedForm)
+{
+  // ω = √(8 + 2μ) leaves and √(10.2 − 2μ) enters the band ω < 3; the list ends 5 % above, where a fourth mode comes and goes
+  Family family;
+  family.last      = 3.15;
+  family.stiffness = [](const double mu) {
+    DenseMatrix K(4, 4);
+    K(0, 0) = 8. + 2. * mu;
+    K(1, 1) = 10.2 - 2. * mu;
+    K(2, 2) = 4.;
+    K(3, 3) = 9.9 + 4. * (mu - 0.5) * (mu - 0.5);
+    return K;
+  };
+  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise(3.));
+  report("band", chart);
+  ASSERT_EQ(chart.crossings.size(), 2u);
+  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.5, 1e-10);
+  EXPECT_FALSE(chart.crossings[0].enters);
+  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 0.6, 1e-10);
+  EXPECT_TRUE(chart.crossings[1].enters);
+  EXPECT_EQ(chart.counts.front().n_modes, 2);
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+  expect_counts(chart);
+}
+
+
+
+TEST(Branches, OverdampedModesReachTheRealAxis)
+{
+  // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
+  Family family;
+  family.stiffness = [](double) { return matrix({{1., 0.}, {0., 9.}}); };
+  family.damping   = [](const double mu) { return matrix({{2.09 - (mu - 1.) * (mu - 1.), 0.}, {0., 0.1}}); };
+  const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+  report("overdamped", chart);
+  ASSERT_EQ(chart.crossings.size(), 2u);
+  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.7, 1e-10);
+  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 1.3, 1e-10);
+  for (const BandCrossing &crossing : chart.crossings)
+    EXPECT_EQ(crossing.edge, BandEdge::real_axis);
+  EXPECT_FALSE(chart.crossings[0].enters);
+  EXPECT_TRUE(chart.crossings[1].enters);
+  EXPECT_TRUE(chart.thresholds.empty());
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+  expect_counts(chart);
+}
+
+
+
+TEST(Branches, UncertaintyCoversThePerturbation)
+{
+  // D = ψᵀ δK φ / (−ψᵀQ'φ): what first order says of the system with K + δK
+  for (const double size : {1e-6, 1e-4, 1e-3})
+    for (const bool damped : {false, true})
+      {
+        Flutter flutter, perturbed;
+        if (damped)
+          flutter.d2 = perturbed.d2 = 0.04;
+        perturbed.k11 += 0.8 * size;
+        perturbed.k22 -= 0.5 * size;
+        perturbed.k12 += 0.3 * size;
+        Family            family = flutter.family();
+        const DenseMatrix K = perturbed.family().stiffness(0.), K0 = flutter.family().stiffness(0.);
+        family.corrections = [&](const ChartPoint &point) {
+          const int          k = point.lambda.size();
+          ComplexDenseMatrix D(k, k);
+          for (int i = 0; i < k; ++i)
+            for (int j = 0; j < k; ++j)
+              {
+                Complex change = 0., derivative = 0.;
+                for (int r = 0; r < 2; ++r)
+                  {
+                    derivative += point.left(r, i) * (2. * point.lambda[i] + (r == 0 ? flutter.d1 : flutter.d2)) * point.right(r, i);
+                    for (int c = 0; c < 2; ++c)
+                      change += point.left(r, i) * (K(r, c) - K0(r, c)) * point.right(c, j);
+                  }
+                D(i, j) = -change / derivative;
+              }
+          return D;
+        };
+        family.disturb = [&](ChartPoint &point) {
+          for (std::size_t j = 0; j < point.lambda.size(); ++j)
+            point.uncertainties[j] = std::abs(point.corrections(j, j));
+        };
+        const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+        report("perturbed", chart);
+        ASSERT_EQ(chart.thresholds.size(), 1u);
+        const double error = std::abs(chart.thresholds[0].friction_coefficient - (damped ? perturbed.threshold() : perturbed.coalescence()));
+        const double bound = chart.thresholds[0].uncertainty;
+        std::cout << "    uncertainty / error = " << bound / error << "\n";
+        EXPECT_LT(error, bound);
+        EXPECT_LT(bound, 20. * error);
+      }
+}
+
+
+
+TEST(Branches, ManyModes)
+{
+  // Symmetric with a band of 40 frequencies, three of them close, and nonsymmetric coupling of rank three
+  std::mt19937                     generator(11);
+  std::normal_distribution<double> normal;
+  const int                        n = 40, rank = 3;
+  DenseMatrix                      U(n, rank), V(n, rank), mixing(n, n);
+  std::vector<double>              squares(n);
+  for (int i = 0; i < n; ++i)
+    {
+      squares[i] = std::pow(1. + 0.1 * (i + 0.3 * normal(generator)), 2);
+      for (int j = 0; j < rank; ++j)
+        {
+          U(i, j) = 0.12 * normal(generator);
+          V(i, j) = 0.12 * normal(generator);
+        }
+      for (int j = 0; j < n; ++j)
+        mixing(i, j) = normal(generator);
+    }
+  squares[20] = squares[19] = squares[18];
+  for (int i = 0; i < n; ++i)
+    mixing(i, i) += n;
+  // An orthogonal basis hides the structure
+  DenseMatrix basis = add(mixing, transpose(mixing));
+  symmetric_eigenvalues(basis);
+  Family family;
+  family.stiffness = [&](const double mu) {
+    DenseMatrix K = multiply(U, V, false, true, mu);
+    for (int i = 0; i < n; ++i)
+      K(i, i) += squares[i];
+    return multiply(basis, multiply(K, basis), true);
+  };
+  family.last          = 4.2;
+  ChartOptions options = precise(4., 1e-8);
+
+  const StabilityChart coarse = family.chart(uniform_grid(0., 1., 20), options);
+  const StabilityChart fine   = family.chart(uniform_grid(0., 1., 80), options);
+  report("coarse", coarse);
+  report("fine", fine);
+  EXPECT_EQ(coarse.n_doubtful_steps, 0);
+  EXPECT_EQ(fine.n_doubtful_steps, 0);
+  expect_counts(coarse);
+  expect_counts(fine);
+  EXPECT_GT(coarse.thresholds.size(), 2u);
+  ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
+  for (std::size_t t = 0; t < fine.thresholds.size(); ++t)
+    {
+      EXPECT_NEAR(coarse.thresholds[t].friction_coefficient, fine.thresholds[t].friction_coefficient, 2e-8);
+      EXPECT_EQ(coarse.thresholds[t].branch, fine.thresholds[t].branch);
+      EXPECT_EQ(coarse.thresholds[t].partner, fine.thresholds[t].partner);
+    }
+  // Branches that begin at the first point have the same λ at common points; a multiple mode at the first point may be numbered anyhow
+  const int n_first = coarse.points[0].lambda.size();
+  for (std::size_t k = 0, l = 0; k < coarse.points.size(); ++k)
+    if (!coarse.is_refinement[k])
+      {
+        while (fine.points[l].friction_coefficient < coarse.points[k].friction_coefficient - 1e-12)
+          ++l;
+        for (int branch = 0; branch < n_first; ++branch)
+          {
+            const int i = coarse.branches[branch].modes[k], j = fine.branches[branch].modes[l];
+            ASSERT_EQ(i < 0, j < 0) << "branch " << branch << " at " << coarse.points[k].friction_coefficient;
+            if (i >= 0)
+              {
+                EXPECT_LT(std::abs(coarse.points[k].lambda[i] - fine.points[l].lambda[j]), 1e-9)
+                  << "branch " << branch << " at " << coarse.points[k].friction_coefficient;
+              }
+          }
+      }
+}
+
+
+
+TEST(Branches, Refusals)
+{
+  Family family = Flutter().family();
+  EXPECT_TRUE(family.chart({}, precise()).points.empty());
+  const StabilityChart single = family.chart({0.3}, precise());
+  EXPECT_EQ(single.branches.size(), 2u);
+  EXPECT_EQ(single.counts.front().n_modes, 2);
+  EXPECT_THROW(family.chart({0.2, 0.1}, precise()), Error);
+  EXPECT_THROW(family.chart({0.2, 0.2}, precise()), Error);
+  EXPECT_THROW(family.chart({0.1, 0.2}, ChartOptions()), Error);
+}
