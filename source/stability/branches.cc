@@ -492,7 +492,7 @@ namespace Squeal
         const int    k = search.interval;
         const double l = mu(k), r = mu(k + 1), middle = 0.5 * (l + r);
         const auto   fl = value(search, k), fr = value(search, k + 1);
-        if (search.at_once || !fl || !fr || !(*fl * *fr < 0.) || intervals[k].stalls >= patience)
+        if (search.at_once || !fl || !fr || !(*fl * *fr <= 0.) || *fl == *fr || intervals[k].stalls >= patience)
           return middle;
 
         double x = l - *fl * (r - l) / (*fr - *fl);
@@ -580,12 +580,30 @@ namespace Squeal
         return fl && fr ? std::abs(*fr - *fl) / (mu(last) - mu(first)) : 0.;
       }
 
-      double uncertainty_of_lambda(const Search &search) const
+      /**
+       * What corrections change of Re λ or Im λ to second order, the latter without regard to its
+       * sign; no more than the uncertainty of λ, which is what remains where no corrections are known.
+       */
+      double uncertainty_of_lambda(const Search &search, double (*part)(const Complex &)) const
       {
         double result = 0.;
         for (const int k : {search.interval, search.interval + 1})
-          if (const int m = mode(search.branch, k); m >= 0 && m < static_cast<int>(points[k].uncertainties.size()))
-            result = std::max(result, points[k].uncertainties[m]);
+          if (const int m = mode(search.branch, k); m >= 0)
+            {
+              const ChartPoint &point = points[k];
+              const double      bound = m < static_cast<int>(point.uncertainties.size()) ? point.uncertainties[m] : 0.;
+              if (m >= point.corrections.n_rows() || part == nullptr)
+                {
+                  result = std::max(result, bound);
+                  continue;
+                }
+              const ComplexDenseMatrix &D      = point.corrections;
+              double                    change = std::abs(part(D(m, m)));
+              for (int j = 0; j < D.n_columns(); ++j)
+                if (const Complex product = D(m, j) * D(j, m); j != m && product != 0.)
+                  change += std::abs(product / (point.lambda[m] - point.lambda[j]));
+              result = std::max(result, std::min(change, bound));
+            }
         return result;
       }
 
@@ -634,7 +652,11 @@ namespace Squeal
       {
         if (search.kind == Search::coalescence)
           return safety * shift_of_coalescence(search, threshold);
-        const double error = uncertainty_of_lambda(search);
+        const auto   real  = [](const Complex &x) { return x.real(); };
+        const auto   imag  = [](const Complex &x) { return x.imag(); };
+        const double error = search.kind == Search::growth      ? uncertainty_of_lambda(search, real) :
+                             search.kind == Search::end_of_band ? uncertainty_of_lambda(search, imag) :
+                                                                  uncertainty_of_lambda(search, nullptr);
         if (error == 0.)
           return 0.;
         const double rate = slope(search);

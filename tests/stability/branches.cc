@@ -505,8 +505,8 @@ TEST(Branches, ManyModes)
       squares[i] = std::pow(1. + 0.1 * (i + 0.3 * normal(generator)), 2);
       for (int j = 0; j < rank; ++j)
         {
-          U(i, j) = 0.12 * normal(generator);
-          V(i, j) = 0.12 * normal(generator);
+          U(i, j) = 0.5 * normal(generator);
+          V(i, j) = 0.5 * normal(generator);
         }
       for (int j = 0; j < n; ++j)
         mixing(i, j) = normal(generator);

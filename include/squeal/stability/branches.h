@@ -143,7 +143,8 @@ namespace Squeal
    *   (λ_1 + D_11 − λ_2 − D_22)² + 4 D_12 D_21,
    *
    * divided by dδ²/dμ, at points some way from the coalescence, near to which D
-   * is large and cancels; otherwise the uncertainty of λ by dλ/dμ.
+   * is large and cancels; otherwise the change of Re λ or Im λ by their slopes,
+   * |Re D_ii| + Σ |D_ij D_ji / (λ_i − λ_j)|, at most the uncertainty of λ.
    *
    * Throws Error if the grid is not ascending or an option not positive.
    */
