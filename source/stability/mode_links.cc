@@ -97,6 +97,12 @@ namespace Squeal
       return std::isfinite(std::abs(std::accumulate(inverse.column(), inverse.column(n), Complex(0.))));
     }
 
+    /// Gives two groups the same number.
+    void join(std::vector<int> &group, const int x, const int y)
+    {
+      std::replace(group.begin(), group.end(), std::max(x, y), std::min(x, y));
+    }
+
     /// Connected components of a graph of n nodes on the left and m on the right: number of the component of each.
     std::vector<int> components(const int n, const int m, const std::function<bool(int, int)> &connected)
     {
@@ -105,7 +111,7 @@ namespace Squeal
       for (int i = 0; i < n; ++i)
         for (int j = 0; j < m; ++j)
           if (component[i] != component[n + j] && connected(i, j))
-            std::replace(component.begin(), component.end(), component[n + j], component[i]);
+            join(component, component[i], component[n + j]);
       return component;
     }
 
@@ -154,7 +160,7 @@ namespace Squeal
         for (std::size_t i = 0; i < modes.size(); ++i)
           for (std::size_t j = 0; j < i; ++j)
             if (group[i] != group[j] && (cluster[modes[i]] == cluster[modes[j]] || (join_parallel && are_parallel(modes[i], modes[j]))))
-              std::replace(group.begin(), group.end(), group[i], group[j]);
+              join(group, group[i], group[j]);
         return members_of(group);
       }
 
@@ -371,7 +377,7 @@ namespace Squeal
     for (std::size_t i = 0; i < lambda.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
         if (cluster[i] != cluster[j] && std::abs(lambda[i] - lambda[j]) <= indistinguishable * std::abs(lambda[i]))
-          std::replace(cluster.begin(), cluster.end(), cluster[i], cluster[j]);
+          join(cluster, cluster[i], cluster[j]);
     return cluster;
   }
 
