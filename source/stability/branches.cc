@@ -18,6 +18,8 @@ namespace Squeal
 
     /// Divergence rates below this are rounding errors of a neutral mode [-].
     constexpr double negligible_divergence = 1e-8;
+    /// The same where only rounding errors of λ of a multiple mode count [-].
+    constexpr double least_divergence = 1e-11;
     /// An estimated error may be that much too small.
     constexpr double safety = 3.;
     /// Weight of closeness of λ beside overlaps of vectors.
@@ -26,12 +28,22 @@ namespace Squeal
     constexpr double mirror_tolerance = 1e-6;
     /// δ² / |λ|² of pairs far enough from their coalescence for corrections to be read there.
     constexpr double separate = 1e-6;
+    /// |λ_1 − λ_2| / |λ_1| of modes that may meet within a step.
+    constexpr double nearby = 0.1;
+    /// Part of δ², or of Re λ, that an approach must leave to be worth a look.
+    constexpr double remaining = 0.3;
     /// Steps of a search that may halve less than the interval before it is halved.
     constexpr int patience = 2;
 
     bool is_neutral(const Complex &lambda)
     {
       return std::abs(lambda.real()) <= negligible_divergence * lambda.imag();
+    }
+
+    /// −1: decays, 0: neutral, 1: grows, by more than @p negligible per radian.
+    int growth_class(const Complex &lambda, const double negligible = negligible_divergence)
+    {
+      return std::abs(lambda.real()) <= negligible * lambda.imag() ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
     Complex square_difference(const Complex &x, const Complex &y)
@@ -236,10 +248,13 @@ namespace Squeal
               for (int i = 0; i < n; ++i)
                 overlaps(i, j) += 0.5 * std::norm(C(i, j));
           }
+        // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
+        const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x, least_divergence) == growth_class(y, least_divergence); };
         const double weight = block.resolved ? closeness_weight : 1.;
         return best_assignment(n, n, [&](const int i, const int j) {
-          const double distance = std::abs(predicted[i] - lambda[block.second[j]]);
-          return overlaps(i, j) - (farthest > 0. ? weight * distance / farthest : 0.);
+          const Complex before = points[k].lambda[block.first[i]], after = lambda[block.second[j]];
+          const double  distance = std::abs(predicted[i] - after);
+          return overlaps(i, j) - (farthest > 0. ? weight * distance / farthest : 0.) + (grow_alike(before, after) ? n : 0.);
         });
       }
 
@@ -450,17 +465,25 @@ namespace Squeal
               if (!intervals[k].links->resolved)
                 wanted.push_back(0.5 * (mu(k) + mu(k + 1)));
               else
-                for (const double meeting : interactions(k))
-                  wanted.push_back(meeting);
+                for (const auto &suspicions : {interactions(k), approaches(k)})
+                  wanted.insert(wanted.end(), suspicions.begin(), suspicions.end());
             }
         std::sort(wanted.begin(), wanted.end());
 
         // Two searches may want nearly the same
         std::vector<double> result;
-        const int           left = options.maximum_refinements - n_refinements;
         for (const double value : wanted)
-          if (static_cast<int>(result.size()) < left && (result.empty() || value - result.back() > 0.25 * options.threshold_tolerance))
+          if (result.empty() || value - result.back() > 0.25 * options.threshold_tolerance)
             result.push_back(value);
+
+        // The last evaluations are spread over the range
+        const std::size_t left = std::max(0, options.maximum_refinements - n_refinements);
+        if (result.size() > left)
+          {
+            for (std::size_t i = 0; i < left; ++i)
+              result[i] = result[i * result.size() / left];
+            result.resize(left);
+          }
         return result;
       }
 
@@ -548,6 +571,80 @@ namespace Squeal
                   result.push_back(std::clamp(x, mu(k) + margin, mu(k + 1) - margin));
                 }
             }
+        return result;
+      }
+
+      /**
+       * Where something may have happened that neither end of a step shows: Re λ of a
+       * decaying mode, or δ² of two modes at some distance, is about to reach zero
+       * according to the polynomial through the points around.
+       */
+      std::vector<double> approaches(const int k) const
+      {
+        std::vector<double> result;
+        const auto          look = [&](const Search &search) {
+          if (const auto peak = peak_within(search))
+            result.push_back(*peak);
+        };
+        const int n = static_cast<int>(branches.size());
+        for (int p = 0; p < n; ++p)
+          {
+            if (mode(p, k) < 0 || mode(p, k + 1) < 0)
+              continue;
+            const Complex before = lambda(p, k), after = lambda(p, k + 1);
+            if (growth_class(before) < 0 && growth_class(after) < 0)
+              look({Search::growth, k, p, -1, true});
+            for (int q = 0; q < p; ++q)
+              if (mode(q, k) >= 0 && mode(q, k + 1) >= 0)
+                {
+                  const double x = before.imag() - lambda(q, k).imag(), y = after.imag() - lambda(q, k + 1).imag(), size = before.imag();
+                  if (x * y > 0. && std::max(std::abs(x), std::abs(y)) < nearby * size && std::min(std::abs(x), std::abs(y)) > indistinguishable * size)
+                    look({Search::coalescence, k, p, q, true});
+                }
+          }
+        return result;
+      }
+
+      /// Where a negative function comes close to zero within a step, closer than at its ends.
+      std::optional<double> peak_within(const Search &search) const
+      {
+        const int           k = search.interval;
+        std::vector<double> x, f;
+        for (int point = k - 1; point <= k + 2; ++point)
+          if (const auto y = value(search, point))
+            {
+              // Differences over much shorter steps are rounding errors here
+              if ((point < k && (width(point) < 0.1 * width(k) || *y > *value(search, k))) ||
+                  (point > k + 1 && (width(point - 1) < 0.1 * width(k) || *y > *value(search, k + 1))))
+                continue;
+              x.push_back(mu(point));
+              f.push_back(*y);
+            }
+        const double ends = std::max(*value(search, k), *value(search, k + 1));
+        if (x.size() < 3 || ends >= 0.)
+          return std::nullopt;
+
+        double peak = remaining * ends;
+        std::optional<double> result;
+        constexpr int         n_samples = 16;
+        for (int i = 1; i < n_samples; ++i)
+          {
+            const double t   = mu(k) + width(k) * i / n_samples;
+            double       sum = 0.;
+            for (std::size_t a = 0; a < x.size(); ++a)
+              {
+                double term = f[a];
+                for (std::size_t b = 0; b < x.size(); ++b)
+                  if (a != b)
+                    term *= (t - x[b]) / (x[a] - x[b]);
+                sum += term;
+              }
+            if (sum > peak)
+              {
+                peak   = sum;
+                result = t;
+              }
+          }
         return result;
       }
 

@@ -121,6 +121,59 @@ namespace
       printf("        mu %.15g +- %.2g %s %s branch %d\n", c.friction_coefficient, c.uncertainty, c.enters ? "enters" : "leaves", to_string(c.edge).c_str(), c.branch);
   }
 
+  /// Whether two charts of the same family agree at the points of the grid of the first, and on thresholds.
+  void expect_same(const StabilityChart &coarse, const StabilityChart &fine, const double tolerance)
+  {
+    ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
+    for (std::size_t t = 0; t < fine.thresholds.size(); ++t)
+      {
+        EXPECT_NEAR(coarse.thresholds[t].friction_coefficient, fine.thresholds[t].friction_coefficient, tolerance);
+        EXPECT_EQ(coarse.thresholds[t].event, fine.thresholds[t].event);
+        EXPECT_EQ(coarse.thresholds[t].mechanism, fine.thresholds[t].mechanism);
+        EXPECT_LT(std::abs(coarse.thresholds[t].lambda - fine.thresholds[t].lambda), 1e-5);
+      }
+    ASSERT_EQ(coarse.crossings.size(), fine.crossings.size());
+    for (std::size_t c = 0; c < fine.crossings.size(); ++c)
+      {
+        EXPECT_NEAR(coarse.crossings[c].friction_coefficient, fine.crossings[c].friction_coefficient, tolerance);
+        EXPECT_EQ(coarse.crossings[c].branch, fine.crossings[c].branch);
+        EXPECT_EQ(coarse.crossings[c].enters, fine.crossings[c].enters);
+      }
+
+    // Modes of a multiple λ at the first point may be numbered anyhow: branches are compared as sets of curves
+    const auto curves = [&coarse](const StabilityChart &chart) {
+      std::vector<std::vector<Complex>> result;
+      for (const Branch &branch : chart.branches)
+        if (branch.modes[0] >= 0)
+          {
+            std::vector<Complex> curve;
+            for (std::size_t k = 0, l = 0; k < coarse.points.size(); ++k)
+              if (!coarse.is_refinement[k])
+                {
+                  while (chart.points[l].friction_coefficient < coarse.points[k].friction_coefficient - 1e-12)
+                    ++l;
+                  curve.push_back(branch.modes[l] >= 0 ? chart.points[l].lambda[branch.modes[l]] : Complex());
+                }
+            result.push_back(curve);
+          }
+      return result;
+    };
+    const auto first = curves(coarse), second = curves(fine);
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t b = 0; b < first.size(); ++b)
+      {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto &other : second)
+          {
+            double farthest = 0.;
+            for (std::size_t k = 0; k < other.size(); ++k)
+              farthest = std::max(farthest, std::abs(first[b][k] - other[k]));
+            nearest = std::min(nearest, farthest);
+          }
+        EXPECT_LT(nearest, 1e-6) << "branch " << b;
+      }
+  }
+
   /// N. Hoffmann et al. (2002): (k11 − k22)² + 4 k12 (k12 − μ k_c) = 0 at the coalescence.
   struct Flutter
   {
@@ -525,7 +578,7 @@ TEST(Branches, ManyModes)
     return multiply(basis, multiply(K, basis), true);
   };
   family.last          = 4.2;
-  ChartOptions options = precise(4., 1e-8);
+  ChartOptions options = precise(3.9, 1e-8);
 
   const StabilityChart coarse = family.chart(uniform_grid(0., 1., 20), options);
   const StabilityChart fine   = family.chart(uniform_grid(0., 1., 80), options);
@@ -536,31 +589,101 @@ TEST(Branches, ManyModes)
   expect_counts(coarse);
   expect_counts(fine);
   EXPECT_GT(coarse.thresholds.size(), 2u);
-  ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
-  for (std::size_t t = 0; t < fine.thresholds.size(); ++t)
-    {
-      EXPECT_NEAR(coarse.thresholds[t].friction_coefficient, fine.thresholds[t].friction_coefficient, 2e-8);
-      EXPECT_EQ(coarse.thresholds[t].branch, fine.thresholds[t].branch);
-      EXPECT_EQ(coarse.thresholds[t].partner, fine.thresholds[t].partner);
-    }
-  // Branches that begin at the first point have the same λ at common points; a multiple mode at the first point may be numbered anyhow
-  const int n_first = coarse.points[0].lambda.size();
-  for (std::size_t k = 0, l = 0; k < coarse.points.size(); ++k)
-    if (!coarse.is_refinement[k])
+  expect_same(coarse, fine, 2e-8);
+
+  // Another order of the modes of the triple λ at μ = 0 changes nothing
+  family.disturb = [](ChartPoint &point) {
+    for (std::size_t j = 0; j + 1 < point.lambda.size(); ++j)
+      if (std::abs(point.lambda[j + 1] - point.lambda[j]) < 1e-9)
+        {
+          std::swap(point.lambda[j], point.lambda[j + 1]);
+          for (auto *vectors : {&point.right, &point.left})
+            for (int i = 0; i < vectors->n_rows(); ++i)
+              std::swap((*vectors)(i, j), (*vectors)(i, j + 1));
+        }
+  };
+  const StabilityChart other = family.chart(uniform_grid(0., 1., 20), options);
+  ASSERT_EQ(other.points.size(), coarse.points.size());
+  for (std::size_t k = 0; k < other.points.size(); ++k)
+    EXPECT_NEAR(other.points[k].friction_coefficient, coarse.points[k].friction_coefficient, 1e-12);
+  expect_same(coarse, other, 1e-12);
+}
+
+
+
+TEST(Branches, PinsAndDisc)
+{
+  // 24 pin modes within 1 %, a disc doublet among them, twelve equal modes above, and the friction of three pins
+  std::mt19937                     generator(5);
+  std::normal_distribution<double> normal;
+  const int                        n = 40, rank = 3;
+  DenseMatrix                      U(n, rank), V(n, rank);
+  std::vector<double>              squares(n);
+  for (int i = 0; i < n; ++i)
+    squares[i] = i < 24 ? 25. * (1. + 0.02 * i / 24.) : i < 26 ? 25.2 : i < 38 ? 30. : 20. + i;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < rank; ++j)
       {
-        while (fine.points[l].friction_coefficient < coarse.points[k].friction_coefficient - 1e-12)
-          ++l;
-        for (int branch = 0; branch < n_first; ++branch)
-          {
-            const int i = coarse.branches[branch].modes[k], j = fine.branches[branch].modes[l];
-            ASSERT_EQ(i < 0, j < 0) << "branch " << branch << " at " << coarse.points[k].friction_coefficient;
-            if (i >= 0)
-              {
-                EXPECT_LT(std::abs(coarse.points[k].lambda[i] - fine.points[l].lambda[j]), 1e-9)
-                  << "branch " << branch << " at " << coarse.points[k].friction_coefficient;
-              }
-          }
+        const double weight = i < 24 ? 0.1 : i < 26 ? 0.3 : i < 38 ? 1e-3 : 0.3;
+        U(i, j)             = weight * normal(generator);
+        V(i, j)             = weight * normal(generator);
       }
+  for (const double damping : {0., 1e-3})
+    {
+      Family family;
+      family.stiffness = [&](const double mu) {
+        DenseMatrix K = multiply(U, V, false, true, mu);
+        for (int i = 0; i < n; ++i)
+          K(i, i) += squares[i];
+        return K;
+      };
+      if (damping > 0.)
+        family.damping = [&](double) {
+          DenseMatrix C(n, n);
+          for (int i = 0; i < n; ++i)
+            C(i, i) = damping * (i < 24 ? 1. : 2.);
+          return C;
+        };
+      const StabilityChart coarse = family.chart(uniform_grid(0., 1., 20), precise(10., 1e-8));
+      const StabilityChart fine   = family.chart(uniform_grid(0., 1., 80), precise(10., 1e-8));
+      report("coarse", coarse);
+      report("fine", fine);
+      EXPECT_EQ(coarse.n_doubtful_steps, 0);
+      EXPECT_EQ(fine.n_doubtful_steps, 0);
+      EXPECT_EQ(coarse.branches.size(), 40u);
+      expect_same(coarse, fine, 2e-8);
+    }
+}
+
+
+
+TEST(Branches, WindowsBetweenPointsAreFound)
+{
+  // The frequencies approach, grow together from 0.43 to 0.57 and part again: nothing of that is seen at 0, 0.2, 0.4, ...
+  for (const int n_steps : {5, 10, 20})
+    {
+      Family family;
+      family.stiffness           = [](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); };
+      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+      report("between", chart);
+      ASSERT_EQ(chart.thresholds.size(), 2u);
+      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.43, 1e-10);
+      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.57, 1e-10);
+    }
+}
+
+
+
+TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
+{
+  Flutter flutter;
+  Family  family                 = flutter.family();
+  ChartOptions options           = precise();
+  options.maximum_refinements    = 0;
+  const StabilityChart chart     = family.chart(uniform_grid(0., 2., 10), options);
+  ASSERT_EQ(chart.thresholds.size(), 1u);
+  EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.9, 1e-12);
+  EXPECT_NEAR(chart.thresholds[0].uncertainty, 0.1, 1e-12);
 }
 
 

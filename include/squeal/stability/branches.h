@@ -126,7 +126,8 @@ namespace Squeal
    * in which that is in doubt are halved, those of one round in one batch. Steps
    * in which two branches change places are examined, too, if the vectors say
    * that the branches interact: Λ_b, transformed to the modes at a, and Λ_a,
-   * interpolated between, predict where the two would meet and how close.
+   * interpolated between, predict where the two would meet and how close; and
+   * steps in which growth rates or frequencies, extrapolated, come close.
    *
    * A branch that grows at one end of a step but not at the other has a
    * threshold between. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic, real and
