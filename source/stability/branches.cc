@@ -72,7 +72,8 @@ namespace Squeal
       int  interval;
       int  branch, partner;
       bool upward;        ///< onset, or entering the band
-      bool at_once = false; ///< neutral at the first point of the chart
+      bool at_once  = false; ///< neutral at the first point of the chart
+      bool multiple = false; ///< two modes that nothing tells apart from the first point up to this interval
     };
 
     /// The list of points with the modes of each branch.
@@ -249,7 +250,9 @@ namespace Squeal
                 overlaps(i, j) += 0.5 * std::norm(C(i, j));
           }
         // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
-        const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x, least_divergence) == growth_class(y, least_divergence); };
+        const auto grow_alike = [](const Complex &x, const Complex &y) {
+          return growth_class(x, least_divergence) == growth_class(y, least_divergence);
+        };
         const double weight = block.resolved ? closeness_weight : 1.;
         return best_assignment(n, n, [&](const int i, const int j) {
           const Complex before = points[k].lambda[block.first[i]], after = lambda[block.second[j]];
@@ -371,11 +374,22 @@ namespace Squeal
             search.kind    = Search::coalescence;
             search.partner = partner;
           }
-        const bool multiple = search.kind == Search::coalescence &&
-                              std::abs(before - lambda(partner, k)) <= indistinguishable * std::abs(before);
         enclose(search);
-        search.at_once      = search.interval == 0 && onset && is_neutral(before) && (search.kind == Search::growth || multiple);
+        search.at_once = search.interval == 0 && onset && is_neutral(lambda(branch, 0)) && (search.kind == Search::growth || is_double(search, 0));
+        if (onset && search.kind == Search::coalescence && search.interval > 0)
+          {
+            search.multiple = true;
+            for (int point = 0; point <= search.interval && search.multiple; ++point)
+              search.multiple = is_double(search, point);
+          }
         searches.push_back(search);
+      }
+
+      /// Whether two modes are one double mode at a point.
+      bool is_double(const Search &search, const int k) const
+      {
+        return mode(search.branch, k) >= 0 && mode(search.partner, k) >= 0 &&
+               std::abs(lambda(search.branch, k) - lambda(search.partner, k)) <= indistinguishable * std::abs(lambda(search.branch, k));
       }
 
       /**
@@ -489,7 +503,7 @@ namespace Squeal
 
       bool located(const Search &search) const
       {
-        return width(search.interval) <= tolerance(search.interval) || (search.at_once && grows_at_once(search));
+        return search.multiple || width(search.interval) <= tolerance(search.interval) || (search.at_once && grows_at_once(search));
       }
 
       /**
@@ -598,7 +612,8 @@ namespace Squeal
               if (mode(q, k) >= 0 && mode(q, k + 1) >= 0)
                 {
                   const double x = before.imag() - lambda(q, k).imag(), y = after.imag() - lambda(q, k + 1).imag(), size = before.imag();
-                  if (x * y > 0. && std::max(std::abs(x), std::abs(y)) < nearby * size && std::min(std::abs(x), std::abs(y)) > indistinguishable * size)
+                  if (x * y > 0. && std::max(std::abs(x), std::abs(y)) < nearby * size &&
+                      std::min(std::abs(x), std::abs(y)) > indistinguishable * size)
                     look({Search::coalescence, k, p, q, true});
                 }
           }
@@ -657,6 +672,9 @@ namespace Squeal
         const double l = mu(k), r = mu(k + 1);
         if (search.at_once && grows_at_once(search))
           return {l, 0.};
+        // The growth of a double mode emerges from rounding errors only here
+        if (search.multiple)
+          return {mu(0), r - mu(0)};
         if (width(k) > tolerance(k))
           return {0.5 * (l + r), 0.5 * (r - l)};
         const auto fl = value(search, k), fr = value(search, k + 1);
@@ -735,12 +753,12 @@ namespace Squeal
             if (best < 0)
               continue;
             const double f = std::abs(*value(search, best));
-            if (search.at_once && mu(best) == threshold)
+            if (mu(best) == threshold)
               continue;
             const double distance = std::abs(mu(best) - threshold), change = change_of_discriminant(search, best);
             if (f > 0.)
               // δ² ~ (μ − μ_0)² where a double mode grows at once, else linear
-              result = std::max(result, search.at_once ? distance * std::sqrt(change / f) : distance * change / f);
+              result = std::max(result, search.at_once || search.multiple ? distance * std::sqrt(change / f) : distance * change / f);
           }
         return result;
       }
@@ -768,7 +786,7 @@ namespace Squeal
 
       Complex lambda_at(const Search &search, const double threshold) const
       {
-        const int  k    = search.interval;
+        const int  k    = search.multiple ? 0 : search.interval;
         const auto mean = [&](const int point) {
           return search.partner >= 0 ? 0.5 * (lambda(search.branch, point) + lambda(search.partner, point)) : lambda(search.branch, point);
         };

@@ -135,7 +135,9 @@ namespace Squeal
    * wanted. Zeros are enclosed by inverse quadratic interpolation and
    * bisection until the interval is no wider than the tolerance. Modes that are
    * neutral at the first point and grow from there on, such as
-   * a double mode of the frictionless problem, have their onset at the first point.
+   * a double mode of the frictionless problem, have their onset at the first point;
+   * where growth emerges from the rounding errors of a multiple mode only later,
+   * the uncertainty reaches from there to the first point.
    *
    * Uncertainties: half the width of the interval if it is wider than the
    * tolerance, its width otherwise, and three times what the corrections of λ
