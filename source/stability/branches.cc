@@ -275,38 +275,52 @@ namespace Squeal
       /// Carries vectors from point k to the next.
       void carry(const int k, const std::vector<int> &image, Carried &carried) const
       {
-        const ChartPoint      &next    = points[k + 1];
-        const std::vector<int> cluster = mode_clusters(next.lambda);
-        const int              n       = static_cast<int>(next.lambda.size());
-        Carried                result{next.right, next.left, next.lambda};
+        const ChartPoint             &next    = points[k + 1];
+        const std::vector<int>        cluster = mode_clusters(next.lambda);
+        std::vector<std::vector<int>> members(next.lambda.size());
+        std::vector<int>              origin(next.lambda.size(), -1);
         for (std::size_t i = 0; i < image.size(); ++i)
-          if (const int j = image[i]; j >= 0)
-            {
-              std::vector<int> same;
-              for (int l = 0; l < n; ++l)
-                if (cluster[l] == cluster[j])
-                  same.push_back(l);
-              if (same.size() == 1)
-                continue;
-              result.lambda[j] = carried.lambda[i];
-              project(selected_columns(next.right, same), carried.right, static_cast<int>(i), result.right, j);
-              project(selected_columns(next.left, same), carried.left, static_cast<int>(i), result.left, j);
-            }
+          if (image[i] >= 0)
+            origin[image[i]] = static_cast<int>(i);
+        for (std::size_t j = 0; j < cluster.size(); ++j)
+          members[cluster[j]].push_back(static_cast<int>(j));
+
+        Carried result{next.right, next.left, next.lambda};
+        for (const std::vector<int> &all : members)
+          {
+            std::vector<int> from, to;
+            for (const int j : all)
+              if (all.size() > 1 && origin[j] >= 0)
+                {
+                  from.push_back(origin[j]);
+                  to.push_back(j);
+                  result.lambda[j] = carried.lambda[origin[j]];
+                }
+            if (!to.empty())
+              {
+                project(selected_columns(next.right, all), selected_columns(carried.right, from), result.right, to);
+                project(selected_columns(next.left, all), selected_columns(carried.left, from), result.left, to);
+              }
+          }
         carried = std::move(result);
       }
 
-      /// Column j of Y becomes the part of column i of X in the span of @p vectors, normalised.
-      static void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, const int i, ComplexDenseMatrix &Y, const int j)
+      /// Columns @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
+      static void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, ComplexDenseMatrix &Y, const std::vector<int> &to)
       {
-        const ComplexDenseMatrix Q = orthonormal_basis(vectors).Q;
-        const ComplexDenseMatrix x = padded(selected_columns(X, {i}), std::max(Q.n_rows(), X.n_rows()));
-        const ComplexDenseMatrix y = multiply(Q, multiply(padded(Q, x.n_rows()), x, true));
-        double                   norm = 0.;
-        for (int row = 0; row < y.n_rows(); ++row)
-          norm += std::norm(y(row, 0));
-        if (norm > 0.)
-          for (int row = 0; row < y.n_rows(); ++row)
-            Y(row, j) = y(row, 0) / std::sqrt(norm);
+        const int                r = std::max(vectors.n_rows(), X.n_rows());
+        const ComplexDenseMatrix Q = orthonormal_basis(padded(vectors, r)).Q;
+        const ComplexDenseMatrix P = multiply(Q, multiply(Q, padded(X, r), true));
+        for (std::size_t j = 0; j < to.size(); ++j)
+          {
+            const Complex *part = P.column(static_cast<int>(j));
+            double         norm = 0.;
+            for (int row = 0; row < r; ++row)
+              norm += std::norm(part[row]);
+            if (norm > 0.)
+              for (int row = 0; row < Y.n_rows(); ++row)
+                Y(row, to[j]) = part[row] / std::sqrt(norm);
+          }
       }
 
       // ------------------------------------------------- events

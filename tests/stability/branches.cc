@@ -655,6 +655,29 @@ TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
 
 
 
+TEST(Branches, CoordinatesInABasisThatGrows)
+{
+  Flutter flutter;
+  Family  family             = flutter.family();
+  const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+  int                  n_rows = 2;
+  family.disturb              = [&n_rows](ChartPoint &point) {
+    ++n_rows;
+    for (auto *vectors : {&point.right, &point.left})
+      {
+        ComplexDenseMatrix longer(n_rows, vectors->n_columns());
+        for (int j = 0; j < vectors->n_columns(); ++j)
+          std::copy_n(vectors->column(j), vectors->n_rows(), longer.column(j));
+        *vectors = longer;
+      }
+  };
+  const StabilityChart other = family.chart(uniform_grid(0., 2., 10), precise());
+  ASSERT_EQ(other.points.size(), chart.points.size());
+  expect_same(chart, other, 1e-12);
+}
+
+
+
 TEST(Branches, Refusals)
 {
   Family family = Flutter().family();
