@@ -627,16 +627,21 @@ TEST(Branches, PinsAndDisc)
 
 TEST(Branches, WindowsBetweenPointsAreFound)
 {
-  // The frequencies approach, grow together from 0.43 to 0.57 and part again: nothing of that is seen at 0, 0.2, 0.4, ...
+  // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
   for (const int n_steps : {5, 10, 20})
-    {
-      Family family;
-      family.stiffness           = [](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); };
-      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
-      ASSERT_EQ(chart.thresholds.size(), 2u);
-      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.43, 1e-10);
-      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.57, 1e-10);
-    }
+    for (const double d : {0., 0.001, 0.01})
+      {
+        Family family;
+        family.stiffness = [](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); };
+        if (d > 0.)
+          family.damping = [d](double) { return matrix({{d, 0.}, {0., d}}); };
+        const double         half  = std::sqrt(0.07 * 0.07 - 5. * d * d);
+        const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+        ASSERT_EQ(chart.thresholds.size(), 2u) << n_steps << " steps, d = " << d;
+        EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.5 - half, 1e-10);
+        EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.5 + half, 1e-10);
+        EXPECT_EQ(chart.n_doubtful_steps, 0);
+      }
 }
 
 
