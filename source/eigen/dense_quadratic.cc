@@ -33,25 +33,6 @@ namespace Squeal
       return root.imag() < 0. ? -root : root;
     }
 
-    /// A X of a real and a complex matrix.
-    ComplexDenseMatrix times(const DenseMatrix &A, const ComplexDenseMatrix &X)
-    {
-      const int          n = X.n_rows(), k = X.n_columns();
-      DenseMatrix        parts(n, 2 * k);
-      ComplexDenseMatrix result(A.n_rows(), k);
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < n; ++i)
-          {
-            parts(i, j)     = X(i, j).real();
-            parts(i, k + j) = X(i, j).imag();
-          }
-      parts = multiply(A, parts);
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < A.n_rows(); ++i)
-          result(i, j) = {parts(i, j), parts(i, k + j)};
-      return result;
-    }
-
     /// ‖x‖₂ = 1, entry of largest modulus real and positive; ties to the first.
     void normalize(Complex *x, const int n)
     {
@@ -71,8 +52,8 @@ namespace Squeal
     /// One step λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
-      const ComplexDenseMatrix m = times(M, modes.right), k = times(K, modes.right);
-      const ComplexDenseMatrix c = C != nullptr ? times(*C, modes.right) : ComplexDenseMatrix(m.n_rows(), m.n_columns());
+      const ComplexDenseMatrix m = multiply(M, modes.right), k = multiply(K, modes.right);
+      const ComplexDenseMatrix c = C != nullptr ? multiply(*C, modes.right) : ComplexDenseMatrix(m.n_rows(), m.n_columns());
       for (std::size_t j = 0; j < modes.values.size(); ++j)
         {
           const Complex lambda = modes.values[j];

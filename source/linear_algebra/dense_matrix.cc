@@ -90,6 +90,53 @@ namespace Squeal
 
 
 
+  ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X)
+  {
+    const int   n = X.n_rows(), k = X.n_columns();
+    DenseMatrix halves(n, 2 * k);
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i < n; ++i)
+        {
+          halves(i, j)     = X(i, j).real();
+          halves(i, k + j) = X(i, j).imag();
+        }
+    const DenseMatrix  products = multiply(A, halves);
+    ComplexDenseMatrix result(A.n_rows(), k);
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i < A.n_rows(); ++i)
+        result(i, j) = {products(i, j), products(i, k + j)};
+    return result;
+  }
+
+
+
+  ComplexDenseMatrix transpose_multiply(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y)
+  {
+    ComplexDenseMatrix conjugate = X;
+    std::for_each(conjugate.column(), conjugate.column(X.n_columns()), [](std::complex<double> &x) { x = std::conj(x); });
+    return multiply(conjugate, Y, true);
+  }
+
+
+
+  DenseMatrix real_part(const ComplexDenseMatrix &X)
+  {
+    DenseMatrix result(X.n_rows(), X.n_columns());
+    std::transform(X.column(), X.column(X.n_columns()), result.column(), [](const std::complex<double> &x) { return x.real(); });
+    return result;
+  }
+
+
+
+  DenseMatrix imaginary_part(const ComplexDenseMatrix &X)
+  {
+    DenseMatrix result(X.n_rows(), X.n_columns());
+    std::transform(X.column(), X.column(X.n_columns()), result.column(), [](const std::complex<double> &x) { return x.imag(); });
+    return result;
+  }
+
+
+
   DenseMatrix add(const DenseMatrix &A, const DenseMatrix &B, const double factor)
   {
     require(A.n_rows() == B.n_rows() && A.n_columns() == B.n_columns(), "sum of two dense matrices");
@@ -98,6 +145,47 @@ namespace Squeal
       for (int i = 0; i < C.n_rows(); ++i)
         C(i, j) += factor * B(i, j);
     return C;
+  }
+
+
+
+  DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y)
+  {
+    require(X.n_columns() == 0 || X.n_rows() == Y.n_rows(), "dense matrices side by side");
+    DenseMatrix result(Y.n_rows(), X.n_columns() + Y.n_columns());
+    std::copy(X.column(), X.column(X.n_columns()), result.column());
+    std::copy(Y.column(), Y.column(Y.n_columns()), result.column(X.n_columns()));
+    return result;
+  }
+
+
+
+  void border(DenseMatrix &matrix, const DenseMatrix &new_columns)
+  {
+    const int r = new_columns.n_rows(), old = matrix.n_rows();
+    require(old + new_columns.n_columns() == r, "bordered matrix");
+    DenseMatrix result(r, r);
+    for (int j = 0; j < old; ++j)
+      std::copy(matrix.column(j), matrix.column(j) + old, result.column(j));
+    for (int j = old; j < r; ++j)
+      for (int i = 0; i < r; ++i)
+        {
+          result(i, j) = new_columns(i, j - old);
+          result(j, i) = result(i, j);
+        }
+    matrix = std::move(result);
+  }
+
+
+
+  ComplexDenseMatrix from_halves(const DenseMatrix &products)
+  {
+    const int          k = products.n_rows() / 2;
+    ComplexDenseMatrix result(k, k);
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i < k; ++i)
+        result(i, j) = {products(i, j) - products(k + i, k + j), products(i, k + j) + products(k + i, j)};
+    return result;
   }
 
 

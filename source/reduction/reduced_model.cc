@@ -5,31 +5,6 @@ namespace Squeal
 {
   namespace
   {
-    /// [X Y] for matrices with the same number of rows; X may be empty.
-    DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y)
-    {
-      DenseMatrix result(Y.n_rows(), X.n_columns() + Y.n_columns());
-      std::copy(X.column(), X.column(X.n_columns()), result.column());
-      std::copy(Y.column(), Y.column(Y.n_columns()), result.column(X.n_columns()));
-      return result;
-    }
-
-    /// Borders a symmetric projection by its new rows and columns, given Tᵀ A T_new for the whole T.
-    void border(DenseMatrix &matrix, const DenseMatrix &new_columns)
-    {
-      const int   r = new_columns.n_rows(), old = matrix.n_rows();
-      DenseMatrix result(r, r);
-      for (int j = 0; j < old; ++j)
-        std::copy(matrix.column(j), matrix.column(j) + old, result.column(j));
-      for (int j = old; j < r; ++j)
-        for (int i = 0; i < r; ++i)
-          {
-            result(i, j) = new_columns(i, j - old);
-            result(j, i) = result(i, j);
-          }
-      matrix = std::move(result);
-    }
-
     /// diag(c) X
     DenseMatrix rows_scaled(DenseMatrix X, const std::vector<double> &c)
     {
@@ -41,33 +16,33 @@ namespace Squeal
   } // namespace
 
   ReducedModel::ReducedModel(const CoupledSystem &system)
-    : system(system)
+    : system(&system)
   {}
 
   void ReducedModel::extend(const MultiVector &vectors)
   {
     T = std::make_unique<MultiVector>(T ? join({T.get(), &vectors}) : vectors);
-    border(parts.mass, gram(*T, *system.frictionless.mass * vectors));
-    border(parts.stiffness, gram(*T, *system.frictionless.stiffness * vectors));
-    if (system.body_damping || system.modal_damping)
+    border(parts.mass, gram(*T, *system->frictionless.mass * vectors));
+    border(parts.stiffness, gram(*T, *system->frictionless.stiffness * vectors));
+    if (system->body_damping || system->modal_damping)
       {
         MultiVector forces(vectors.Map(), vectors.NumVectors());
-        if (system.body_damping)
-          forces.Update(1., *system.body_damping * vectors, 1.);
-        if (system.modal_damping)
-          forces.Update(1., *system.modal_damping * vectors, 1.);
+        if (system->body_damping)
+          forces.Update(1., *system->body_damping * vectors, 1.);
+        if (system->modal_damping)
+          forces.Update(1., *system->modal_damping * vectors, 1.);
         border(parts.body_damping, gram(*T, forces));
       }
     const auto append = [](DenseMatrix &part, const MultiVector &columns) { part = append_columns(part, replicate(columns)); };
-    append(parts.friction_forces, transpose_times(*system.friction_forces, vectors));
-    append(parts.radial_motion, *system.radial_motion * vectors);
-    append(parts.normal_stiffness, *system.normal_stiffness * vectors);
-    append(parts.normal_mass, *system.normal_mass * vectors);
+    append(parts.friction_forces, transpose_times(*system->friction_forces, vectors));
+    append(parts.radial_motion, *system->radial_motion * vectors);
+    append(parts.normal_stiffness, *system->normal_stiffness * vectors);
+    append(parts.normal_mass, *system->normal_mass * vectors);
     friction_K = multiply(parts.friction_forces, parts.normal_stiffness, true);
     friction_M = multiply(parts.friction_forces, parts.normal_mass, true);
-    if (system.normal_damping)
+    if (system->normal_damping)
       {
-        append(parts.normal_damping, *system.normal_damping * vectors);
+        append(parts.normal_damping, *system->normal_damping * vectors);
         friction_C = multiply(parts.friction_forces, parts.normal_damping, true);
       }
   }
@@ -87,9 +62,14 @@ namespace Squeal
     return parts;
   }
 
+  const ContactDamping &ReducedModel::contact_damping() const
+  {
+    return system->contact_damping;
+  }
+
   ReducedPencil ReducedModel::at(const double mu) const
   {
-    return at(mu, system.contact_damping);
+    return at(mu, system->contact_damping);
   }
 
   ReducedPencil ReducedModel::at(const double mu, const ContactDamping &damping) const
@@ -98,7 +78,7 @@ namespace Squeal
     pencil.has_damping = parts.body_damping.n_rows() > 0 || !damping.is_zero();
     if (pencil.has_damping && parts.body_damping.n_rows() == 0)
       pencil.damping = DenseMatrix(size(), size());
-    if (system.normal_damping)
+    if (system->normal_damping)
       pencil.damping = add(pencil.damping, friction_C, -mu);
     for (const auto &[motion, coefficients] : {std::make_pair(&parts.radial_motion, &damping.radial),
                                                std::make_pair(&parts.friction_forces, &damping.sliding)})

@@ -24,23 +24,6 @@ namespace Squeal
     /// Divergence rates below this are rounding errors of a neutral mode [-].
     constexpr double negligible_divergence = 1e-8;
 
-    DenseMatrix part(const ComplexDenseMatrix &X, double (*of)(const Complex &))
-    {
-      DenseMatrix result(X.n_rows(), X.n_columns());
-      std::transform(X.column(), X.column(X.n_columns()), result.column(), of);
-      return result;
-    }
-
-    DenseMatrix real_part(const ComplexDenseMatrix &X)
-    {
-      return part(X, [](const Complex &x) { return x.real(); });
-    }
-
-    DenseMatrix imaginary_part(const ComplexDenseMatrix &X)
-    {
-      return part(X, [](const Complex &x) { return x.imag(); });
-    }
-
     MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
     {
       MultiVector U(F.Map(), F.NumVectors());
@@ -109,32 +92,28 @@ namespace Squeal
       return end == BandEnd::cut ? largest_frequency : std::numeric_limits<double>::infinity();
     }
 
-    /// ψᵀ A φ for complex columns j, no conjugate.
-    Complex bilinear(const DenseMatrix &A, const ComplexDenseMatrix &psi, const ComplexDenseMatrix &phi, const int j)
+    /// ψ_jᵀ A φ_j for every column, no conjugate; null A counts as zero.
+    std::vector<Complex> bilinear(const DenseMatrix *A, const ComplexDenseMatrix &psi, const ComplexDenseMatrix &phi)
     {
-      Complex sum = 0.;
-      for (int c = 0; c < A.n_columns(); ++c)
-        {
-          Complex row = 0.;
-          for (int r = 0; r < A.n_rows(); ++r)
-            row += psi(r, j) * A(r, c);
-          sum += row * phi(c, j);
-        }
-      return sum;
+      std::vector<Complex> result(phi.n_columns());
+      if (A == nullptr)
+        return result;
+      const ComplexDenseMatrix A_phi = multiply(*A, phi);
+      for (int j = 0; j < phi.n_columns(); ++j)
+        for (int i = 0; i < phi.n_rows(); ++i)
+          result[j] += psi(i, j) * A_phi(i, j);
+      return result;
     }
 
-    /// xᴴ A x of column j for symmetric A.
-    double square(const DenseMatrix &A, const ComplexDenseMatrix &X, const int j)
+    /// x_jᴴ A x_j for every column, A symmetric.
+    std::vector<double> squares(const DenseMatrix &A, const ComplexDenseMatrix &X)
     {
-      double sum = 0.;
-      for (int c = 0; c < A.n_columns(); ++c)
-        {
-          Complex row = 0.;
-          for (int r = 0; r < A.n_rows(); ++r)
-            row += std::conj(X(r, j)) * A(r, c);
-          sum += (row * X(c, j)).real();
-        }
-      return sum;
+      const ComplexDenseMatrix AX = multiply(A, X);
+      std::vector<double>      result(X.n_columns());
+      for (int j = 0; j < X.n_columns(); ++j)
+        for (int i = 0; i < X.n_rows(); ++i)
+          result[j] += (std::conj(X(i, j)) * AX(i, j)).real();
+      return result;
     }
 
     /// Smaller root of a δ² + b δ = e.
@@ -144,18 +123,6 @@ namespace Squeal
       // 2 e / (b ± root) with the larger denominator does not cancel.
       const Complex denominator = std::abs(b + root) > std::abs(b - root) ? b + root : b - root;
       return std::abs(denominator) > 0. ? 2. * e / denominator : 0.;
-    }
-
-    /// L_iᵀ K_c⁻¹ R_j, no conjugate, from real and imaginary halves.
-    ComplexDenseMatrix products(const MultiVector &L, const MultiVector &U)
-    {
-      const DenseMatrix  G = gram(L, U);
-      const int          k = L.NumVectors() / 2;
-      ComplexDenseMatrix result(k, k);
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < k; ++i)
-          result(i, j) = {G(i, j) - G(k + i, k + j), G(i, k + j) + G(k + i, j)};
-      return result;
     }
 
     Verdict verdict(const Complex lambda, const double uncertainty, const bool well_conditioned, const bool neutral)
@@ -171,14 +138,18 @@ namespace Squeal
     }
   } // namespace
 
-  ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_frequency, const BandEnd end)
+  ReducedModes local_reduced_modes(const ReducedModel   &model,
+                                   const double          mu,
+                                   const ContactDamping &damping,
+                                   const double          largest_frequency,
+                                   const BandEnd         end)
   {
     ReducedModes modes;
     modes.friction_coefficient = mu;
-    modes.pencil               = model.at(mu);
-    ReducedPencil symmetric    = model.at(0.);
-    modes.mass                 = std::move(symmetric.mass);
-    modes.stiffness            = std::move(symmetric.stiffness);
+    modes.contact_damping      = damping;
+    modes.pencil               = model.at(mu, damping);
+    modes.mass                 = model.blocks().mass;
+    modes.stiffness            = model.blocks().stiffness;
 
     DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
                                                       modes.pencil.stiffness, band_limit(largest_frequency, end));
@@ -187,6 +158,12 @@ namespace Squeal
     modes.left                = std::move(found.left);
     modes.real_values         = std::move(found.real_values);
     separate_real(modes, largest_frequency);
+    return modes;
+  }
+
+  ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_frequency, const BandEnd end)
+  {
+    ReducedModes modes = local_reduced_modes(model, mu, model.contact_damping(), largest_frequency, end);
     agree_on_modes(model.basis().Comm(), modes);
     return modes;
   }
@@ -231,38 +208,65 @@ namespace Squeal
     return result;
   }
 
+  ResidualVectors
+  residual_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes)
+  {
+    const MultiVector &T     = model.basis();
+    const auto         force = [&](const ComplexDenseMatrix &vectors, const bool left) {
+      return force_residuals(system, modes.friction_coefficient, modes.lambda, T * real_part(vectors), T * imaginary_part(vectors), left);
+    };
+    const MultiVector R = force(modes.right, false), L = force(modes.left, true);
+    return {R, L, solve(inverse, R), solve(inverse, L)};
+  }
+
+  ResidualProducts ResidualVectors::products() const
+  {
+    const auto energies = [](const MultiVector &F, const MultiVector &U) {
+      const int           k = F.NumVectors() / 2;
+      std::vector<double> result(2 * k);
+      F.Dot(U, result.data());
+      for (int j = 0; j < k; ++j)
+        result[j] += result[k + j];
+      result.resize(k);
+      return result;
+    };
+    return {from_halves(gram(left_forces, right_displacements)), energies(right_forces, right_displacements),
+            energies(left_forces, left_displacements)};
+  }
+
   EigenvalueEstimates
   estimate_eigenvalues(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes)
   {
-    const int         k     = modes.lambda.size();
-    const MultiVector &T    = model.basis();
-    const auto        force = [&](const ComplexDenseMatrix &vectors, const bool left) {
-      return force_residuals(system, modes.friction_coefficient, modes.lambda, T * real_part(vectors), T * imaginary_part(vectors), left);
-    };
-    const MultiVector   R = force(modes.right, false), L = force(modes.left, true);
-    EigenvalueEstimates result{{}, {}, {}, {}, {}, {}, {}, solve(inverse, R), solve(inverse, L)};
+    return estimate_eigenvalues(modes, residual_vectors(system, inverse, model, modes).products());
+  }
 
-    // Residual energies R_Uᴴ R_F
-    std::vector<double> energies(2 * k);
-    R.Dot(result.right, energies.data());
+  EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products)
+  {
+    const int                 k = modes.lambda.size();
+    const ComplexDenseMatrix &E = products.coupling;
+    EigenvalueEstimates       result;
 
     // δλ and κ
-    const ComplexDenseMatrix E = products(L, result.right);
-    std::vector<Complex>     derivatives(k);
+    const auto mass = bilinear(&modes.pencil.mass, modes.left, modes.right);
+    const auto damping = bilinear(modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.left, modes.right);
+    const auto left_masses = squares(modes.mass, modes.left), right_masses = squares(modes.mass, modes.right);
+    const auto left_stiffnesses = squares(modes.stiffness, modes.left), right_stiffnesses = squares(modes.stiffness, modes.right);
+    std::vector<Complex> derivatives(k);
     for (int j = 0; j < k; ++j)
       {
-        const Complex lambda = modes.lambda[j];
-        const Complex a      = bilinear(modes.pencil.mass, modes.left, modes.right, j);
-        Complex       b      = 2. * lambda * a;
-        if (modes.pencil.has_damping)
-          b += bilinear(modes.pencil.damping, modes.left, modes.right, j);
+        const Complex lambda = modes.lambda[j], b = 2. * lambda * mass[j] + damping[j];
         derivatives[j] = b;
-        result.corrections.push_back(smaller_root(a, b, E(j, j)));
+        result.corrections.push_back(smaller_root(mass[j], b, E(j, j)));
         result.errors.push_back(std::abs(result.corrections[j]) / std::abs(lambda));
-        const double norms = std::sqrt(square(modes.mass, modes.left, j) * square(modes.mass, modes.right, j));
+        const double norms = std::sqrt(left_masses[j] * right_masses[j]);
         result.conditions.push_back(std::abs(b) > 0. ? 2. * std::abs(lambda) * norms / std::abs(b) : std::numeric_limits<double>::infinity());
-        result.energy_residuals.push_back((energies[j] + energies[k + j]) / square(modes.stiffness, modes.right, j));
+        result.energy_residuals.push_back(products.right_energies[j] / right_stiffnesses[j]);
+        result.left_residuals.push_back(products.left_energies[j] / left_stiffnesses[j]);
       }
+    result.couplings = E;
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i < k; ++i)
+        result.couplings(i, j) /= derivatives[i];
 
     // Modes that may coalesce
     for (int i = 0; i < k; ++i)

@@ -49,30 +49,26 @@ namespace Squeal
       return X * columns(axes, first, k - first);
     }
 
-    /// Columns of the modes that miss the tolerance, right and left, each scaled to its mode.
-    MultiVector inaccurate_residuals(const EigenvalueEstimates &estimates, const ReducedModes &modes, const double tolerance)
+    /// Displacement residuals of the chosen modes, right and left, each scaled to its mode.
+    MultiVector scaled_residuals(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen)
     {
-      const int        k = modes.lambda.size();
-      std::vector<int> chosen;
-      for (int j = 0; j < k; ++j)
-        if (!(estimates.errors[j] <= tolerance))
-          chosen.push_back(j);
+      const int  k    = modes.lambda.size();
       const auto norm = [](const ComplexDenseMatrix &X, const int j) {
         double sum = 0.;
         for (int i = 0; i < X.n_rows(); ++i)
           sum += std::norm(X(i, j));
         return std::sqrt(sum);
       };
-      MultiVector X(estimates.right.Map(), 4 * chosen.size());
+      MultiVector X(residuals.right_forces.Map(), 4 * static_cast<int>(chosen.size()));
       int         column = 0;
       for (const int j : chosen)
         {
           // Coefficients in an M-orthonormal basis: their norm is the mode's M-norm.
           const double right = norm(modes.right, j), left = norm(modes.left, j);
-          X(column++)->Scale(1. / right, *estimates.right(j));
-          X(column++)->Scale(1. / right, *estimates.right(k + j));
-          X(column++)->Scale(1. / left, *estimates.left(j));
-          X(column++)->Scale(1. / left, *estimates.left(k + j));
+          X(column++)->Scale(1. / right, *residuals.right_displacements(j));
+          X(column++)->Scale(1. / right, *residuals.right_displacements(k + j));
+          X(column++)->Scale(1. / left, *residuals.left_displacements(j));
+          X(column++)->Scale(1. / left, *residuals.left_displacements(k + j));
         }
       return X;
     }
@@ -81,6 +77,7 @@ namespace Squeal
     struct State
     {
       ReducedModes        modes;
+      ResidualVectors     residuals;
       EigenvalueEstimates estimates;
       double              worst;
     };
@@ -98,14 +95,34 @@ namespace Squeal
           ReducedModes modes = reduced_modes(model, mu, largest_frequency);
           if (modes.lambda.empty())
             throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
-          EigenvalueEstimates estimates = estimate_eigenvalues(system, inverse, model, modes);
+          ResidualVectors     residuals = residual_vectors(system, inverse, model, modes);
+          EigenvalueEstimates estimates = estimate_eigenvalues(modes, residuals.products());
           const double        worst     = *std::max_element(estimates.errors.begin(), estimates.errors.end());
           if (!result || !(worst <= result->worst))
-            result = std::make_unique<State>(State{std::move(modes), std::move(estimates), worst});
+            result = std::make_unique<State>(State{std::move(modes), std::move(residuals), std::move(estimates), worst});
         }
       return std::move(*result);
     }
   } // namespace
+
+  ReducedModel
+  starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, const bool friction)
+  {
+    ReducedModel model(system);
+    model.extend(orthonormalize(*system.frictionless.mass, nullptr, starting_vectors(system, inverse, real_modes, friction), dependence_tolerance));
+    return model;
+  }
+
+  std::optional<MultiVector> new_directions(const CoupledSystem    &system,
+                                            const ReducedModel     &model,
+                                            const ResidualVectors  &residuals,
+                                            const ReducedModes     &modes,
+                                            const std::vector<int> &chosen)
+  {
+    const SparseMatrix &M = *system.frictionless.mass;
+    return orthonormalize_if_any(M, &model.basis(), compress(M, model.basis(), scaled_residuals(residuals, modes, chosen)),
+                                 dependence_tolerance);
+  }
 
   GrownBasis grow_residual_basis(const CoupledSystem            &system,
                                  const UpdatedInverse           &inverse,
@@ -116,10 +133,8 @@ namespace Squeal
   {
     if (friction_coefficients.empty())
       throw SolverError("there is no friction coefficient at which the basis could grow", "residual iteration", "give one at least");
-    const SparseMatrix &M        = *system.frictionless.mass;
     const bool          friction = std::any_of(friction_coefficients.begin(), friction_coefficients.end(), [](const double mu) { return mu != 0.; });
-    ReducedModel        model(system);
-    model.extend(orthonormalize(M, nullptr, starting_vectors(system, inverse, real_modes, friction), dependence_tolerance));
+    ReducedModel        model    = starting_model(system, inverse, real_modes, friction);
 
     for (int step = 0;; ++step)
       {
@@ -131,8 +146,11 @@ namespace Squeal
         if (state.worst <= options.tolerance)
           return {std::move(model), std::move(state.modes), std::move(state.estimates), state.worst, step};
 
-        const MultiVector candidates = compress(M, model.basis(), inaccurate_residuals(state.estimates, state.modes, options.tolerance));
-        const auto        fresh      = orthonormalize_if_any(M, &model.basis(), candidates, dependence_tolerance);
+        std::vector<int> inaccurate;
+        for (std::size_t j = 0; j < state.modes.lambda.size(); ++j)
+          if (!(state.estimates.errors[j] <= options.tolerance))
+            inaccurate.push_back(static_cast<int>(j));
+        const auto fresh = new_directions(system, model, state.residuals, state.modes, inaccurate);
         if (!fresh || step == options.maximum_steps || model.size() + fresh->NumVectors() > options.maximum_basis)
           {
             std::ostringstream what;

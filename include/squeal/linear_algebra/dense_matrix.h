@@ -1,5 +1,8 @@
 #pragma once
 
+#include <boost/serialization/complex.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <complex>
 #include <cstddef>
 #include <vector>
@@ -51,6 +54,13 @@ namespace Squeal
       return values.data() + static_cast<std::size_t>(rows) * j;
     }
 
+    /// For boost's archives.
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &rows &columns &values;
+    }
+
   private:
     int                 rows = 0, columns = 0;
     std::vector<Number> values;
@@ -70,12 +80,34 @@ namespace Squeal
                               const ComplexDenseMatrix &B,
                               bool                      conjugate_transpose_A = false);
 
+  /// A X of a real and a complex matrix.
+  ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
+
+  /// Xᵀ Y, no conjugate.
+  ComplexDenseMatrix transpose_multiply(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y);
+
+  /// Real and imaginary parts of the entries.
+  DenseMatrix real_part(const ComplexDenseMatrix &X);
+  DenseMatrix imaginary_part(const ComplexDenseMatrix &X);
+
   /// A + factor B.
   DenseMatrix add(const DenseMatrix &A, const DenseMatrix &B, double factor = 1.);
 
   DenseMatrix transpose(const DenseMatrix &A);
 
   DenseMatrix identity(int n);
+
+  /// [X Y]; X may be empty.
+  DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
+
+  /// Extends a symmetric matrix to the size of its new last columns, r × k.
+  void border(DenseMatrix &matrix, const DenseMatrix &new_columns);
+
+  /**
+   * XᵀY, no conjugate, of complex matrices X, Y with real and imaginary halves
+   * side by side from the products of all halves, 2k × 2k.
+   */
+  ComplexDenseMatrix from_halves(const DenseMatrix &products);
 
   /// Columns [first, first + n) of A.
   DenseMatrix columns(const DenseMatrix &A, int first, int n);

@@ -41,6 +41,9 @@ namespace Squeal
     /// M_r − μ A_r V_Mr, C_r − μ A_r V_Cr, K_r − μ A_r V_Kr with the system's contact damping.
     ReducedPencil at(double friction_coefficient) const;
 
+    /// Contact damping of the system.
+    const ContactDamping &contact_damping() const;
+
     /// The same with other contact damping: C_r = Tᵀ (T_cᵀ C T_c + C_m) T + (R T)ᵀ diag(c_b) R T + TᵀA diag(c_t) AᵀT.
     ReducedPencil at(double friction_coefficient, const ContactDamping &damping) const;
 
@@ -54,7 +57,7 @@ namespace Squeal
     const Blocks &blocks() const;
 
   private:
-    const CoupledSystem         &system;
+    const CoupledSystem         *system;
     std::unique_ptr<MultiVector> T;
     Blocks                       parts;
     DenseMatrix                  friction_K, friction_C, friction_M; ///< (Tᵀ A)(V T), r × r

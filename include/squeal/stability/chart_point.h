@@ -32,5 +32,13 @@ namespace Squeal
 
     std::vector<double> real_values; ///< real λ but zero, ascending [1/s]
     int                 n_zeros = 0; ///< λ = 0
+
+    /// For boost's archives.
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &friction_coefficient &lambda &right &left &right_residuals &left_residuals &errors &uncertainties &verdicts &corrections
+        &real_values &n_zeros;
+    }
   };
 } // namespace Squeal

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
-#include <squeal/reduction/reduced_model.h>
+#include <squeal/reduction/residual_products.h>
 #include <squeal/stability/complex_modes.h>
 
 #include <complex>
@@ -12,9 +12,10 @@ namespace Squeal
   /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
   struct ReducedModes
   {
-    double        friction_coefficient = 0.;
-    ReducedPencil pencil;           ///< at that friction coefficient
-    DenseMatrix   mass, stiffness;  ///< TᵀM_cT and TᵀK_cT: the norms
+    double         friction_coefficient = 0.;
+    ContactDamping contact_damping;
+    ReducedPencil  pencil;          ///< at that friction coefficient and contact damping
+    DenseMatrix    mass, stiffness; ///< TᵀM_cT and TᵀK_cT: the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
     ComplexDenseMatrix                right;  ///< φ_r, r × k
@@ -37,6 +38,16 @@ namespace Squeal
    * parts of @p largest_frequency [rad/s], the end of the band.
    */
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_frequency, BandEnd end = BandEnd::cut);
+
+  /**
+   * The same with other contact damping, on this process alone: vectors of a
+   * multiple eigenvalue may differ from those that another process finds.
+   */
+  ReducedModes local_reduced_modes(const ReducedModel   &model,
+                                   double                mu,
+                                   const ContactDamping &damping,
+                                   double                largest_frequency,
+                                   BandEnd               end = BandEnd::cut);
 
   /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_frequency, BandEnd end = BandEnd::cut);
@@ -68,9 +79,23 @@ namespace Squeal
     std::vector<bool>                 claimed;          ///< no coalescence within reach: δλ means something
     std::vector<double>               uncertainties;    ///< |δλ| and what close modes add to it [rad/s]
     std::vector<Verdict>              verdicts;
-    std::vector<double>               energy_residuals; ///< ε_res, eq. (16) [-]
-    MultiVector                       right, left;      ///< K_c⁻¹ R_F and K_c⁻¹ L_F, n × 2k: real, then imaginary parts
+    std::vector<double>               energy_residuals; ///< ε_res of φ, eq. (16) [-]
+    std::vector<double>               left_residuals;   ///< ε_res of ψ [-]
+    ComplexDenseMatrix                couplings;        ///< D, k × k: D_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i [rad/s]
   };
+
+  /// Residuals of reduced eigentriples at full order, n × 2k: real, then imaginary parts.
+  struct ResidualVectors
+  {
+    MultiVector right_forces, left_forces;               ///< R_F and L_F
+    MultiVector right_displacements, left_displacements; ///< K_c⁻¹ R_F and K_c⁻¹ L_F
+
+    ResidualProducts products() const;
+  };
+
+  /// @param system with the contact damping of the @p modes
+  ResidualVectors
+  residual_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
 
   /**
    * Errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and
@@ -78,7 +103,7 @@ namespace Squeal
    *
    *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
    *
-   * of which the smaller root is taken. One block solve on each side.
+   * of which the smaller root is taken.
    *
    * The condition number of an eigenvalue,
    *
@@ -100,8 +125,11 @@ namespace Squeal
    * because s |δλ_i − δλ_j| ≥ |λ_i − λ_j|. Growth of less than 10⁻⁸ per radian
    * counts as none.
    *
-   * Where @p inverse has a shift, its stiffness stands for K_c.
+   * Where the inverse has a shift, its stiffness stands for K_c.
    */
+  EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products);
+
+  /// The same with the products of residual_vectors().
   EigenvalueEstimates
   estimate_eigenvalues(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
 

@@ -4,6 +4,7 @@
 #include <squeal/stability/complex_modes.h>
 #include <squeal/stability/reduced_modes.h>
 
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -16,6 +17,24 @@ namespace Squeal
     int    maximum_basis     = 1500; ///< vectors
     int    maximum_steps     = 30;
   };
+
+  /**
+   * The model from which a residual iteration starts: the real modes Φ_R, with
+   * their responses of first order to damping and, if there is @p friction, to
+   * friction, right and left. Its basis is M_c-orthonormal.
+   */
+  ReducedModel starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, bool friction);
+
+  /**
+   * M_c-orthonormal vectors by which the basis of @p model grows: principal axes
+   * of the displacement residuals, right and left, of the @p chosen modes;
+   * nothing if they lie in the basis.
+   */
+  std::optional<MultiVector> new_directions(const CoupledSystem    &system,
+                                            const ReducedModel     &model,
+                                            const ResidualVectors  &residuals,
+                                            const ReducedModes     &modes,
+                                            const std::vector<int> &chosen);
 
   /// A two-sided basis grown by residuals, with what it gives at the friction coefficient of the largest error.
   struct GrownBasis
