@@ -102,6 +102,27 @@ namespace Squeal
     double           rcond = 0.;
   };
 
+  /// LU factors of a small square complex matrix, singular ones included.
+  class ComplexDenseLU
+  {
+  public:
+    explicit ComplexDenseLU(ComplexDenseMatrix A);
+
+    /// Solves A X = B in place; only if the reciprocal condition is not zero.
+    void solve(ComplexDenseMatrix &B) const;
+
+    /// A logarithm of det A: the sum of those of the pivots, its imaginary part in (−π, π]; −∞ for a zero pivot.
+    std::complex<double> log_determinant() const;
+
+    /// Estimate of ‖A⁻¹‖₁; infinite if A is singular to working precision.
+    double inverse_norm() const;
+
+  private:
+    ComplexDenseMatrix factors;
+    std::vector<int>   pivots;
+    double             norm_of_inverse = 0.;
+  };
+
   /// Eigenpairs of a symmetric matrix, ascending: A is replaced by its eigenvectors.
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A);
 
