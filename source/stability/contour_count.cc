@@ -1,0 +1,431 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_determinant.h>
+#include <squeal/stability/condensed_determinant.h>
+#include <squeal/stability/contour_count.h>
+
+#include <Epetra_Comm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    const char *const place = "count of complex modes by the argument principle";
+
+    /// ‖F‖_F of a step. Between its ends F may exceed it, but must stay below 1.
+    constexpr double largest_change = 0.5;
+
+    /// ‖ΔN N⁻¹‖ at the points; between them N⁻¹ may be twice as large.
+    constexpr double largest_truncation = 0.25;
+
+    /// Bounds of the truncation of N: the first try, and where rounding ends it.
+    constexpr double first_tolerance = 1e-6, least_tolerance = 1e-13;
+
+    /// Steps below this part of ω_high mean that a zero lies on the contour; so close may no real mode be to its ends.
+    constexpr double shortest_step = 1e-9;
+
+    // ------------------------------------------------------------------- contour
+
+    /// Corners of what is followed, counterclockwise, and how often it makes up the whole contour.
+    struct Contour
+    {
+      Contour(const ContourOptions &options, const bool damped)
+        : high(options.largest_frequency)
+        , low(options.lowest_frequency > 0. ? options.lowest_frequency : 1e-3 * high)
+        , width(options.largest_growth > 0. ? options.largest_growth : 0.1 * high)
+        , multiplicity(damped ? 1 : 2)
+      {
+        if (!(high > low))
+          throw SolverError(number(hertz(high)) + " Hz as the end of the band, " + number(hertz(low)) + " Hz as its beginning",
+                            place,
+                            "let the band end above its beginning");
+        if (damped)
+          corners = {{0., low}, {width, low}, {width, high}, {-width, high}, {-width, low}, {0., low}};
+        else
+          corners = {{0., low}, {width, low}, {width, high}, {0., high}};
+      }
+
+      static std::string number(const double value)
+      {
+        std::ostringstream stream;
+        stream << value;
+        return stream.str();
+      }
+
+      /// Largest |λ|.
+      double radius() const
+      {
+        return std::hypot(width, high);
+      }
+
+      [[noreturn]] void refuse(const std::string &why, const Complex lambda) const
+      {
+        throw SolverError("the count is refused: " + why + " at " + number(hertz(lambda.imag())) + " Hz with a growth rate of " +
+                            number(lambda.real()) + " 1/s",
+                          place,
+                          std::abs(lambda.real()) < width ? "move the end of the band off the mode, or allow more points" :
+                                                            "choose another width of the contour, or allow more points");
+      }
+
+      double               high, low, width;
+      int                  multiplicity;
+      std::vector<Complex> corners;
+    };
+
+    // -------------------------------------------------------- phase from step to step
+
+    /// What a step to another point of the contour would be.
+    struct Step
+    {
+      double size;              ///< acceptable up to 1, and about proportional to the length
+      double phase;             ///< of the determinant [rad]
+      double largest_phase = 0.; ///< of its parts
+    };
+
+    /// A determinant that is followed along the contour.
+    class FollowedDeterminant
+    {
+    public:
+      virtual ~FollowedDeterminant() = default;
+
+      virtual void start(Complex lambda) = 0;
+      virtual Step attempt(Complex lambda) = 0;
+
+      /// Goes to the point of the last attempt.
+      virtual void accept() = 0;
+
+      /// What must not be exceeded whatever the size of the step turns out to be [rad/s].
+      virtual double longest_step(const Complex) const
+      {
+        return std::numeric_limits<double>::infinity();
+      }
+
+      int n_points = 0;
+    };
+
+
+
+    /// det N.
+    class FollowedCondensed : public FollowedDeterminant
+    {
+    public:
+      FollowedCondensed(const CondensedDeterminant &determinant, const double mu, const double largest_phase_step, const Epetra_Comm &comm)
+        : determinant(determinant)
+        , mu(mu)
+        , largest_phase_step(largest_phase_step)
+        , comm(comm)
+      {}
+
+      void start(const Complex lambda) override
+      {
+        set_next(lambda, evaluate(lambda));
+        accept();
+      }
+
+      Step attempt(const Complex lambda) override
+      {
+        ComplexDenseMatrix N = evaluate(lambda), F = N;
+        current.factors->solve(F);
+        Complex trace  = 0.;
+        double  square = 0.;
+        for (int j = 0; j < F.n_columns(); ++j)
+          {
+            F(j, j) -= 1.;
+            trace += F(j, j);
+            for (int i = 0; i < F.n_rows(); ++i)
+              square += std::norm(F(i, j));
+          }
+        std::vector<double> agreed = {std::sqrt(square), trace.imag()};
+        agree_on(agreed);
+        Step step{std::isfinite(agreed[0]) ? agreed[0] / largest_change : std::numeric_limits<double>::infinity(), 0.};
+        if (step.size > 1.)
+          return step;
+
+        set_next(lambda, std::move(N));
+        step.phase = next.argument - current.argument;
+        step.phase += 2. * M_PI * std::round((agreed[1] - step.phase) / (2. * M_PI));
+        step.largest_phase = std::abs(step.phase);
+        step.size          = std::max(step.size, step.largest_phase / largest_phase_step);
+        return step;
+      }
+
+      void accept() override
+      {
+        current    = std::move(next);
+        truncation = std::max(truncation, current.truncation);
+      }
+
+      double longest_step(const Complex lambda) const override
+      {
+        double distance = std::numeric_limits<double>::infinity();
+        for (const double omega : determinant.frequencies())
+          distance = std::min({distance, std::abs(lambda - Complex(0., omega)), std::abs(lambda + Complex(0., omega))});
+        return 0.5 * distance;
+      }
+
+      double truncation = 0.; ///< largest ‖ΔN N⁻¹‖ so far
+
+    private:
+      struct Point
+      {
+        std::unique_ptr<ComplexDenseLU> factors;
+        double                          argument = 0., truncation = 0.;
+      };
+
+      ComplexDenseMatrix evaluate(const Complex lambda)
+      {
+        ++n_points;
+        return determinant.matrix(lambda, mu);
+      }
+
+      void set_next(const Complex lambda, ComplexDenseMatrix N)
+      {
+        next.factors = std::make_unique<ComplexDenseLU>(std::move(N));
+        // The 1-norm of ΔN is bounded by √n times its spectral norm.
+        const double bound = next.factors->inverse_norm() * std::sqrt(determinant.size()) * determinant.truncation(lambda, mu);
+        std::vector<double> agreed = {next.factors->log_determinant().imag(), bound};
+        agree_on(agreed);
+        next.argument   = agreed[0];
+        next.truncation = agreed[1];
+      }
+
+      /// Every process computes the same; steps are decided upon what process 0 found.
+      void agree_on(std::vector<double> &values) const
+      {
+        DenseMatrix none;
+        agree(comm, none, values);
+      }
+
+      const CondensedDeterminant &determinant;
+      const double                mu, largest_phase_step;
+      const Epetra_Comm          &comm;
+      Point                       current, next;
+    };
+
+
+
+    /// det Q.
+    class FollowedSparse : public FollowedDeterminant
+    {
+    public:
+      FollowedSparse(const SparseDeterminant &determinant, const double largest_phase_step)
+        : determinant(determinant)
+        , largest_phase_step(largest_phase_step)
+      {}
+
+      void start(const Complex lambda) override
+      {
+        next = {lambda, evaluate(lambda)};
+        accept();
+      }
+
+      Step attempt(const Complex lambda) override
+      {
+        const Complex middle = evaluate(0.5 * (current.lambda + lambda));
+        next                 = {lambda, evaluate(lambda)};
+        const Complex first = change(current.logarithm, middle), second = change(middle, next.logarithm);
+        const double  largest = std::max(std::abs(first), std::abs(second));
+        return {std::isfinite(largest) ? largest / largest_phase_step : std::numeric_limits<double>::infinity(),
+                first.imag() + second.imag(),
+                std::max(std::abs(first.imag()), std::abs(second.imag()))};
+      }
+
+      void accept() override
+      {
+        current = next;
+      }
+
+    private:
+      struct Point
+      {
+        Complex lambda, logarithm;
+      };
+
+      Complex evaluate(const Complex lambda)
+      {
+        ++n_points;
+        return determinant.logarithm(lambda);
+      }
+
+      static Complex change(const Complex from, const Complex to)
+      {
+        return {to.real() - from.real(), std::remainder(to.imag() - from.imag(), 2. * M_PI)};
+      }
+
+      const SparseDeterminant &determinant;
+      const double             largest_phase_step;
+      Point                    current, next;
+    };
+
+    // ------------------------------------------------------------------- following
+
+    /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count are set.
+    int turns(FollowedDeterminant &determinant, const Contour &contour, const ContourOptions &options, ContourCount &count, Progress &progress)
+    {
+      double phase = 0., length = 0.1 * contour.width;
+      determinant.start(contour.corners.front());
+      for (std::size_t side = 1; side < contour.corners.size(); ++side)
+        {
+          const Complex from = contour.corners[side - 1], to = contour.corners[side];
+          const double  end       = std::abs(to - from);
+          const Complex direction = (to - from) / end;
+          for (double position = 0.; position < end;)
+            {
+              const Complex lambda = from + position * direction;
+              const double  rest   = end - position;
+              length               = std::min({length, rest, determinant.longest_step(lambda)});
+              if (length < std::min(rest, shortest_step * contour.high))
+                contour.refuse("a mode lies on the contour", lambda);
+              if (determinant.n_points >= options.maximum_points)
+                contour.refuse("more than " + std::to_string(options.maximum_points) + " points are needed; it was given up", lambda);
+
+              const bool last = length == rest;
+              const Step step = determinant.attempt(last ? to : lambda + length * direction);
+              if (step.size <= 1.)
+                {
+                  determinant.accept();
+                  phase += step.phase;
+                  count.largest_phase_step = std::max(count.largest_phase_step, step.largest_phase);
+                  position                 = last ? end : position + length;
+                  length *= std::min(2., 0.8 / std::max(step.size, 0.1));
+                }
+              else
+                length *= std::clamp(0.8 / step.size, 0.1, 0.5);
+            }
+          progress.update(std::to_string(determinant.n_points) + " points of the contour");
+        }
+      count.n_points = determinant.n_points;
+
+      const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
+      if (!(std::abs(turns - whole) < 1e-3))
+        throw SolverError("the determinant does not return to its phase: " + Contour::number(turns) + " turns",
+                          place,
+                          "choose another end of the band or another width of the contour");
+      return whole;
+    }
+
+    /// Real modes inside, by inertia.
+    int n_frictionless_modes(const CoupledSystem &system, const Contour &contour)
+    {
+      const auto below = [&](const double omega) {
+        return count_modes(*system.frictionless.stiffness, *system.frictionless.mass, omega * omega, "real modes of the coupled system");
+      };
+      return below(contour.high) - below(contour.low);
+    }
+
+    // ------------------------------------------------------------------ both methods
+
+    std::vector<ContourCount>
+    count_condensed(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
+    {
+      const SparseMatrix &K = *system.frictionless.stiffness, &M = *system.frictionless.mass;
+
+      // The real modes, and the inverse that gives both them and the series
+      progress.update("real modes beyond the band");
+      SymmetricModesOptions real = options.real_modes;
+      if (real.what == SymmetricModesOptions().what)
+        real.what = "real modes of the coupled system";
+      std::unique_ptr<Factorization> factor;
+      if (real.inverse == nullptr)
+        {
+          factor       = factorize_positive_definite(real.shift > 0. ? *add(1., K, real.shift, M) : K, real.library, real.what);
+          real.inverse = factor.get();
+        }
+      const double         deflation_end = std::max(1.05, options.deflation) * contour.radius();
+      const SymmetricModes modes         = symmetric_modes(K, M, deflation_end * deflation_end, real);
+
+      // Their number inside, by inertia alone
+      const int n_frictionless = n_frictionless_modes(system, contour);
+      int       n_inside       = 0;
+      for (const double eigenvalue : modes.eigenvalues)
+        {
+          const double omega = std::sqrt(std::max(0., eigenvalue));
+          n_inside += omega > contour.low && omega < contour.high;
+          for (const double end : {contour.low, contour.high})
+            if (std::abs(omega - end) < shortest_step * contour.high)
+              contour.refuse("a real mode lies on the contour", {0., end});
+        }
+      if (n_inside != n_frictionless)
+        throw SolverError(std::to_string(n_inside) + " real modes were found in the band, " + std::to_string(n_frictionless) +
+                            " exist",
+                          place,
+                          "move the end of the band off the mode next to it");
+
+      CondensedDeterminantRequest request;
+      request.lambda = {{0., contour.low}, {contour.width, contour.low}, {contour.width, contour.high}, {0., contour.high}};
+      for (const double friction : mu)
+        request.largest_friction_coefficient = std::max(request.largest_friction_coefficient, std::abs(friction));
+      request.tolerance = first_tolerance;
+
+      std::vector<ContourCount>                   results;
+      std::unique_ptr<const CondensedDeterminant> determinant;
+      while (results.size() < mu.size())
+        {
+          if (!determinant)
+            {
+              progress.update("moments of the complement");
+              determinant = std::make_unique<CondensedDeterminant>(system, modes, deflation_end, *real.inverse, real.shift, request);
+            }
+          FollowedCondensed followed(*determinant, mu[results.size()], options.largest_phase_step, M.Comm());
+          ContourCount      count;
+          count.n_frictionless   = n_frictionless;
+          count.n_modes          = n_frictionless + turns(followed, contour, options, count, progress);
+          count.truncation_bound = followed.truncation;
+          count.n_moments        = determinant->n_moments();
+          count.n_deflated       = modes.eigenvalues.size();
+          if (followed.truncation <= largest_truncation)
+            {
+              results.push_back(count);
+              continue;
+            }
+          request.tolerance *= 0.2 * largest_truncation / followed.truncation;
+          if (!(request.tolerance >= least_tolerance))
+            throw SolverError("the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely",
+                              place,
+                              "move the end of the band, or choose another width of the contour");
+          determinant.reset();
+        }
+      return results;
+    }
+
+
+
+    std::vector<ContourCount>
+    count_sparse(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
+    {
+      if (system.modal_damping)
+        throw SolverError("modal damping has no sparse matrix", place, "take the determinant condensed to the contact nodes");
+      std::vector<ContourCount> results;
+      for (const double friction : mu)
+        {
+          const SecondOrderSystem matrices = with_friction(system, friction);
+          const SparseDeterminant determinant(*matrices.mass, matrices.damping.get(), *matrices.stiffness);
+          FollowedSparse          followed(determinant, options.largest_phase_step);
+          ContourCount            count;
+          count.n_frictionless = n_frictionless_modes(system, contour);
+          count.n_modes        = turns(followed, contour, options, count, progress);
+          results.push_back(count);
+        }
+      return results;
+    }
+  } // namespace
+
+
+
+  std::vector<ContourCount>
+  count_by_contour(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, Progress &progress)
+  {
+    const Contour contour(options, system.has_damping());
+    return options.method == ContourMethod::condensed ? count_condensed(system, mu, options, contour, progress) :
+                                                        count_sparse(system, mu, options, contour, progress);
+  }
+} // namespace Squeal
