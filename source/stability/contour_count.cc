@@ -154,6 +154,9 @@ namespace Squeal
         step.phase = next.argument - current.argument;
         step.phase += 2. * M_PI * std::round((agreed[1] - step.phase) / (2. * M_PI));
         step.largest_phase = std::abs(step.phase);
+        // Farther from the trace than the bound: rounding has spoilt one of the two.
+        if (!(std::abs(step.phase - agreed[1]) <= -std::log(1. - agreed[0]) - agreed[0] + 1e-6))
+          return {std::numeric_limits<double>::infinity(), 0.};
         step.size          = std::max(step.size, step.largest_phase / largest_phase_step);
         return step;
       }
@@ -404,6 +407,7 @@ namespace Squeal
     {
       if (system.modal_damping)
         throw SolverError("modal damping has no sparse matrix", place, "take the determinant condensed to the contact nodes");
+      const int                 n_frictionless = n_frictionless_modes(system, contour);
       std::vector<ContourCount> results;
       for (const double friction : mu)
         {
@@ -411,7 +415,7 @@ namespace Squeal
           const SparseDeterminant determinant(*matrices.mass, matrices.damping.get(), *matrices.stiffness);
           FollowedSparse          followed(determinant, options.largest_phase_step);
           ContourCount            count;
-          count.n_frictionless = n_frictionless_modes(system, contour);
+          count.n_frictionless = n_frictionless;
           count.n_modes        = turns(followed, contour, options, count, progress);
           results.push_back(count);
         }

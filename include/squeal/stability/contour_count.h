@@ -35,7 +35,7 @@ namespace Squeal
 
     ContourMethod method = ContourMethod::condensed;
 
-    /// ω_d as a multiple of the largest |λ| of the contour, above 1: real modes up to there are computed (condensed).
+    /// ω_d as a multiple of the largest |λ| of the contour, at least 1.05: real modes up to there are computed (condensed).
     double deflation = 1.4;
 
     /// How those are computed; shift and inverse are those of the condensed determinant, too.
