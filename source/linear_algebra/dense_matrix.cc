@@ -280,6 +280,47 @@ namespace Squeal
 
 
 
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A)
+  {
+    const int n = A.n_rows();
+    require(n == A.n_columns(), "balancing of a dense matrix");
+    // A few sweeps do: nobody asks for the very minimum.
+    for (int sweep = 0; sweep < 5; ++sweep)
+      for (int k = 0; k < n; ++k)
+        {
+          double row = 0., column = 0.;
+          for (int i = 0; i < n; ++i)
+            if (i != k)
+              {
+                row += std::norm(A(k, i));
+                column += std::norm(A(i, k));
+              }
+          const double scale = std::pow(row / column, 0.25);
+          if (!(scale > 0.) || !std::isfinite(scale))
+            continue;
+          for (int i = 0; i < n; ++i)
+            if (i != k)
+              {
+                A(i, k) *= scale;
+                A(k, i) /= scale;
+              }
+        }
+    return A;
+  }
+
+
+
+  double frobenius_norm(const ComplexDenseMatrix &A)
+  {
+    double square = 0.;
+    for (int j = 0; j < A.n_columns(); ++j)
+      for (int i = 0; i < A.n_rows(); ++i)
+        square += std::norm(A(i, j));
+    return std::sqrt(square);
+  }
+
+
+
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A)
   {
     const int n = A.n_rows();

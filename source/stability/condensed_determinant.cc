@@ -56,7 +56,7 @@ namespace Squeal
       return largest_modulus(values) == 0.;
     }
 
-    /// Copies A into the columns of B from @p first on.
+    /// Copies A into B, from @p first_row and @p first_column on.
     void insert(const DenseMatrix &A, const int first_row, const int first_column, DenseMatrix &B)
     {
       for (int j = 0; j < A.n_columns(); ++j)
@@ -256,27 +256,9 @@ namespace Squeal
 
   // --------------------------------------------------------------- evaluation
 
-  ComplexDenseMatrix CondensedDeterminant::matrix(const Complex lambda, const double mu) const
+  ComplexDenseMatrix CondensedDeterminant::complement(const Complex lambda, const double mu) const
   {
-    const int          n_modes = omega.size();
-    ComplexDenseMatrix N(n_rows, n_rows), rows_on_modes(n_rows, n_modes);
-
-    std::vector<Complex> resonances;
-    for (const double frequency : omega)
-      resonances.push_back(1. / (Complex(0., frequency) + lambda) / (lambda - Complex(0., frequency)));
-    for (const Block &block : blocks)
-      {
-        const Complex scale = block.scale(lambda, mu);
-        for (int j = 0; j < n_modes; ++j)
-          for (int i = 0; i < block.on_modes.n_rows(); ++i)
-            rows_on_modes(block.first_row + i, j) += scale * resonances[j] * block.coefficients[i] * block.on_modes(i, j);
-      }
-    for (int j = 0; j < n_modes; ++j)
-      for (int i = 0; i < modal.n_rows(); ++i)
-        rows_on_modes(n_columns + i, j) = lambda * resonances[j] * modal(i, j);
-    if (n_modes > 0)
-      N = multiply(rows_on_modes, modes_forces);
-
+    ComplexDenseMatrix   N(n_rows, n_rows);
     const Ratio          ratio(lambda, deflation_square, shift);
     std::vector<Complex> series(n_terms);
     Complex              power = 1. / ratio.r;
@@ -311,6 +293,42 @@ namespace Squeal
 
 
 
+  CondensedDeterminant::OnModes CondensedDeterminant::on_modes(const Complex lambda, const double mu) const
+  {
+    const int n_modes = omega.size();
+    OnModes   result;
+    for (const double frequency : omega)
+      result.resonances.push_back(1. / (lambda + Complex(0., frequency)) / (lambda - Complex(0., frequency)));
+
+    // N_⊥⁻¹ G Φ
+    ComplexDenseMatrix X(n_rows, n_modes);
+    for (const Block &block : blocks)
+      {
+        const Complex scale = block.scale(lambda, mu);
+        for (int j = 0; j < n_modes; ++j)
+          for (int i = 0; i < block.on_modes.n_rows(); ++i)
+            X(block.first_row + i, j) += scale * block.coefficients[i] * block.on_modes(i, j);
+      }
+    for (int j = 0; j < n_modes; ++j)
+      for (int i = 0; i < modal.n_rows(); ++i)
+        X(n_columns + i, j) = lambda * modal(i, j);
+    const ComplexDenseLU factors(complement(lambda, mu));
+    factors.solve(X);
+
+    result.complement_inverse = std::sqrt(n_rows) * factors.inverse_norm();
+    result.gain               = frobenius_norm(X) * frobenius_norm(modes_forces) * result.complement_inverse;
+    result.matrix             = multiply(modes_forces, X);
+    for (int j = 0; j < n_modes; ++j)
+      {
+        for (int i = 0; i < n_modes; ++i)
+          result.matrix(i, j) *= result.resonances[i];
+        result.matrix(j, j) += 1.;
+      }
+    return result;
+  }
+
+
+
   double CondensedDeterminant::truncation(const Complex lambda, const double mu, const int n) const
   {
     // Σ_{k ≥ n} 2 |u|ᵏ / |r|
@@ -334,13 +352,6 @@ namespace Squeal
   const std::vector<double> &CondensedDeterminant::frequencies() const
   {
     return omega;
-  }
-
-
-
-  int CondensedDeterminant::size() const
-  {
-    return n_rows;
   }
 
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -114,91 +115,111 @@ namespace Squeal
 
 
 
-    /// det N.
-    class FollowedCondensed : public FollowedDeterminant
+    /// The determinant of a small matrix.
+    class FollowedDense : public FollowedDeterminant
     {
     public:
-      FollowedCondensed(const CondensedDeterminant &determinant, const double mu, const double largest_phase_step, const Epetra_Comm &comm)
-        : determinant(determinant)
-        , mu(mu)
+      /// The matrix A at a point and, of use for a bound of errors, what multiplies its inverse there.
+      struct Sample
+      {
+        ComplexDenseMatrix   matrix;
+        std::vector<Complex> scaling;           ///< diagonal B; empty: I
+        double               offset = 0.;       ///< the error is bounded by offset + factor ‖A⁻¹ B‖
+        double               factor = 0.;
+      };
+      using Function = std::function<Sample(Complex)>;
+
+      /// @p poles of the matrix on the positive imaginary axis, to which steps are kept short
+      FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, const Epetra_Comm &comm)
+        : function(std::move(function))
+        , poles(std::move(poles))
         , largest_phase_step(largest_phase_step)
         , comm(comm)
       {}
 
       void start(const Complex lambda) override
       {
-        set_next(lambda, evaluate(lambda));
+        set_next(evaluate(lambda));
         accept();
       }
 
       Step attempt(const Complex lambda) override
       {
-        ComplexDenseMatrix N = evaluate(lambda), F = N;
+        Sample             sample = evaluate(lambda);
+        ComplexDenseMatrix F      = sample.matrix;
         current.factors->solve(F);
-        Complex trace  = 0.;
-        double  square = 0.;
+        Complex trace = 0.;
         for (int j = 0; j < F.n_columns(); ++j)
           {
             F(j, j) -= 1.;
             trace += F(j, j);
-            for (int i = 0; i < F.n_rows(); ++i)
-              square += std::norm(F(i, j));
           }
-        std::vector<double> agreed = {std::sqrt(square), trace.imag()};
+        // A NaN must not reach LAPACK.
+        const double        norm   = frobenius_norm(F);
+        std::vector<double> agreed = {std::isfinite(norm) ? std::min(norm, frobenius_norm(balanced(F))) : norm, trace.imag()};
         agree_on(agreed);
-        Step step{std::isfinite(agreed[0]) ? agreed[0] / largest_change : std::numeric_limits<double>::infinity(), 0.};
+        const double infinity = std::numeric_limits<double>::infinity();
+        Step         step{std::isfinite(agreed[0]) ? agreed[0] / largest_change : infinity, 0.};
         if (step.size > 1.)
           return step;
 
-        set_next(lambda, std::move(N));
+        set_next(std::move(sample));
         step.phase = next.argument - current.argument;
         step.phase += 2. * M_PI * std::round((agreed[1] - step.phase) / (2. * M_PI));
         step.largest_phase = std::abs(step.phase);
         // Farther from the trace than the bound: rounding has spoilt one of the two.
         if (!(std::abs(step.phase - agreed[1]) <= -std::log(1. - agreed[0]) - agreed[0] + 1e-6))
-          return {std::numeric_limits<double>::infinity(), 0.};
-        step.size          = std::max(step.size, step.largest_phase / largest_phase_step);
+          return {infinity, 0.};
+        step.size = std::max(step.size, step.largest_phase / largest_phase_step);
         return step;
       }
 
       void accept() override
       {
-        current    = std::move(next);
-        truncation = std::max(truncation, current.truncation);
+        current = std::move(next);
+        error   = std::max(error, current.error);
       }
 
       double longest_step(const Complex lambda) const override
       {
         double distance = std::numeric_limits<double>::infinity();
-        for (const double omega : determinant.frequencies())
+        for (const double omega : poles)
           distance = std::min({distance, std::abs(lambda - Complex(0., omega)), std::abs(lambda + Complex(0., omega))});
         return 0.5 * distance;
       }
 
-      double truncation = 0.; ///< largest ‖ΔN N⁻¹‖ so far
+      double error = 0.; ///< largest bound so far
 
     private:
       struct Point
       {
         std::unique_ptr<ComplexDenseLU> factors;
-        double                          argument = 0., truncation = 0.;
+        double                          argument = 0., error = 0.;
       };
 
-      ComplexDenseMatrix evaluate(const Complex lambda)
+      Sample evaluate(const Complex lambda)
       {
         ++n_points;
-        return determinant.matrix(lambda, mu);
+        return function(lambda);
       }
 
-      void set_next(const Complex lambda, ComplexDenseMatrix N)
+      void set_next(Sample sample)
       {
-        next.factors = std::make_unique<ComplexDenseLU>(std::move(N));
-        // The 1-norm of ΔN is bounded by √n times its spectral norm.
-        const double bound = next.factors->inverse_norm() * std::sqrt(determinant.size()) * determinant.truncation(lambda, mu);
-        std::vector<double> agreed = {next.factors->log_determinant().imag(), bound};
+        const int n  = sample.matrix.n_rows();
+        next.factors = std::make_unique<ComplexDenseLU>(std::move(sample.matrix));
+        double norm  = std::sqrt(n) * next.factors->inverse_norm();
+        if (!sample.scaling.empty() && std::isfinite(norm))
+          {
+            ComplexDenseMatrix X(n, n);
+            for (int i = 0; i < n; ++i)
+              X(i, i) = sample.scaling[i];
+            next.factors->solve(X);
+            norm = frobenius_norm(X);
+          }
+        std::vector<double> agreed = {next.factors->log_determinant().imag(), sample.offset + sample.factor * norm};
         agree_on(agreed);
-        next.argument   = agreed[0];
-        next.truncation = agreed[1];
+        next.argument = agreed[0];
+        next.error    = agreed[1];
       }
 
       /// Every process computes the same; steps are decided upon what process 0 found.
@@ -208,10 +229,11 @@ namespace Squeal
         agree(comm, none, values);
       }
 
-      const CondensedDeterminant &determinant;
-      const double                mu, largest_phase_step;
-      const Epetra_Comm          &comm;
-      Point                       current, next;
+      const Function            function;
+      const std::vector<double> poles;
+      const double              largest_phase_step;
+      const Epetra_Comm        &comm;
+      Point                     current, next;
     };
 
 
@@ -271,7 +293,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------- following
 
-    /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count are set.
+    /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count take account of them.
     int turns(FollowedDeterminant &determinant, const Contour &contour, const ContourOptions &options, ContourCount &count, Progress &progress)
     {
       double phase = 0., length = 0.1 * contour.width;
@@ -306,7 +328,7 @@ namespace Squeal
             }
           progress.update(std::to_string(determinant.n_points) + " points of the contour");
         }
-      count.n_points = determinant.n_points;
+      count.n_points += determinant.n_points;
 
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
@@ -378,19 +400,36 @@ namespace Squeal
               progress.update("moments of the complement");
               determinant = std::make_unique<CondensedDeterminant>(system, modes, deflation_end, *real.inverse, real.shift, request);
             }
-          FollowedCondensed followed(*determinant, mu[results.size()], options.largest_phase_step, M.Comm());
-          ContourCount      count;
-          count.n_frictionless   = n_frictionless;
-          count.n_modes          = n_frictionless + turns(followed, contour, options, count, progress);
-          count.truncation_bound = followed.truncation;
+          const double  friction    = mu[results.size()];
+          FollowedDense complement(
+            [&](const Complex lambda) {
+              return FollowedDense::Sample{determinant->complement(lambda, friction), {}, 0., determinant->truncation(lambda, friction)};
+            },
+            {}, options.largest_phase_step, M.Comm());
+          FollowedDense on_modes(
+            [&](const Complex lambda) {
+              CondensedDeterminant::OnModes sample = determinant->on_modes(lambda, friction);
+              const double                  bound  = determinant->truncation(lambda, friction);
+              return FollowedDense::Sample{std::move(sample.matrix),
+                                           std::move(sample.resonances),
+                                           bound * sample.complement_inverse,
+                                           bound * sample.gain};
+            },
+            determinant->frequencies(), options.largest_phase_step, M.Comm());
+
+          ContourCount count;
+          count.n_frictionless = n_frictionless;
+          count.n_modes        = n_frictionless + turns(complement, contour, options, count, progress);
+          count.n_modes += turns(on_modes, contour, options, count, progress);
+          count.truncation_bound = std::max(complement.error, on_modes.error);
           count.n_moments        = determinant->n_moments();
           count.n_deflated       = modes.eigenvalues.size();
-          if (followed.truncation <= largest_truncation)
+          if (count.truncation_bound <= largest_truncation)
             {
               results.push_back(count);
               continue;
             }
-          request.tolerance *= 0.2 * largest_truncation / followed.truncation;
+          request.tolerance *= 0.2 * largest_truncation / count.truncation_bound;
           if (!(request.tolerance >= least_tolerance))
             throw SolverError("the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely",
                               place,

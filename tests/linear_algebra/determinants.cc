@@ -60,6 +60,25 @@ TEST(Determinants, OfADenseComplexMatrix)
 
 
 
+TEST(Determinants, BalancingKeepsThemAndTheTrace)
+{
+  ComplexDenseMatrix A(3, 3);
+  const double       scale[] = {1e-6, 1., 1e5};
+  Complex            trace   = 0.;
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i)
+      A(i, j) = scale[i] / scale[j] * Complex(1. + i, i == j ? 2. : 0.3 * j);
+  const ComplexDenseMatrix B = balanced(A);
+  for (int j = 0; j < 3; ++j)
+    trace += B(j, j) - A(j, j);
+  EXPECT_LT(std::abs(trace), 1e-13);
+  EXPECT_LT(distance(ComplexDenseLU(A).log_determinant(), ComplexDenseLU(B).log_determinant()), 1e-12);
+  EXPECT_GT(frobenius_norm(A), 1e10);
+  EXPECT_LT(frobenius_norm(B), 20.);
+}
+
+
+
 TEST(Determinants, OfASparseQuadraticPencil)
 {
   const Epetra_Map map = rows(40);

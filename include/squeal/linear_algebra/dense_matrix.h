@@ -123,6 +123,12 @@ namespace Squeal
     double             norm_of_inverse = 0.;
   };
 
+  /// S⁻¹ A S with a positive diagonal S that brings its norm down: row and column of an index of the same norm (Osborne).
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A);
+
+  /// Root of the sum of the squares of all moduli.
+  double frobenius_norm(const ComplexDenseMatrix &A);
+
   /// Eigenpairs of a symmetric matrix, ascending: A is replaced by its eigenvectors.
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A);
 

@@ -27,18 +27,23 @@ namespace Squeal
    *       [ λ diag(2ζω) Φ_mᵀ M_c               ]
    *
    * without the second block where c_b vanishes and without the third where no
-   * mode Φ_m has damping of its own. N has poles at λ = ±iω_j, the real modes.
+   * mode Φ_m has damping of its own.
    *
-   * S(λ)⁻¹ is summed over the real modes up to ω_d; on their M-orthogonal
-   * complement it is a Chebyshev series in H = (K_c + s M_c)⁻¹ M_c, whose
+   * S(λ)⁻¹ is summed over the real modes up to ω_d, Φ with Φᵀ S Φ = D = diag(ω_j² + λ²); on
+   * their M-orthogonal complement it is a Chebyshev series in H = (K_c + s M_c)⁻¹ M_c, whose
    * eigenvalues there are 1 / w at most, w = ω_d² + s:
    *
-   *   S⁻¹ = Σ_j φ_j φ_jᵀ / (ω_j² + λ²) + Σ_k c_k T_k(2 w H − I) P (K_c + s M_c)⁻¹
+   *   S⁻¹ = Φ D⁻¹ Φᵀ + S_⊥⁻¹,   S_⊥⁻¹ = Σ_k c_k T_k(2 w H − I) P (K_c + s M_c)⁻¹
    *   c_k = (2 − δ_k0) ((1 − r) / (1 + r))ᵏ / r,   r = √((ω_d² + λ²) / w),   Re r > 0
    *
-   * It converges for all λ but ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are
+   * so that the determinant falls into one that varies little in the band, N_⊥, and a small one with
+   * poles at the real modes, λ = ±iω_j, W:
+   *
+   *   det N = det N_⊥ det W,   N_⊥ = I + G S_⊥⁻¹ E,   W = I + D⁻¹ Φᵀ E N_⊥⁻¹ G Φ
+   *
+   * The series converges for all λ but ±iω, ω ≥ ω_d. The matrices V_K T_k ... E are
    * small and serve every μ. Since |T_k| ≤ 1 in the inner product of K_c + s M_c,
-   * what is left out after m terms is bounded by
+   * what m terms leave out of N is bounded by
    *
    *   ‖G (K_c + s M_c)^−½‖ Σ_{k > m} |c_k| ‖(K_c + s M_c)^−½ E‖   on the complement.
    */
@@ -61,17 +66,24 @@ namespace Squeal
                          double                             shift,
                          const CondensedDeterminantRequest &request);
 
-    /// N(λ).
-    ComplexDenseMatrix matrix(std::complex<double> lambda, double mu) const;
+    /// N_⊥(λ).
+    ComplexDenseMatrix complement(std::complex<double> lambda, double mu) const;
+
+    /// W(λ), and what bounds the inverse of N.
+    struct OnModes
+    {
+      ComplexDenseMatrix                matrix;            ///< W, as large as there are modes
+      std::vector<std::complex<double>> resonances;        ///< D⁻¹
+      double                            complement_inverse; ///< bound of ‖N_⊥⁻¹‖
+      double                            gain;               ///< ‖N⁻¹‖ ≤ ‖N_⊥⁻¹‖ + gain ‖W⁻¹ D⁻¹‖
+    };
+    OnModes on_modes(std::complex<double> lambda, double mu) const;
 
     /// Bound of the spectral norm of what is left out of N(λ) [-].
     double truncation(std::complex<double> lambda, double mu) const;
 
     /// Circular frequencies ω_j of the modes that are summed [rad/s], 0 for rigid-body modes.
     const std::vector<double> &frequencies() const;
-
-    /// Rows of N.
-    int size() const;
 
     /// Terms of the series.
     int n_moments() const;

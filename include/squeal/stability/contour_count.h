@@ -47,9 +47,9 @@ namespace Squeal
   {
     int    n_modes            = 0;  ///< with multiplicity
     int    n_frictionless     = 0;  ///< real modes with ω_low < ω < ω_high without friction and damping, by inertia
-    int    n_points           = 0;  ///< where the determinant was evaluated
+    int    n_points           = 0;  ///< where determinants were evaluated
     double largest_phase_step = 0.; ///< of the accepted steps [rad]
-    double truncation_bound   = 0.; ///< largest ‖ΔN N⁻¹‖ on the contour (condensed): Rouché's theorem asks for less than 1 [-]
+    double truncation_bound   = 0.; ///< bound of the largest ‖ΔN N⁻¹‖ on the contour (condensed): Rouché's theorem asks for less than 1 [-]
     int    n_moments          = 0;  ///< terms of the series (condensed)
     int    n_deflated         = 0;  ///< real modes up to ω_d (condensed)
   };
@@ -60,15 +60,15 @@ namespace Squeal
    * principle it is the number of turns that det Q(λ), an entire function, makes
    * about zero along the boundary. Modes with |Re λ| > a are not counted.
    *
-   * Condensed: det Q = det S det N. The zeros of det S, those of the real modes,
-   * are counted by inertia; the turns of det N are added. From point to point,
-   * N' = N (I + F) with
+   * Condensed: det Q = det S det N_⊥ det W. The zeros of det S, those of the real
+   * modes, are counted by inertia; the turns of det N_⊥ and det W are added. From
+   * point to point, each matrix changes to A' = A (I + F) with
    *
    *   ‖F‖_F ≤ ½, so that |ln det(I + F) − tr F| ≤ −ln(1 − ‖F‖_F) − ‖F‖_F < 0.2,
    *
-   * and the phase of the step is known without doubt about multiples of 2π; nor
-   * is a step longer than half the distance to the nearest pole ±iω_j. What the
-   * series of N leaves out cannot change the count while ‖ΔN N⁻¹‖ < 1 (Rouché),
+   * in suitably scaled coordinates, and the phase of the step is known without doubt about multiples of 2π; nor
+   * is a step of W longer than half the distance to the nearest pole ±iω_j. What the
+   * series leaves out of N cannot change the count while ‖ΔN N⁻¹‖ < 1 (Rouché),
    * of which a quarter is allowed at the points; otherwise terms are added.
    *
    * Sparse LU: the turns of det Q itself. A step is halved until |Δ ln det Q| of
