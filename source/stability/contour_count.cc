@@ -29,7 +29,7 @@ namespace Squeal
     constexpr double largest_truncation = 0.25;
 
     /// Bounds of the truncation of N: the first try, and where rounding ends it.
-    constexpr double first_tolerance = 1e-6, least_tolerance = 1e-13;
+    constexpr double first_tolerance = 1e-7, least_tolerance = 1e-13;
 
     /// Steps below this part of ω_high mean that a zero lies on the contour; so close may no real mode be to its ends.
     constexpr double shortest_step = 1e-9;
