@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace Squeal
@@ -291,6 +292,119 @@ namespace Squeal
   double DenseLU::reciprocal_condition() const
   {
     return rcond;
+  }
+
+
+
+  ComplexDenseLU::ComplexDenseLU(ComplexDenseMatrix A)
+    : factors(std::move(A))
+    , pivots(factors.n_rows())
+  {
+    const int n = factors.n_rows();
+    require(n == factors.n_columns(), "LU factors of a complex dense matrix");
+    if (n == 0)
+      return;
+
+    double norm = 0.;
+    for (int j = 0; j < n; ++j)
+      {
+        double sum = 0.;
+        for (int i = 0; i < n; ++i)
+          sum += std::abs(factors(i, j));
+        if (!(sum <= norm))
+          norm = sum;
+      }
+
+    const auto entries = [](std::complex<double> *values) { return reinterpret_cast<lapack_complex_double *>(values); };
+    double     rcond   = 0.;
+    if (LAPACKE_zgetrf_work(LAPACK_COL_MAJOR, n, n, entries(factors.column()), n, pivots.data()) == 0)
+      {
+        std::vector<std::complex<double>> work(2 * static_cast<std::size_t>(n));
+        std::vector<double>               rwork(2 * static_cast<std::size_t>(n));
+        LAPACKE_zgecon_work(LAPACK_COL_MAJOR, '1', n, entries(factors.column()), n, norm, &rcond, entries(work.data()), rwork.data());
+      }
+    // Written so that a NaN counts as singular, too.
+    norm_of_inverse = rcond > 1e-16 && std::isfinite(norm) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
+  }
+
+
+
+  void ComplexDenseLU::solve(ComplexDenseMatrix &B) const
+  {
+    const int n = factors.n_rows();
+    require(n == B.n_rows(), "solution with complex dense LU factors");
+    if (n == 0 || B.n_columns() == 0)
+      return;
+    LAPACKE_zgetrs_work(LAPACK_COL_MAJOR,
+                        'N',
+                        n,
+                        B.n_columns(),
+                        reinterpret_cast<const lapack_complex_double *>(factors.column()),
+                        n,
+                        pivots.data(),
+                        reinterpret_cast<lapack_complex_double *>(B.column()),
+                        n);
+  }
+
+
+
+  std::complex<double> ComplexDenseLU::log_determinant() const
+  {
+    double modulus = 0., argument = 0.;
+    for (int i = 0; i < factors.n_rows(); ++i)
+      {
+        modulus += std::log(std::abs(factors(i, i)));
+        argument += std::arg(factors(i, i)) + (pivots[i] != i + 1 ? M_PI : 0.);
+      }
+    return {modulus, std::remainder(argument, 2. * M_PI)};
+  }
+
+
+
+  double ComplexDenseLU::inverse_norm() const
+  {
+    return norm_of_inverse;
+  }
+
+
+
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A)
+  {
+    const int n = A.n_rows();
+    require(n == A.n_columns(), "balancing of a dense matrix");
+    // A few sweeps do: nobody asks for the very minimum.
+    for (int sweep = 0; sweep < 5; ++sweep)
+      for (int k = 0; k < n; ++k)
+        {
+          double row = 0., column = 0.;
+          for (int i = 0; i < n; ++i)
+            if (i != k)
+              {
+                row += std::norm(A(k, i));
+                column += std::norm(A(i, k));
+              }
+          const double scale = std::pow(row / column, 0.25);
+          if (!(scale > 0.) || !std::isfinite(scale))
+            continue;
+          for (int i = 0; i < n; ++i)
+            if (i != k)
+              {
+                A(i, k) *= scale;
+                A(k, i) /= scale;
+              }
+        }
+    return A;
+  }
+
+
+
+  double frobenius_norm(const ComplexDenseMatrix &A)
+  {
+    double square = 0.;
+    for (int j = 0; j < A.n_columns(); ++j)
+      for (int i = 0; i < A.n_rows(); ++i)
+        square += std::norm(A(i, j));
+    return std::sqrt(square);
   }
 
 

@@ -134,6 +134,33 @@ namespace Squeal
     double           rcond = 0.;
   };
 
+  /// LU factors of a small square complex matrix, singular ones included.
+  class ComplexDenseLU
+  {
+  public:
+    explicit ComplexDenseLU(ComplexDenseMatrix A);
+
+    /// Solves A X = B in place; only if the reciprocal condition is not zero.
+    void solve(ComplexDenseMatrix &B) const;
+
+    /// A logarithm of det A: the sum of those of the pivots, its imaginary part in (−π, π]; −∞ for a zero pivot.
+    std::complex<double> log_determinant() const;
+
+    /// Estimate of ‖A⁻¹‖₁; infinite if A is singular to working precision.
+    double inverse_norm() const;
+
+  private:
+    ComplexDenseMatrix factors;
+    std::vector<int>   pivots;
+    double             norm_of_inverse = 0.;
+  };
+
+  /// S⁻¹ A S with a positive diagonal S that brings its norm down: row and column of an index of the same norm (Osborne).
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A);
+
+  /// Root of the sum of the squares of all moduli.
+  double frobenius_norm(const ComplexDenseMatrix &A);
+
   /// Eigenpairs of a symmetric matrix, ascending: A is replaced by its eigenvectors.
   std::vector<double> symmetric_eigenvalues(DenseMatrix &A);
 

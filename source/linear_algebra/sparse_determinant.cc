@@ -1,0 +1,127 @@
+#include "libraries.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_determinant.h>
+
+#include <Epetra_Comm.h>
+
+#include <suitesparse/umfpack.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    const char *const what = "the determinant of a sparse matrix";
+
+    /// The entries of A in the places of a pattern that contains its own.
+    std::vector<double> on_pattern(const LocalRows &pattern, const SparseMatrix &A)
+    {
+      const LocalRows     rows(A);
+      std::vector<double> values(pattern.value.size(), 0.);
+      for (int i = 0; i < rows.n_rows; ++i)
+        for (int k = rows.start[i], place = pattern.start[i]; k < rows.start[i + 1]; ++k, ++place)
+          {
+            // Columns ascend in both
+            while (pattern.column[place] != rows.column[k])
+              ++place;
+            values[place] = rows.value[k];
+          }
+      return values;
+    }
+
+    /// A matrix with the places of all entries; add() keeps those that cancel.
+    std::shared_ptr<SparseMatrix> union_pattern(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
+    {
+      auto result = add(1., M, 1., K);
+      return C ? add(1., *result, 1., *C) : result;
+    }
+  } // namespace
+
+  struct SparseDeterminant::Implementation
+  {
+    Implementation(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
+      : pattern(*union_pattern(M, C, K))
+      , mass(on_pattern(pattern, M))
+      , damping(C ? on_pattern(pattern, *C) : std::vector<double>())
+      , stiffness(on_pattern(pattern, K))
+      , control(UMFPACK_CONTROL)
+    {
+      umfpack_zi_defaults(control.data());
+      control[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
+      const int status          = umfpack_zi_symbolic(
+        pattern.n_rows, pattern.n_rows, pattern.start.data(), pattern.column.data(), nullptr, nullptr, &symbolic, control.data(), nullptr);
+      if (status != UMFPACK_OK)
+        throw_library_failure("UMFPACK", "status " + std::to_string(status) + " of the analysis", what);
+    }
+
+    ~Implementation()
+    {
+      umfpack_zi_free_symbolic(&symbolic);
+    }
+
+    const LocalRows           pattern;
+    const std::vector<double> mass, damping, stiffness;
+    std::vector<double>       control;
+    void                     *symbolic = nullptr;
+  };
+
+
+
+  SparseDeterminant::SparseDeterminant(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
+  {
+    if (M.Comm().NumProc() > 1)
+      throw SolverError("determinants of sparse matrices are computed by UMFPACK, which runs on one process, not on " +
+                          std::to_string(M.Comm().NumProc()),
+                        what,
+                        "run on one process, or take the determinant condensed to the contact nodes");
+    implementation = std::make_unique<Implementation>(M, C, K);
+  }
+
+
+
+  SparseDeterminant::~SparseDeterminant() = default;
+
+
+
+  std::complex<double> SparseDeterminant::logarithm(const std::complex<double> lambda) const
+  {
+    const LocalRows           &pattern = implementation->pattern;
+    const std::complex<double> square  = lambda * lambda;
+    std::vector<double>        real(pattern.value.size()), imaginary(pattern.value.size());
+    for (std::size_t k = 0; k < real.size(); ++k)
+      {
+        std::complex<double> entry = implementation->stiffness[k] + square * implementation->mass[k];
+        if (!implementation->damping.empty())
+          entry += lambda * implementation->damping[k];
+        real[k]      = entry.real();
+        imaginary[k] = entry.imag();
+      }
+
+    // UMFPACK takes rows for columns: the determinant is the same.
+    void     *numeric = nullptr;
+    const int status  = umfpack_zi_numeric(pattern.start.data(),
+                                          pattern.column.data(),
+                                          real.data(),
+                                          imaginary.data(),
+                                          implementation->symbolic,
+                                          &numeric,
+                                          implementation->control.data(),
+                                          nullptr);
+    // determinant = (mantissa_re + i mantissa_im) · 10^exponent
+    double mantissa_re = 0., mantissa_im = 0., exponent = 0.;
+    int    evaluated = status;
+    if (status == UMFPACK_OK)
+      evaluated = umfpack_zi_get_determinant(&mantissa_re, &mantissa_im, &exponent, numeric, nullptr);
+    umfpack_zi_free_numeric(&numeric);
+    if (status == UMFPACK_WARNING_singular_matrix || evaluated == UMFPACK_WARNING_singular_matrix)
+      return {-std::numeric_limits<double>::infinity(), 0.};
+    if (evaluated != UMFPACK_OK)
+      throw_library_failure("UMFPACK", "status " + std::to_string(evaluated) + " of the factorisation", what);
+    return {std::log(std::hypot(mantissa_re, mantissa_im)) + exponent * std::log(10.), std::atan2(mantissa_im, mantissa_re)};
+  }
+} // namespace Squeal
