@@ -5,6 +5,7 @@
 #include <squeal/studies/dissipation_study.h>
 #include <squeal/studies/reduction_study.h>
 #include <squeal/studies/stability_study.h>
+#include <squeal/studies/sweep_study.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -124,6 +125,9 @@ Decides whether a disc rubbed by friction pins squeals.
           break;
         case Study::reduction:
           run_reduction_study(run);
+          break;
+        case Study::sweep:
+          run_sweep_study(run);
           break;
       }
   }

@@ -158,6 +158,7 @@ namespace Squeal
       parameters.sliding.add_parameters(prm);
       parameters.damping.add_parameters(prm);
       parameters.reduction.add_parameters(prm);
+      parameters.sweep.add_parameters(prm);
       parameters.solvers.add_parameters(prm);
       parameters.output.add_parameters(prm);
     }
@@ -266,6 +267,20 @@ namespace Squeal
                            "Steady sliding/Contact state = equal load");
   }
 
+  void Parameters::check_map() const
+  {
+    if (study != Study::sweep || sweep.map_parameter == MapParameter::none)
+      return;
+    const bool is_steady = needs_steady_sliding();
+    if (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0. &&
+        !(is_steady && sweep.map_parameter == MapParameter::load))
+      throw ParameterError("without contact damping nothing depends on the " + to_string(sweep.map_parameter), "parameter Sweep/Map parameter",
+                           "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
+    if (is_steady && sweep.map_parameter == MapParameter::load && sliding.control != BackplateControl::load_per_side)
+      throw ParameterError("a map over the load needs backplates that are pressed with it", "parameter Steady sliding/Control",
+                           "set it to load per side, or Sweep/Map parameter = none");
+  }
+
   void Parameters::check() const
   {
     geometry.check();
@@ -274,6 +289,8 @@ namespace Squeal
     check_contact_state();
     damping.check();
     reduction.check();
+    sweep.check();
+    check_map();
     solvers.check();
   }
 } // namespace Squeal

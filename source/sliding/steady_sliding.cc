@@ -260,11 +260,29 @@ namespace Squeal
                                "parameters Steady sliding/Displacement and Gaps", "raise the displacement or lower the gaps");
   }
 
+  SlidingResponses sliding_responses(const ContactOperators &contact, const StaticResponse &response)
+  {
+    const auto attachment = [&](const SparseMatrix &P) { return response.solve(transpose_times(P, unit_vectors(P.RowMap()))); };
+    return {attachment(*contact.normal), attachment(*contact.tangential)};
+  }
+
   SlidingState steady_sliding(const Model               &model,
                               const ContactInterface    &interface,
                               const ContactOperators    &contact,
                               const SecondOrderSystem   &system,
                               const StaticResponse      &response,
+                              const OperationParameters &operation,
+                              const SlidingParameters   &parameters)
+  {
+    return steady_sliding(model, interface, contact, system, response, sliding_responses(contact, response), operation, parameters);
+  }
+
+  SlidingState steady_sliding(const Model               &model,
+                              const ContactInterface    &interface,
+                              const ContactOperators    &contact,
+                              const SecondOrderSystem   &system,
+                              const StaticResponse      &response,
+                              const SlidingResponses    &responses,
                               const OperationParameters &operation,
                               const SlidingParameters   &parameters)
   {
@@ -274,9 +292,8 @@ namespace Squeal
     const Backplates plates = backplates(model, interface, operation, parameters);
     const bool       moves  = !plates.loads.empty();
 
-    // Attachment modes and free motions of the disc
-    const MultiVector Psi_n   = response.solve(transpose_times(*contact.normal, unit_vectors(contact.normal->RowMap())));
-    const MultiVector Psi_t   = response.solve(transpose_times(*contact.tangential, unit_vectors(contact.tangential->RowMap())));
+    // Free motions of the disc
+    const MultiVector &Psi_n  = responses.normal, &Psi_t = responses.tangential;
     const auto        motions = balanced_motions(model, contact, system, response, mu);
     const int         n_plates = moves ? plates.n : 0, n_z = n_plates + (motions ? motions->NumVectors() : 0);
 

@@ -815,9 +815,9 @@ namespace Squeal
         for (const Search &search : searches)
           {
             const auto [threshold, left] = zero(search);
-            const double total           = left + uncertainty(search, threshold);
+            const double share = uncertainty(search, threshold), total = left + share;
             if (search.kind == Search::growth || search.kind == Search::coalescence)
-              result.thresholds.push_back({threshold, total, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
+              result.thresholds.push_back({threshold, total, share, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
                                            search.kind == Search::growth ? ThresholdMechanism::zero_growth : ThresholdMechanism::coalescence,
                                            search.branch, search.partner, lambda_at(search, threshold)});
             else

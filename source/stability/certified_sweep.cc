@@ -58,7 +58,7 @@ namespace Squeal
                      const int                          maximum_basis,
                      ChartStore                        *store)
     {
-      const auto vectors = model.new_vectors(points[worst.number], worst.point, tolerance);
+      const auto vectors = model.new_vectors({{points[worst.number], &worst.point, model.inaccurate_modes(worst.point, tolerance)}});
       if (!vectors)
         return "rounding errors leave no new direction";
       if (model.size() + vectors->NumVectors() > maximum_basis)

@@ -1,4 +1,5 @@
 #include <squeal/stability/chart_model.h>
+#include <squeal/stability/mode_links.h>
 
 #include <algorithm>
 #include <cmath>
@@ -87,24 +88,40 @@ namespace Squeal
     return result;
   }
 
-  std::optional<MultiVector> ChartModel::new_vectors(const OperatingPoint &point, const ChartPoint &chart, const double tolerance) const
+  std::vector<int> ChartModel::inaccurate_modes(const ChartPoint &chart, const double tolerance) const
   {
-    ReducedModes modes;
-    modes.friction_coefficient = point.friction_coefficient;
-    modes.contact_damping      = point.damping;
-    modes.lambda               = chart.lambda;
-    modes.right                = chart.right;
-    modes.left                 = chart.left;
-    std::vector<int> inaccurate;
+    std::vector<int> result;
     for (std::size_t j = 0; j < chart.lambda.size(); ++j)
       if (chart.lambda[j].imag() <= largest_frequency && !(chart.errors[j] <= tolerance))
-        inaccurate.push_back(static_cast<int>(j));
-    modes = selected(modes, inaccurate);
+        result.push_back(static_cast<int>(j));
+    return result;
+  }
 
-    std::vector<int> all(inaccurate.size());
-    std::iota(all.begin(), all.end(), 0);
-    const CoupledSystem here = with_contact_damping(system, point.damping);
-    return new_directions(system, model, residual_vectors(here, inverse, model, modes), modes, all);
+  std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
+  {
+    std::vector<MultiVector> directions;
+    for (const ModesAt &set : sets)
+      {
+        if (set.modes.empty())
+          continue;
+        ReducedModes modes;
+        modes.friction_coefficient = set.point.friction_coefficient;
+        modes.contact_damping      = set.point.damping;
+        for (const int j : set.modes)
+          modes.lambda.push_back(set.chart->lambda[j]);
+        modes.right = padded(selected_columns(set.chart->right, set.modes), model.size());
+        modes.left  = padded(selected_columns(set.chart->left, set.modes), model.size());
+        std::vector<int> all(set.modes.size());
+        std::iota(all.begin(), all.end(), 0);
+        const CoupledSystem here = with_contact_damping(system, set.point.damping);
+        directions.push_back(residual_directions(residual_vectors(here, inverse, model, modes), modes, all));
+      }
+    if (directions.empty())
+      return {};
+    std::vector<const MultiVector *> parts;
+    for (const MultiVector &part : directions)
+      parts.push_back(&part);
+    return Squeal::new_vectors(system, model, join(parts));
   }
 
   void ChartModel::extend(const MultiVector &vectors)

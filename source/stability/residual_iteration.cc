@@ -49,30 +49,6 @@ namespace Squeal
       return X * columns(axes, first, k - first);
     }
 
-    /// Displacement residuals of the chosen modes, right and left, each scaled to its mode.
-    MultiVector scaled_residuals(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen)
-    {
-      const int  k    = modes.lambda.size();
-      const auto norm = [](const ComplexDenseMatrix &X, const int j) {
-        double sum = 0.;
-        for (int i = 0; i < X.n_rows(); ++i)
-          sum += std::norm(X(i, j));
-        return std::sqrt(sum);
-      };
-      MultiVector X(residuals.right_forces.Map(), 4 * static_cast<int>(chosen.size()));
-      int         column = 0;
-      for (const int j : chosen)
-        {
-          // Coefficients in an M-orthonormal basis: their norm is the mode's M-norm.
-          const double right = norm(modes.right, j), left = norm(modes.left, j);
-          X(column++)->Scale(1. / right, *residuals.right_displacements(j));
-          X(column++)->Scale(1. / right, *residuals.right_displacements(k + j));
-          X(column++)->Scale(1. / left, *residuals.left_displacements(j));
-          X(column++)->Scale(1. / left, *residuals.left_displacements(k + j));
-        }
-      return X;
-    }
-
     /// Modes at one friction coefficient with their estimates.
     struct State
     {
@@ -113,15 +89,33 @@ namespace Squeal
     return model;
   }
 
-  std::optional<MultiVector> new_directions(const CoupledSystem    &system,
-                                            const ReducedModel     &model,
-                                            const ResidualVectors  &residuals,
-                                            const ReducedModes     &modes,
-                                            const std::vector<int> &chosen)
+  MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen)
+  {
+    const int  k    = modes.lambda.size();
+    const auto norm = [](const ComplexDenseMatrix &X, const int j) {
+      double sum = 0.;
+      for (int i = 0; i < X.n_rows(); ++i)
+        sum += std::norm(X(i, j));
+      return std::sqrt(sum);
+    };
+    MultiVector X(residuals.right_forces.Map(), 4 * static_cast<int>(chosen.size()));
+    int         column = 0;
+    for (const int j : chosen)
+      {
+        // Coefficients in an M-orthonormal basis: their norm is the mode's M-norm.
+        const double right = norm(modes.right, j), left = norm(modes.left, j);
+        X(column++)->Scale(1. / right, *residuals.right_displacements(j));
+        X(column++)->Scale(1. / right, *residuals.right_displacements(k + j));
+        X(column++)->Scale(1. / left, *residuals.left_displacements(j));
+        X(column++)->Scale(1. / left, *residuals.left_displacements(k + j));
+      }
+    return X;
+  }
+
+  std::optional<MultiVector> new_vectors(const CoupledSystem &system, const ReducedModel &model, const MultiVector &directions)
   {
     const SparseMatrix &M = *system.frictionless.mass;
-    return orthonormalize_if_any(M, &model.basis(), compress(M, model.basis(), scaled_residuals(residuals, modes, chosen)),
-                                 dependence_tolerance);
+    return orthonormalize_if_any(M, &model.basis(), compress(M, model.basis(), directions), dependence_tolerance);
   }
 
   GrownBasis grow_residual_basis(const CoupledSystem            &system,
@@ -150,7 +144,7 @@ namespace Squeal
         for (std::size_t j = 0; j < state.modes.lambda.size(); ++j)
           if (!(state.estimates.errors[j] <= options.tolerance))
             inaccurate.push_back(static_cast<int>(j));
-        const auto fresh = new_directions(system, model, state.residuals, state.modes, inaccurate);
+        const auto fresh = new_vectors(system, model, residual_directions(state.residuals, state.modes, inaccurate));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->NumVectors() > options.maximum_basis)
           {
             std::ostringstream what;

@@ -121,7 +121,7 @@ namespace Squeal
             frictionless = frictionless_modes(scene, linearisation, run);
             closed       = linearisation.closed;
           }
-        add_modal_damping(*frictionless, parameters.damping, linearisation);
+        add_modal_damping(*frictionless, parameters, linearisation);
         const FrictionModes friction =
           friction_modes(scene, linearisation, *frictionless, operation.friction_coefficient, run, reading.name);
         for (std::size_t j = 0; j < friction.labels.size(); ++j)

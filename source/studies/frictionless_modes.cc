@@ -15,9 +15,9 @@ namespace Squeal
     constexpr double label_band = 1.2;
   } // namespace
 
-  std::size_t n_in_band(const ComponentModes &modes, const double largest_eigenvalue)
+  std::size_t n_in_band(const std::vector<double> &eigenvalues, const double largest_eigenvalue)
   {
-    return std::upper_bound(modes.eigenvalues.begin(), modes.eigenvalues.end(), largest_eigenvalue) - modes.eigenvalues.begin();
+    return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
   std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, const int n_rigid_body)
@@ -30,15 +30,17 @@ namespace Squeal
     return labels;
   }
 
-  void add_modal_damping(const FrictionlessModes &modes, const DampingParameters &parameters, Linearisation &linearisation)
+  void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation)
   {
-    if (parameters.modal_ratios.empty())
+    if (parameters.damping.modal_ratios.empty())
       return;
-    std::vector<double> ratios;
-    for (const double eigenvalue : modes.real.eigenvalues)
-      ratios.push_back(parameters.modal_ratio(hertz(std::sqrt(eigenvalue))));
+    const double              omega_max   = circular_frequency(parameters.discretization.maximum_frequency);
+    std::vector<double>       eigenvalues = modes.real.eigenvalues, ratios;
+    eigenvalues.resize(n_in_band(eigenvalues, omega_max * omega_max));
+    for (const double eigenvalue : eigenvalues)
+      ratios.push_back(parameters.damping.modal_ratio(hertz(std::sqrt(eigenvalue))));
     linearisation.coupled.modal_damping =
-      modal_damping(*linearisation.coupled.frictionless.mass, *modes.real.vectors, modes.real.eigenvalues, ratios);
+      modal_damping(*linearisation.coupled.frictionless.mass, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues, ratios);
   }
 
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
@@ -53,7 +55,7 @@ namespace Squeal
     return identify({&modes.disc, &modes.pins_sliding}, *scene.system.mass, u_re, imaginary_part ? &u_im : nullptr);
   }
 
-  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run)
+  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, const double margin)
   {
     const Parameters     &parameters = run.parameters;
     const CoupledSystem  &coupled    = linearisation.coupled;
@@ -82,8 +84,8 @@ namespace Squeal
     result.disc            = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
     result.pins_free       = components(Component::pins, ContactBoundary::free, "modes of the free pins", 1.);
     result.pins_sliding    = components(Component::pins, ContactBoundary::sliding, "modes of the sliding pins", label_band);
-    const auto n_disc      = n_in_band(result.disc, limit), n_free = n_in_band(result.pins_free, limit),
-               n_sliding   = n_in_band(result.pins_sliding, limit);
+    const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
+               n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
     run.count("disc modes", n_disc);
     run.count("free pin modes", n_free);
     run.count("sliding pin modes", n_sliding);
@@ -103,12 +105,14 @@ namespace Squeal
     // The factor at hand serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.frictionless.damping)
       options.inverse = &result.inverse->frictionless();
-    result.real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, limit, options);
-    if (result.real.eigenvalues.empty())
+    result.real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, (1. + margin) * (1. + margin) * limit, options);
+    const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
+    if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
-    run.count("real modes", result.real.eigenvalues.size());
+    run.count("real modes", n_real);
     run.count("rigid-body modes", result.real.n_rigid_body);
     run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
+                             n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                              result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
     result.identities = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);

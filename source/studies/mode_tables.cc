@@ -17,7 +17,7 @@ namespace Squeal
     for (const ComponentSet &set : {ComponentSet{"disc", "free", modes.disc}, ComponentSet{"pins", "sliding", modes.pins_sliding},
                                     ComponentSet{"pins", "free", modes.pins_free}})
       {
-        const std::size_t        n = n_in_band(set.modes, largest_eigenvalue);
+        const std::size_t        n = n_in_band(set.modes.eigenvalues, largest_eigenvalue);
         std::vector<std::string> labels(set.modes.labels.begin(), set.modes.labels.begin() + static_cast<std::ptrdiff_t>(n));
         mark_doublets(labels);
         for (std::size_t j = 0; j < n; ++j)

@@ -440,7 +440,7 @@ namespace Squeal
       }
     Linearisation           linearisation = linearised_scene(scene, run);
     const FrictionlessModes frictionless  = frictionless_modes(scene, linearisation, run);
-    add_modal_damping(frictionless, parameters.damping, linearisation);
+    add_modal_damping(frictionless, parameters, linearisation);
     const CoupledSystem  &coupled = linearisation.coupled;
     const CoupledSystem   system  = friction ? coupled : undamped(coupled);
     const UpdatedInverse &inverse = *frictionless.inverse;

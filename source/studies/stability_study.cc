@@ -1,9 +1,9 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
-#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/mode_fields.h>
 #include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
@@ -21,54 +21,38 @@ namespace Squeal
   {
     // ------------------------------------------------------------------ fields
 
-    /// File name of a mode: its place in the table and its label without blanks and signs.
-    std::string file_name(const std::size_t number, std::string label)
+    /// File name of a mode: its place in the table and its label.
+    std::string file_name(const std::size_t number, const std::string &label)
     {
-      for (const auto &[sign, word] : {std::make_pair(" -", "_minus"), std::make_pair(" +", "_plus")})
-        if (const auto place = label.find(sign); place != std::string::npos)
-          label.replace(place, 2, word);
       std::ostringstream name;
-      name << "complex_" << std::setw(3) << std::setfill('0') << number + 1 << "_" << label;
+      name << "complex_" << std::setw(3) << std::setfill('0') << number + 1 << "_" << file_label(label);
       return name.str();
     }
 
     void write_modes(const Scene &scene, const Linearisation &linearisation, const FrictionModes &friction, const FieldWriter &writer, Run &run)
     {
-      const Parameters    &parameters = run.parameters;
-      const CoupledSystem &system     = linearisation.coupled;
-      const ComplexModes  &modes      = friction.modes;
-      const auto          &labels     = friction.labels;
-      const auto          &unstable   = friction.unstable;
+      const Parameters   &parameters = run.parameters;
+      const ComplexModes &modes      = friction.modes;
       run.progress.begin("Mode shapes");
-      std::vector<std::size_t> chosen;
-      for (std::size_t j = 0; j < labels.size(); ++j)
-        if (parameters.output.fields == FieldSelection::all || unstable[j])
-          chosen.push_back(j);
-
-      DenseMatrix reaction_re, reaction_im;
-      normal_reactions(system, modes.lambda, *modes.real_part, *modes.imaginary_part, reaction_re, reaction_im);
-
-      unsigned int n_animations = 0;
-      for (const std::size_t j : chosen)
+      unsigned int n_modes = 0, n_animations = 0;
+      for (std::size_t j = 0; j < friction.labels.size(); ++j)
         {
-          run.progress.update(text(labels[j], ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
-          const DenseMatrix re = replicate(*system.kernel * view(*modes.real_part, j, 1));
-          const DenseMatrix im = replicate(*system.kernel * view(*modes.imaginary_part, j, 1));
-          ModeField         field{file_name(j, labels[j]), modes.lambda[j], {}, {}};
-          for (int i = 0; i < re.n_rows(); ++i)
-            field.displacement.emplace_back(re(i, 0), im(i, 0));
-          std::vector<std::complex<double>> reactions;
-          for (int c = 0; c < reaction_re.n_rows(); ++c)
-            reactions.emplace_back(reaction_re(c, j), reaction_im(c, j));
-          field.reactions = linearisation.on_all_pairs(reactions, scene.interface.size());
+          if (parameters.output.fields != FieldSelection::all && !friction.unstable[j])
+            continue;
+          const std::string &label = friction.labels[j];
+          run.progress.update(text(label, ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
+          const int       column = static_cast<int>(j);
+          const ModeField field  = mode_field(scene, linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
+                                             view(*modes.imaginary_part, column, 1));
           writer.write_mode(field);
-          if (unstable[j] && parameters.output.animation_frames > 0)
+          ++n_modes;
+          if (friction.unstable[j] && parameters.output.animation_frames > 0)
             {
               writer.write_animation(field, parameters.output.animation_frames);
               ++n_animations;
             }
         }
-      run.progress.finish(text(chosen.size(), " modes, ", n_animations, " animations"));
+      run.progress.finish(text(n_modes, " modes, ", n_animations, " animations"));
     }
 
     // ---------------------------------------------------------------- matrices
@@ -162,7 +146,7 @@ namespace Squeal
 
     // ------------------------------------------------------------------- modes
     const FrictionlessModes frictionless = frictionless_modes(scene, linearisation, run);
-    add_modal_damping(frictionless, parameters.damping, linearisation);
+    add_modal_damping(frictionless, parameters, linearisation);
     const FrictionModes friction = friction_modes(scene, linearisation, frictionless, operation.friction_coefficient, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());

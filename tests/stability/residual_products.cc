@@ -31,7 +31,7 @@ namespace
     ReducedModes modes = local_reduced_modes(model, friction, damping, omega_max);
     std::vector<int> all(modes.lambda.size());
     std::iota(all.begin(), all.end(), 0);
-    model.extend(*new_directions(system, model, vectors(modes), modes, all));
+    model.extend(*new_vectors(system, model, residual_directions(vectors(modes), modes, all)));
     projected.extend(model);
 
     modes               = local_reduced_modes(model, friction, damping, omega_max);

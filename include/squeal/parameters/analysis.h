@@ -15,14 +15,17 @@ namespace Squeal
   {
     stability,   ///< component, real coupled and complex modes at one friction coefficient
     dissipation, ///< complex modes with every reading of the radial dissipation
-    reduction    ///< reduced bases, with their errors and cost
+    reduction,   ///< reduced bases, with their errors and cost
+    sweep        ///< complex modes over a range of the friction coefficient
   };
 
   template <>
   struct EnumTable<Study>
   {
-    static constexpr std::array<EnumName<Study>, 3> names = {
-      {{Study::stability, "stability"}, {Study::dissipation, "dissipation"}, {Study::reduction, "reduction"}}};
+    static constexpr std::array<EnumName<Study>, 4> names = {{{Study::stability, "stability"},
+                                                             {Study::dissipation, "dissipation"},
+                                                             {Study::reduction, "reduction"},
+                                                             {Study::sweep, "sweep"}}};
   };
 
   /// Elements and band (sections `Discretization` and `Band`).

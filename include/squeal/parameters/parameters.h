@@ -7,6 +7,7 @@
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
 #include <squeal/parameters/sliding.h>
+#include <squeal/parameters/sweep.h>
 
 #include <iosfwd>
 #include <string>
@@ -25,6 +26,7 @@ namespace Squeal
     SlidingParameters        sliding;
     DampingParameters        damping;
     ReductionParameters      reduction;
+    SweepParameters          sweep;
     SolverParameters         solvers;
     OutputParameters         output;
 
@@ -46,5 +48,6 @@ namespace Squeal
 
   private:
     void check_contact_state() const;
+    void check_map() const;
   };
 } // namespace Squeal

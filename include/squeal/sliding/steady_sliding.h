@@ -64,6 +64,23 @@ namespace Squeal
                               const OperationParameters &operation,
                               const SlidingParameters   &parameters);
 
+  /// Attachment modes of the contact nodes, n × n_c, which serve every state.
+  struct SlidingResponses
+  {
+    MultiVector normal, tangential; ///< K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N]
+  };
+  SlidingResponses sliding_responses(const ContactOperators &contact, const StaticResponse &response);
+
+  /// The same with attachment modes at hand.
+  SlidingState steady_sliding(const Model               &model,
+                              const ContactInterface    &interface,
+                              const ContactOperators    &contact,
+                              const SecondOrderSystem   &system,
+                              const StaticResponse      &response,
+                              const SlidingResponses    &responses,
+                              const OperationParameters &operation,
+                              const SlidingParameters   &parameters);
+
   /// Refuses parameters of the section `Steady sliding` that do not fit the pins; throws ParameterError.
   void check_sliding(const Model               &model,
                      const ContactInterface    &interface,

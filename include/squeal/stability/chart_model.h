@@ -52,11 +52,19 @@ namespace Squeal
     /// Largest estimated |δλ| / |λ| of the modes inside the band.
     double largest_error(const ChartPoint &point) const;
 
-    /**
-     * New vectors from the residuals of those modes of @p chart, found at @p point,
-     * whose errors exceed @p tolerance; nothing if they lie in the basis. All processes must call.
-     */
-    std::optional<MultiVector> new_vectors(const OperatingPoint &point, const ChartPoint &chart, double tolerance) const;
+    /// Modes of @p chart in the band whose errors exceed @p tolerance.
+    std::vector<int> inaccurate_modes(const ChartPoint &chart, double tolerance) const;
+
+    /// Some modes of a result at an operating point.
+    struct ModesAt
+    {
+      OperatingPoint   point;
+      const ChartPoint *chart;
+      std::vector<int> modes;
+    };
+
+    /// New vectors from the residuals of modes; nothing if they lie in the basis. All processes must call.
+    std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
     /// Extends the basis. All processes must call.
     void extend(const MultiVector &vectors);

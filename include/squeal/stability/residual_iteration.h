@@ -25,16 +25,14 @@ namespace Squeal
    */
   ReducedModel starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, bool friction);
 
+  /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each scaled to its mode: n × 4k.
+  MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen);
+
   /**
    * M_c-orthonormal vectors by which the basis of @p model grows: principal axes
-   * of the displacement residuals, right and left, of the @p chosen modes;
-   * nothing if they lie in the basis.
+   * of what @p directions have outside of it; nothing if they lie in the basis.
    */
-  std::optional<MultiVector> new_directions(const CoupledSystem    &system,
-                                            const ReducedModel     &model,
-                                            const ResidualVectors  &residuals,
-                                            const ReducedModes     &modes,
-                                            const std::vector<int> &chosen);
+  std::optional<MultiVector> new_vectors(const CoupledSystem &system, const ReducedModel &model, const MultiVector &directions);
 
   /// A two-sided basis grown by residuals, with what it gives at the friction coefficient of the largest error.
   struct GrownBasis

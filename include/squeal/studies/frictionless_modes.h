@@ -17,16 +17,19 @@ namespace Squeal
     ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
     double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
     std::unique_ptr<UpdatedInverse> inverse;
-    SymmetricModes                  real; ///< coupled, in the band
+    SymmetricModes                  real; ///< coupled, in the band and its margin
     std::vector<ModeIdentity>       identities; ///< of the coupled modes
     std::vector<std::string>        labels;
   };
 
-  /// Component modes, the factorisation, and the real coupled modes of the band, as steps of the run.
-  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run);
+  /**
+   * Component modes, the factorisation, and the real coupled modes up to
+   * (1 + @p margin) times the end of the band, as steps of the run.
+   */
+  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, double margin = 0.);
 
-  /// Adds the modal damping that the parameters ask for to the linearised system.
-  void add_modal_damping(const FrictionlessModes &modes, const DampingParameters &parameters, Linearisation &linearisation);
+  /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
+  void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation);
 
   /// Names of coupled modes after the component modes that they resemble; @p imaginary_part may be null.
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
@@ -38,6 +41,6 @@ namespace Squeal
   /// Labels with the marks of doublets; the first @p n_rigid_body are `RB`.
   std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, int n_rigid_body = 0);
 
-  /// Component modes inside the band.
-  std::size_t n_in_band(const ComponentModes &modes, double largest_eigenvalue);
+  /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
+  std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);
 } // namespace Squeal

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <vector>
+
+namespace Squeal
+{
+  /// The second parameter of a stability map.
+  enum class MapParameter
+  {
+    none,
+    load,
+    speed
+  };
+
+  template <>
+  struct EnumTable<MapParameter>
+  {
+    static constexpr std::array<EnumName<MapParameter>, 3> names = {
+      {{MapParameter::none, "none"}, {MapParameter::load, "load"}, {MapParameter::speed, "speed"}}};
+  };
+
+  /// Values from first to last.
+  struct ValueRange
+  {
+    double       first, last;
+    unsigned int number;
+
+    /// Equally spaced values.
+    std::vector<double> linear() const;
+
+    /// Values of equal ratio.
+    std::vector<double> geometric() const;
+  };
+
+  /// Modes over the friction coefficient (section `Sweep`).
+  struct SweepParameters
+  {
+    ValueRange          friction_coefficients = {0., 0.45, 90};
+    double              tolerance             = 1e-6; ///< on the estimated |δλ| / |λ| [-]
+    unsigned int        maximum_basis         = 1500; ///< vectors
+    double              threshold_tolerance   = 1e-6; ///< of the friction coefficient [-]
+    bool                compare_dissipation   = true; ///< also without radial dissipation
+    std::vector<double> mode_shapes;                  ///< friction coefficients at which the leading mode is written
+    std::vector<double> counts;                       ///< friction coefficients at which modes are counted by the argument principle
+
+    MapParameter map_parameter             = MapParameter::none;
+    ValueRange   map_values                = {100., 10000., 11}; ///< [N] or [rad/s]
+    unsigned int map_friction_coefficients = 19;
+
+    /// Friction coefficients of the map: from the first to the last of the sweep.
+    std::vector<double> map_grid() const;
+
+    void add_parameters(dealii::ParameterHandler &prm);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+} // namespace Squeal

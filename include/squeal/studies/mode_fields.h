@@ -1,0 +1,25 @@
+#pragma once
+
+#include <squeal/output/fields.h>
+#include <squeal/studies/scene.h>
+
+#include <complex>
+#include <string>
+
+namespace Squeal
+{
+  /// A label as part of a file name, without blanks and signs: `A0-4_minus`.
+  std::string file_label(std::string label);
+
+  /**
+   * Field of a complex mode, coupled displacements n × 1, on the uncoupled
+   * bodies, with the normal reactions at all pairs of contact nodes. All
+   * processes must call.
+   */
+  ModeField mode_field(const Scene                &scene,
+                       const Linearisation        &linearisation,
+                       const std::string          &name,
+                       const std::complex<double> &lambda,
+                       const MultiVector          &real_part,
+                       const MultiVector          &imaginary_part);
+} // namespace Squeal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <squeal/output/table.h>
+#include <squeal/stability/branches.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Every mode of the band at every point of a chart, refined ones included: its branch, λ, residuals, error and verdict.
+  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, double largest_frequency);
+
+  /// Where branches begin or cease to grow.
+  Table threshold_table(const StabilityChart &chart, const std::vector<std::string> &labels);
+
+  /// Where branches enter or leave the band.
+  Table crossing_table(const StabilityChart &chart, const std::vector<std::string> &labels);
+
+  /// Modes in the band at every point, and how many crossings let expect.
+  Table count_table(const StabilityChart &chart);
+
+  /// Points at which the number of modes is not the expected one.
+  std::size_t n_incomplete(const StabilityChart &chart);
+} // namespace Squeal

@@ -1,0 +1,103 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/number_parameter.h>
+#include <squeal/parameters/sweep.h>
+
+#include <cmath>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    template <typename Function>
+    std::vector<double> spaced(const ValueRange &range, const Function &between)
+    {
+      std::vector<double> values;
+      for (unsigned int i = 0; i < range.number; ++i)
+        values.push_back(i == 0 ? range.first : i + 1 == range.number ? range.last : between(double(i) / (range.number - 1)));
+      return values;
+    }
+
+    void check_range(const ValueRange &range, const std::string &what, const std::string &parameters)
+    {
+      if (range.number == 0)
+        throw ParameterError("no " + what + " is asked for", "parameters " + parameters, "give at least one");
+      if (range.number > 1 && !(range.first < range.last))
+        throw ParameterError("the range of the " + what + " from " + exact_text(range.first) + " to " + exact_text(range.last) +
+                               " does not ascend",
+                             "parameters " + parameters, "give a last value above the first, or ask for one value");
+    }
+
+    void check_inside(const std::vector<double> &values, const ValueRange &range, const char *name)
+    {
+      for (const double value : values)
+        if (value < range.first || value > (range.number > 1 ? range.last : range.first))
+          throw ParameterError("the friction coefficient " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
+                               "give values between Sweep/First friction coefficient and Sweep/Last friction coefficient");
+    }
+  } // namespace
+
+  std::vector<double> ValueRange::linear() const
+  {
+    return spaced(*this, [this](const double s) { return first + s * (last - first); });
+  }
+
+  std::vector<double> ValueRange::geometric() const
+  {
+    return spaced(*this, [this](const double s) { return first * std::pow(last / first, s); });
+  }
+
+  std::vector<double> SweepParameters::map_grid() const
+  {
+    return ValueRange{friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}.linear();
+  }
+
+  void SweepParameters::add_parameters(dealii::ParameterHandler &prm)
+  {
+    using dealii::Patterns::Double;
+    using dealii::Patterns::Integer;
+    const dealii::Patterns::List coefficients(Double(0., 10.), 0, 1000);
+    prm.enter_subsection("Sweep");
+    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Begin of the sweep. Units: none.", Double(0., 10.));
+    add_number_parameter(prm, "Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", Double(0., 10.));
+    prm.add_parameter("Number of friction coefficients", friction_coefficients.number,
+                      "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", Integer(1, 100000));
+    add_number_parameter(prm, "Tolerance", tolerance,
+                         "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.",
+                         Double(1e-10, 1e-2));
+    prm.add_parameter("Maximum basis", maximum_basis,
+                      "Largest reduced basis; a sweep that would need more stops at what it proved. Units: vectors.", Integer(1));
+    add_number_parameter(prm, "Threshold tolerance", threshold_tolerance,
+                         "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", Double(1e-13, 1e-2));
+    prm.add_parameter("Compare dissipation", compare_dissipation,
+                      "With radial dissipation, sweep also without it and show both.");
+    add_number_parameter(prm, "Mode shapes at", mode_shapes,
+                         "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.", coefficients);
+    add_number_parameter(prm, "Count modes at", counts,
+                         "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
+                         "in finding them, separated by commas. Units: none.",
+                         coefficients);
+    add_enum_parameter(prm, "Map parameter", map_parameter,
+                       "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
+    add_number_parameter(prm, "First map value", map_values.first, "Smallest load or speed of the map. Units: N or rad/s.", Double(0.));
+    add_number_parameter(prm, "Last map value", map_values.last, "Largest load or speed of the map. Units: N or rad/s.", Double(0.));
+    prm.add_parameter("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.", Integer(1, 10000));
+    prm.add_parameter("Map friction coefficients", map_friction_coefficients,
+                      "Friction coefficients of the map, equally spaced over the sweep. Units: none.", Integer(1, 10000));
+    prm.leave_subsection();
+  }
+
+  void SweepParameters::check() const
+  {
+    check_range(friction_coefficients, "friction coefficients",
+                "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients");
+    check_inside(mode_shapes, friction_coefficients, "Mode shapes at");
+    check_inside(counts, friction_coefficients, "Count modes at");
+    if (map_parameter == MapParameter::none)
+      return;
+    check_range(map_values, "map values", "Sweep/First map value, Last map value and Number of map values");
+    if (!(map_values.first > 0.))
+      throw ParameterError("the map begins at zero", "parameter Sweep/First map value", "give a positive load or speed");
+  }
+} // namespace Squeal
