@@ -281,7 +281,8 @@ namespace Squeal
         }
       catch (const fs::filesystem_error &error)
         {
-          problem = {"what the sweep has found cannot be kept: " + error.code().message(), "folder " + folder, "choose a folder that you may write to"};
+          problem = {"what the sweep has found cannot be kept: " + error.code().message(), "folder " + folder,
+                     "choose a folder that you may write to"};
         }
       catch (const std::exception &error)
         {
@@ -312,7 +313,8 @@ namespace Squeal
     if (old_key != key)
       throw Problem{"an unfinished sweep of other parameters, or of another version of the program, lies there: " + first_difference(old_key, key),
                     "folder " + folder,
-                    "run it to the end with its own parameters, which are in `" + key_path.string() + "`; choose another --output; or delete the folder"};
+                    "run it to the end with its own parameters, which are in `" + key_path.string() +
+                      "`; choose another --output; or delete the folder"};
 
     for (const fs::path &file : files(place, "", incomplete))
       fs::remove(file);

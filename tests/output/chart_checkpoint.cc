@@ -1,4 +1,4 @@
-#include "matrices.h"
+#include "stability/solutions.h"
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
@@ -246,10 +246,11 @@ TEST_F(ChartCheckpoints, ShowWhatIsFound)
     EXPECT_EQ(n_files("line_"), 3);
   });
   store.keep(at(0.05), result_at(0.05));
-  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.) + csv_of(0, 0.05)); });
+  const std::string others = csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.);
+  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + others + csv_of(0, 0.05)); });
   // A result that replaces another
   store.keep(at(0.05), result_at(0.05));
-  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.05) + csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.)); });
+  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.05) + others); });
 }
 
 
@@ -415,4 +416,62 @@ TEST_F(ChartCheckpoints, SayThatTheDiskIsFull)
   // Someone tidied up
   alone([&] { fs::remove_all(folder); });
   EXPECT_NE(refusal([&] { store.keep(at(0.7), result_at(0.7)); }).find("cannot be kept"), std::string::npos);
+}
+
+
+
+TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
+{
+  using namespace Squeal::Testing;
+  const Scene          s(mesh_of(skewed_pins), mounted(), operating());
+  const UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
+  const SymmetricModes real = real_modes(s.coupled);
+  ContactDamping       damping{{}, {}};
+  damping.radial.assign(s.interface.size(), 40.);
+  const CoupledSystem         system = with_contact_damping(s.coupled, damping);
+  std::vector<OperatingPoint> points;
+  for (int i = 0; i <= 4; ++i)
+    points.push_back({0.2 * i, damping, 0});
+  const auto sweep = [&](ChartStore *store) {
+    Progress   progress;
+    ChartModel model(system, inverse, 0., *real.vectors, omega_max, 0.05);
+    return certified_sweep(model, points, {4, 0}, {}, store, MPI_COMM_WORLD, progress);
+  };
+  const CertifiedSweep whole = sweep(nullptr);
+
+  // As if the run were killed before its third result
+  struct Killed
+  {};
+  struct Short : ChartCheckpoint
+  {
+    using ChartCheckpoint::ChartCheckpoint;
+    using ChartCheckpoint::keep;
+    void keep(const OperatingPoint &point, const ChartPoint &result) override
+    {
+      if (n_left-- == 0)
+        throw Killed();
+      ChartCheckpoint::keep(point, result);
+    }
+    int n_left = 2;
+  };
+  Short killed(folder, key, system.map(), MPI_COMM_WORLD, omega_max);
+  EXPECT_THROW(sweep(&killed), Killed);
+  ChartCheckpoint resumed(folder, key, system.map(), MPI_COMM_WORLD, omega_max);
+  EXPECT_EQ(resumed.n_found(), 2);
+  std::vector<std::optional<ChartPoint>> before;
+  for (const OperatingPoint &point : points)
+    before.push_back(resumed.find(point));
+  EXPECT_TRUE(before[0] && before[1] && !before[2]);
+  const CertifiedSweep again = sweep(&resumed);
+  ASSERT_EQ(again.points.size(), whole.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      ASSERT_TRUE(again.points[i] && whole.points[i]);
+      // On several processes two runs may differ by rounding.
+      EXPECT_LT(largest(distances(again.points[i]->lambda, whole.points[i]->lambda)), 1e-11) << "point " << i;
+      const auto kept = resumed.find(points[i]);
+      EXPECT_TRUE(kept && same_bits(*kept, *again.points[i])) << "point " << i;
+      EXPECT_TRUE(!before[i] || same_bits(*before[i], *again.points[i])) << "point " << i;
+    }
+  EXPECT_EQ(ChartCheckpoint(folder, key, system.map(), MPI_COMM_WORLD, omega_max).n_found(), 5);
 }
