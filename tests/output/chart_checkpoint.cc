@@ -1,0 +1,477 @@
+#include "stability/solutions.h"
+
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/output/chart_checkpoint.h>
+#include <squeal/output/result_folder.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+using namespace Squeal;
+namespace fs = std::filesystem;
+
+namespace
+{
+  constexpr int n_rows = 23;
+
+  const std::string header = "line [-],mu [-],frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-]\n";
+  const std::string key    = "# squeal 1\nsubsection Operation\n  set Load = 300\nend\n";
+
+  const double band = circular_frequency(1000.);
+
+  std::string content(const fs::path &file)
+  {
+    std::ifstream     stream(file);
+    std::stringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  template <typename T>
+  bool same_bits(const std::vector<T> &a, const std::vector<T> &b)
+  {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+  }
+
+  template <typename Number>
+  bool same_bits(const DenseMatrixOf<Number> &a, const DenseMatrixOf<Number> &b)
+  {
+    return a.n_rows() == b.n_rows() && a.n_columns() == b.n_columns() &&
+           std::memcmp(a.column(), b.column(), sizeof(Number) * a.n_rows() * a.n_columns()) == 0;
+  }
+
+  bool same_bits(const ChartPoint &a, const ChartPoint &b)
+  {
+    return std::memcmp(&a.friction_coefficient, &b.friction_coefficient, sizeof(double)) == 0 && same_bits(a.lambda, b.lambda) &&
+           same_bits(a.right, b.right) && same_bits(a.left, b.left) && same_bits(a.right_residuals, b.right_residuals) &&
+           same_bits(a.left_residuals, b.left_residuals) && same_bits(a.errors, b.errors) && same_bits(a.uncertainties, b.uncertainties) &&
+           a.verdicts == b.verdicts && same_bits(a.corrections, b.corrections) && same_bits(a.real_values, b.real_values) && a.n_zeros == b.n_zeros;
+  }
+
+  /// Three modes, the last beyond the band, with numbers that no short text tells.
+  ChartPoint result_at(const double friction)
+  {
+    ChartPoint point;
+    point.friction_coefficient = friction;
+    for (int j = 0; j < 3; ++j)
+      point.lambda.emplace_back(j == 1 ? 10. : -1. / 3. - friction, circular_frequency(400. * (j + 1)));
+    for (ComplexDenseMatrix *matrix : {&point.right, &point.left, &point.corrections})
+      {
+        *matrix = ComplexDenseMatrix(matrix == &point.corrections ? 3 : 7, 3);
+        for (int j = 0; j < matrix->n_columns(); ++j)
+          for (int i = 0; i < matrix->n_rows(); ++i)
+            (*matrix)(i, j) = {std::sin(1. + i + 10. * j + friction), matrix == &point.left ? -0. : std::numeric_limits<double>::denorm_min()};
+      }
+    point.right_residuals = {1e-9 / 3., 2e-9, 3e-9};
+    point.left_residuals  = {1e-7 / 3., 2e-7, 3e-7};
+    point.errors          = {1e-7, 2e-7, std::numeric_limits<double>::infinity()};
+    point.uncertainties   = {0.1, 0.2, 0.3};
+    point.verdicts        = {Verdict::stable, Verdict::unstable, Verdict::undecided};
+    point.real_values     = {-1. / 7.};
+    point.n_zeros         = 2;
+    return point;
+  }
+
+  /// The rows of result_at() in points.csv.
+  std::string csv_of(const int line, const double friction)
+  {
+    std::ostringstream text;
+    text.precision(12);
+    for (int j = 0; j < 2; ++j)
+      {
+        const ModalQuantities mode = modal_quantities(result_at(friction).lambda[j]);
+        text << line << ',' << friction << ',' << mode.frequency << ',' << mode.growth_rate << ',' << 100. * mode.divergence_rate << ','
+             << (j == 0 ? "1e-07" : "2e-07") << '\n';
+      }
+    return text.str();
+  }
+
+  OperatingPoint at(const double friction, const int line = 0)
+  {
+    return {friction, {}, line};
+  }
+
+  /// The rows dealt out to the processes as cards are, in descending order: unlike Epetra's own distribution even on one process.
+  Epetra_Map dealt_rows()
+  {
+    const Epetra_MpiComm comm(MPI_COMM_WORLD);
+    std::vector<int>     mine;
+    for (int i = n_rows - 1; i >= 0; --i)
+      if (i % comm.NumProc() == comm.MyPID())
+        mine.push_back(i);
+    return Epetra_Map(n_rows, static_cast<int>(mine.size()), mine.data(), 0, comm);
+  }
+
+  /// A folder that all processes share, removed at the end.
+  class ChartCheckpoints : public ::testing::Test
+  {
+  protected:
+    ChartCheckpoints()
+      : rows(n_rows, 0, Epetra_MpiComm(MPI_COMM_WORLD))
+      , place(fs::temp_directory_path() /
+              ("squeal_checkpoint_test_" + std::to_string(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()), 0))))
+      , folder((place / "deep" / "results.checkpoint").string())
+    {
+      alone([&] { fs::create_directories(place); });
+    }
+    ~ChartCheckpoints() override
+    {
+      alone([&] { fs::remove_all(place); });
+    }
+
+    /// What one process does while the others wait.
+    template <typename Function>
+    void alone(const Function &action) const
+    {
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (rows.Comm().MyPID() == 0)
+        action();
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+
+    ChartCheckpoint checkpoint(const std::string &with_key = key) const
+    {
+      return ChartCheckpoint(folder, with_key, rows, MPI_COMM_WORLD, band);
+    }
+
+    /// Two blocks and two results on the first, one on both.
+    void keep_some() const
+    {
+      ChartCheckpoint store = checkpoint();
+      store.keep(random_vectors(rows, 4, 1));
+      store.keep(at(0.1), result_at(0.1));
+      store.keep(at(1. / 3., 1), result_at(1. / 3.));
+      store.keep(random_vectors(rows, 2, 2));
+      store.keep(at(0.2), result_at(0.2));
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+
+    /// The one file of the folder whose name begins so, the last if there are several.
+    fs::path file(const std::string &prefix) const
+    {
+      fs::path found;
+      for (const auto &entry : fs::directory_iterator(folder))
+        if (entry.path().filename().string().rfind(prefix, 0) == 0 && entry.path() > found)
+          found = entry.path();
+      EXPECT_FALSE(found.empty()) << prefix;
+      return found;
+    }
+
+    int n_files(const std::string &prefix) const
+    {
+      int n = 0;
+      for (const auto &entry : fs::directory_iterator(folder))
+        n += entry.path().filename().string().rfind(prefix, 0) == 0;
+      return n;
+    }
+
+    /// What a FileError says, on every process; nothing if there is none.
+    template <typename Function>
+    std::string refusal(const Function &action) const
+    {
+      try
+        {
+          action();
+          return "";
+        }
+      catch (const FileError &error)
+        {
+          return error.what();
+        }
+    }
+
+    const Epetra_Map  rows;
+    const fs::path    place;
+    const std::string folder;
+  };
+} // namespace
+
+
+
+TEST_F(ChartCheckpoints, ReturnEveryBit)
+{
+  keep_some();
+  for (const Epetra_Map &map : {rows, dealt_rows(), Testing::rows(n_rows, Testing::Distribution::last_process_all)})
+    {
+      const ChartCheckpoint store(folder, key, map, MPI_COMM_WORLD, band);
+      EXPECT_EQ(store.n_found(), 3);
+      for (const OperatingPoint &point : {at(0.1), at(1. / 3., 1), at(0.2)})
+        {
+          const auto found = store.find(point);
+          ASSERT_TRUE(found.has_value());
+          EXPECT_TRUE(same_bits(*found, result_at(point.friction_coefficient)));
+        }
+      // Neither the other line, nor the next number
+      EXPECT_FALSE(store.find(at(1. / 3.)).has_value());
+      EXPECT_FALSE(store.find(at(0.1, 1)).has_value());
+      EXPECT_FALSE(store.find(at(std::nextafter(0.1, 1.))).has_value());
+
+      const auto blocks = store.basis();
+      ASSERT_EQ(blocks.size(), 2u);
+      for (int b = 0; b < 2; ++b)
+        {
+          EXPECT_TRUE(blocks[b].Map().SameAs(map));
+          EXPECT_TRUE(same_bits(replicate(blocks[b]), replicate(random_vectors(rows, b == 0 ? 4 : 2, b + 1))));
+        }
+    }
+}
+
+
+
+TEST_F(ChartCheckpoints, ShowWhatIsFound)
+{
+  keep_some();
+  alone([&] {
+    EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(1, 1. / 3.) + csv_of(0, 0.2));
+    EXPECT_EQ(content(fs::path(folder) / "parameters.prm"), key);
+    // As if the run had been killed while it wrote
+    std::ofstream(fs::path(folder) / "points.csv", std::ios::app) << "0,0.3,1";
+    std::ofstream(fs::path(folder) / "line_0000_mu_half.bin.incomplete") << "squeal";
+  });
+  ChartCheckpoint store = checkpoint();
+  alone([&] {
+    EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.));
+    EXPECT_EQ(n_files("line_"), 3);
+  });
+  store.keep(at(0.05), result_at(0.05));
+  const std::string others = csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.);
+  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + others + csv_of(0, 0.05)); });
+  // A result that replaces another
+  store.keep(at(0.05), result_at(0.05));
+  alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.05) + others); });
+}
+
+
+
+TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
+{
+  keep_some();
+  const std::string message = refusal([&] { checkpoint("# squeal 1\nsubsection Operation\n  set Load = 400\nend\n"); });
+  for (const std::string &part :
+       {std::string("an unfinished sweep of other parameters"), std::string("`set Load = 300` there, `set Load = 400` here"), "folder " + folder,
+        folder + "/parameters.prm", std::string("--output"), std::string("delete the folder")})
+    EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
+  EXPECT_NE(refusal([&] { checkpoint(key + "set Study = stability\n"); }).find("nothing there, `set Study = stability` here"), std::string::npos);
+  EXPECT_EQ(checkpoint().n_found(), 3);
+}
+
+
+
+TEST_F(ChartCheckpoints, ForgetDamagedResults)
+{
+  const auto cut = [](const fs::path &file, const long n) { fs::resize_file(file, n); };
+  const auto flip = [](const fs::path &file) {
+    std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
+    stream.seekp(static_cast<std::streamoff>(fs::file_size(file) / 2));
+    const char c = static_cast<char>(stream.peek() ^ 16);
+    stream.seekp(static_cast<std::streamoff>(fs::file_size(file) / 2));
+    stream.put(c);
+  };
+  for (int damage = 0; damage < 4; ++damage)
+    {
+      keep_some();
+      alone([&] {
+        const fs::path victim = file("line_0001");
+        switch (damage)
+          {
+            case 0:
+              cut(victim, 0);
+              break;
+            case 1:
+              cut(victim, 10);
+              break;
+            case 2:
+              cut(victim, static_cast<long>(fs::file_size(victim)) - 1);
+              break;
+            default:
+              flip(victim);
+          }
+      });
+      ChartCheckpoint store = checkpoint();
+      EXPECT_EQ(store.n_found(), 2) << damage;
+      EXPECT_FALSE(store.find(at(1. / 3., 1)).has_value());
+      EXPECT_TRUE(store.find(at(0.2)).has_value());
+      EXPECT_EQ(store.basis().size(), 2u);
+      store.keep(at(1. / 3., 1), result_at(1. / 3.));
+      EXPECT_TRUE(same_bits(store.find(at(1. / 3., 1)).value(), result_at(1. / 3.)));
+      alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(0, 0.2) + csv_of(1, 1. / 3.)); });
+      store.remove();
+    }
+}
+
+
+
+TEST_F(ChartCheckpoints, StartAfreshWithoutABlock)
+{
+  for (int damage = 0; damage < 4; ++damage)
+    {
+      keep_some();
+      alone([&] {
+        const fs::path last = file("basis_");
+        if (damage == 0)
+          fs::resize_file(last, 0);
+        else if (damage == 1)
+          fs::resize_file(last, fs::file_size(last) - 8);
+        else if (damage == 2)
+          fs::remove(last); // a result rests on it
+        else
+          fs::remove(fs::path(folder) / "basis_0000.bin");
+      });
+      ChartCheckpoint store = checkpoint();
+      EXPECT_EQ(store.n_found(), 0) << damage;
+      EXPECT_TRUE(store.basis().empty());
+      EXPECT_FALSE(store.find(at(0.1)).has_value());
+      alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header); });
+      store.keep(random_vectors(rows, 3, 5));
+      store.keep(at(0.1), result_at(0.1));
+      EXPECT_EQ(checkpoint().basis().size(), 1u);
+      EXPECT_EQ(checkpoint().n_found(), 1);
+      store.remove();
+    }
+}
+
+
+
+TEST_F(ChartCheckpoints, LieBesideTheResults)
+{
+  const std::string output = (place / "deep" / "results").string();
+  EXPECT_EQ(checkpoint_folder(output), folder);
+  EXPECT_EQ(checkpoint_folder(output + "/"), folder);
+  EXPECT_EQ(checkpoint_folder((place / "." / "deep").string() + "//results"), folder);
+  EXPECT_EQ(checkpoint_folder("results/a"), "results/a.checkpoint");
+  keep_some();
+  alone([&] {
+    // Neither a run that fails nor one that is complete touches it
+    for (const bool is_complete : {false, true})
+      {
+        ResultFolder results(output, true);
+        results.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+        if (is_complete)
+          results.commit();
+      }
+  });
+  ChartCheckpoint store = checkpoint();
+  EXPECT_EQ(store.n_found(), 3);
+  store.remove();
+  alone([&] {
+    EXPECT_FALSE(fs::exists(folder));
+    EXPECT_TRUE(fs::exists(output));
+  });
+}
+
+
+
+TEST_F(ChartCheckpoints, SayWhatIsInTheWay)
+{
+  // A folder of something else
+  alone([&] {
+    fs::create_directories(folder);
+    std::ofstream(fs::path(folder) / "thesis.tex") << "years of work";
+  });
+  EXPECT_NE(refusal([&] { checkpoint(); }).find("holds files that are not those of an unfinished sweep"), std::string::npos);
+  alone([&] {
+    EXPECT_EQ(content(fs::path(folder) / "thesis.tex"), "years of work");
+    // A file
+    fs::remove_all(folder);
+    std::ofstream(fs::path(folder)) << "a file";
+  });
+  EXPECT_NE(refusal([&] { checkpoint(); }).find("`" + folder + "` is a file"), std::string::npos);
+  // A file where a parent should be
+  const std::string below = folder + "/below/results.checkpoint";
+  EXPECT_NE(refusal([&] { ChartCheckpoint(below, key, rows, MPI_COMM_WORLD, band); }).find("folder " + below), std::string::npos);
+  alone([&] {
+    EXPECT_EQ(content(folder), "a file");
+    fs::remove(folder);
+  });
+}
+
+
+
+TEST_F(ChartCheckpoints, SayThatTheDiskIsFull)
+{
+  if (!fs::exists("/dev/full"))
+    GTEST_SKIP();
+  keep_some();
+  ChartCheckpoint store = checkpoint();
+  alone([&] { fs::create_symlink("/dev/full", fs::path(folder) / "basis_0002.bin.incomplete"); });
+  const std::string message = refusal([&] { store.keep(random_vectors(rows, 1, 3)); });
+  for (const std::string &part : {std::string(std::strerror(ENOSPC)), folder + "/basis_0002.bin", std::string("free space")})
+    EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
+  // What was kept stays, and the next attempt may succeed.
+  EXPECT_EQ(checkpoint().n_found(), 3);
+  store.keep(random_vectors(rows, 1, 3));
+  EXPECT_EQ(checkpoint().basis().size(), 3u);
+  // Someone tidied up
+  alone([&] { fs::remove_all(folder); });
+  EXPECT_NE(refusal([&] { store.keep(at(0.7), result_at(0.7)); }).find("cannot be kept"), std::string::npos);
+}
+
+
+
+TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
+{
+  using namespace Squeal::Testing;
+  const Scene          s(mesh_of(skewed_pins), mounted(), operating());
+  const UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
+  const SymmetricModes real = real_modes(s.coupled);
+  ContactDamping       damping{{}, {}};
+  damping.radial.assign(s.interface.size(), 40.);
+  const CoupledSystem         system = with_contact_damping(s.coupled, damping);
+  std::vector<OperatingPoint> points;
+  for (int i = 0; i <= 4; ++i)
+    points.push_back({0.2 * i, damping, 0});
+  const auto sweep = [&](ChartStore *store) {
+    Progress   progress;
+    ChartModel model(system, inverse, 0., *real.vectors, omega_max, 0.05);
+    return certified_sweep(model, points, {4, 0}, {}, store, MPI_COMM_WORLD, progress);
+  };
+  const CertifiedSweep whole = sweep(nullptr);
+
+  // As if the run were killed before its third result
+  struct Killed
+  {};
+  struct Short : ChartCheckpoint
+  {
+    using ChartCheckpoint::ChartCheckpoint;
+    using ChartCheckpoint::keep;
+    void keep(const OperatingPoint &point, const ChartPoint &result) override
+    {
+      if (n_left-- == 0)
+        throw Killed();
+      ChartCheckpoint::keep(point, result);
+    }
+    int n_left = 2;
+  };
+  Short killed(folder, key, system.map(), MPI_COMM_WORLD, omega_max);
+  EXPECT_THROW(sweep(&killed), Killed);
+  ChartCheckpoint resumed(folder, key, system.map(), MPI_COMM_WORLD, omega_max);
+  EXPECT_EQ(resumed.n_found(), 2);
+  std::vector<std::optional<ChartPoint>> before;
+  for (const OperatingPoint &point : points)
+    before.push_back(resumed.find(point));
+  EXPECT_TRUE(before[0] && before[1] && !before[2]);
+  const CertifiedSweep again = sweep(&resumed);
+  ASSERT_EQ(again.points.size(), whole.points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    {
+      ASSERT_TRUE(again.points[i] && whole.points[i]);
+      // On several processes two runs may differ by rounding.
+      EXPECT_LT(largest(distances(again.points[i]->lambda, whole.points[i]->lambda)), 1e-11) << "point " << i;
+      const auto kept = resumed.find(points[i]);
+      EXPECT_TRUE(kept && same_bits(*kept, *again.points[i])) << "point " << i;
+      EXPECT_TRUE(!before[i] || same_bits(*before[i], *again.points[i])) << "point " << i;
+    }
+  EXPECT_EQ(ChartCheckpoint(folder, key, system.map(), MPI_COMM_WORLD, omega_max).n_found(), 5);
+}
