@@ -19,7 +19,7 @@ namespace Squeal
     constexpr int         markers[] = {7, 5, 9, 11, 13, 6, 4, 8, 10, 12, 2, 1, 3};
     constexpr int         n_markers = sizeof(markers) / sizeof(markers[0]);
 
-    constexpr int key_height = 24, key_width = 230, title_height = 30;                              // [pixels]
+    constexpr int key_height = 24, smallest_key = 230, key_mark = 56, letter = 7, title_height = 30; // [pixels]
     constexpr int left_margin = 76, right_margin = 15, bottom_margin = 56, top_margin = 33;         // [pixels]
     constexpr int scale_margin = 88, scale_gap = 10, scale_width = 14;                              // [pixels]
 
@@ -192,6 +192,10 @@ namespace Squeal
           if (!series.title.empty() && series.style != PlotSeries::Style::texts && !is_empty(panel, series) &&
               std::none_of(key.begin(), key.end(), [&](const PlotSeries *other) { return other->title == series.title; }))
             key.push_back(&series);
+      std::stable_sort(key.begin(), key.end(), [](const PlotSeries *first, const PlotSeries *second) { return first->key_place < second->key_place; });
+      int key_width = smallest_key;
+      for (const PlotSeries *series : key)
+        key_width = std::max(key_width, key_mark + letter * static_cast<int>(series->title.size()));
       const int panel_width = plot.panel_width, panel_height = plot.panel_height;
       const int per_line = std::max(1, n_columns * panel_width / key_width), key_lines = (key.size() + per_line - 1) / per_line;
       const int width = n_columns * panel_width, strip = key_lines * key_height + 10;
@@ -237,7 +241,7 @@ namespace Squeal
           stream << "set yrange " << range_text(panel.y_range) << "\n";
           if (has_scale)
             {
-              stream << "set palette defined " << scale << (panel.counts ? " maxcolors " + std::to_string(std::max(1, static_cast<int>(panel.colour_end))) : "")
+              stream << "set palette defined " << scale << (panel.counts && panel.colour_end >= 2. ? " maxcolors " + std::to_string(static_cast<int>(panel.colour_end)) : "")
                      << "\nset cbrange [" << (panel.counts ? "0.5:" : "0:") << (panel.colour_end > 0. ? panel.colour_end : 1.) + (panel.counts ? 0.5 : 0.)
                      << "]\nset cblabel " << quoted(panel.colour_label) << "\nset cbtics " << (panel.counts && panel.colour_end <= 12. ? "1" : "autofreq")
                      << "\nset colorbox vertical user origin screen " << right + static_cast<double>(scale_gap) / width << "," << floor

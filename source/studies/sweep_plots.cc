@@ -132,6 +132,14 @@ namespace Squeal
       PlotSeries all{line.title, {}, {}, Style::lines, colour}, growing{"growing, " + line.title, {}, {}, Style::lines, growing_colours[line_number % n_line_colours]};
       all.size     = 0.6 * width;
       growing.size = 1.6 * width;
+      // A line needs two points
+      if (line.chart.points.size() == 1)
+        {
+          all.style = growing.style = Style::dots;
+          all.size                  = 1.6;
+          growing.size              = 2.4;
+        }
+      all.key_place = growing.key_place = line_number;
       for (const int branch : branches)
         {
           const std::vector<CurvePoint> points = curve(line.chart, branch, largest_frequency);
@@ -163,7 +171,8 @@ namespace Squeal
       for (const ThresholdEvent event : {ThresholdEvent::onset, ThresholdEvent::restabilisation})
         {
           PlotSeries marks{to_string(event), {}, {}, Style::points, colour, event == ThresholdEvent::onset ? open_triangle : open_triangle_down};
-          marks.size = 0.9 * width;
+          marks.size      = 0.9 * width;
+          marks.key_place = std::numeric_limits<int>::max();
           for (const Threshold &threshold : line.chart.thresholds)
             if (threshold.event == event && shown.count(threshold.branch) != 0 && threshold.lambda.imag() <= largest_frequency)
               append(marks, threshold.friction_coefficient, quantity(threshold.lambda));
@@ -215,7 +224,7 @@ namespace Squeal
 
       void occupy(const double x, const double y)
       {
-        boxes.push_back({x - character, x + character, y - 0.5 * line, y + 0.5 * line});
+        boxes.push_back({x - 0.9 * character, x + 0.9 * character, y - 0.5 * line, y + 0.5 * line});
       }
 
       /// A side of the point at which the text covers nothing; false if there is none.
@@ -307,8 +316,10 @@ namespace Squeal
         {
           const int  colour = line_colours[l % n_line_colours];
           PlotSeries inside{lines[l].title, {}, {}, Style::points, colour, disc}, below{"faster decay", {}, {}, Style::points, colour, triangle_down};
-          inside.size = 0.45;
-          below.size  = 0.6;
+          inside.size      = 0.45;
+          below.size       = 0.6;
+          inside.key_place = l;
+          below.key_place  = std::numeric_limits<int>::max();
           for (const Mark &mark : marks[l])
             append(mark.y < edge ? below : inside, mark.x, std::max(mark.y, edge));
           panel.series.push_back(inside);
@@ -324,15 +335,23 @@ namespace Squeal
       for (std::size_t l = 0; l < lines.size(); ++l)
         {
           PlotSeries rings{"growing", {}, {}, Style::points, growing_colours[0], ring}, squares{"undecided", {}, {}, Style::points, 2, square};
-          rings.size   = 1.2;
-          squares.size = 1.1;
+          rings.size      = 1.2;
+          squares.size    = 1.1;
+          rings.key_place = squares.key_place = lines.size();
           std::map<Side, PlotSeries> texts;
           for (const Mark &mark : marks[l])
             if (mark.grows || mark.is_undecided)
               {
                 append(mark.grows ? rings : squares, mark.x, std::max(mark.y, edge));
-                Side side;
-                if (mark.grows && !mark.label.empty() && room.find(x_share(mark), y_share(mark), mark.label, side))
+                // The name beside the mode of an earlier line serves both
+                constexpr double close    = 0.05;
+                const bool       is_named = std::any_of(marks.begin(), marks.begin() + l, [&](const std::vector<Mark> &earlier) {
+                  return std::any_of(earlier.begin(), earlier.end(), [&](const Mark &other) {
+                    return other.grows && other.label == mark.label && std::abs(x_share(other) - x_share(mark)) < close;
+                  });
+                });
+                Side             side;
+                if (mark.grows && !is_named && !mark.label.empty() && room.find(x_share(mark), y_share(mark), mark.label, side))
                   {
                     PlotSeries &series = texts[side];
                     series.style       = Style::texts;
@@ -639,6 +658,18 @@ namespace Squeal
                 if (l == 0)
                   add_names(frequencies, lines[l], shown, largest_frequency);
               }
+            // Names lie above the highest and below the lowest branch
+            double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+            for (const PlotSeries &series : frequencies.series)
+              for (const double value : series.y)
+                if (std::isfinite(value))
+                  {
+                    lowest  = std::min(lowest, value);
+                    highest = std::max(highest, value);
+                  }
+            constexpr double margin = 0.08;
+            if (lowest < highest)
+              frequencies.y_range = {lowest - margin * (highest - lowest), highest + margin * (highest - lowest)};
             upper.push_back(frequencies);
             lower.push_back(rates);
           }

@@ -47,6 +47,7 @@ namespace Squeal
     bool                     dashed = false; ///< of lines
     std::vector<PlotCell>    cells  = {};    ///< one for each point
     std::vector<double>      values = {};    ///< colour of each cell on the panel's scale; empty: the series' colour
+    int                      key_place = 0; ///< titles of lower ones come first in the key
   };
 
   /// Ends of an axis; those that are not finite follow from the points.
