@@ -23,8 +23,39 @@ namespace Squeal
     constexpr int left_margin = 76, right_margin = 15, bottom_margin = 56, top_margin = 33;         // [pixels]
     constexpr int scale_margin = 88, scale_gap = 10, scale_width = 14;                              // [pixels]
 
-    /// From pale to dark, without white and grey, which cells of other meanings have.
-    constexpr const char *scale = "(0 '#fff3c4', 0.25 '#fdc35d', 0.5 '#ee7d28', 0.75 '#c23b1c', 1 '#6b0f1a')";
+    /// From pale to dark, without white and grey, which cells of other meanings have; black texts are legible on all of them.
+    constexpr int scale[][3] = {{255, 243, 196}, {253, 210, 127}, {249, 160, 82}, {232, 103, 58}, {196, 58, 36}};
+    constexpr int n_scale    = sizeof(scale) / sizeof(scale[0]);
+
+    /// Numbers of modes up to this have a colour each.
+    constexpr int most_steps = 12;
+
+    /// gnuplot's name of a colour of the scale at @p share ∈ [0, 1].
+    std::string scale_colour(const double share)
+    {
+      const int          i = std::min(static_cast<int>(share * (n_scale - 1)), n_scale - 2);
+      const double       t = share * (n_scale - 1) - i;
+      std::ostringstream text;
+      text << "'#" << std::hex << std::setfill('0');
+      for (int c = 0; c < 3; ++c)
+        text << std::setw(2) << static_cast<int>(std::lround((1. - t) * scale[i][c] + t * scale[i + 1][c]));
+      return text.str() + "'";
+    }
+
+    /// gnuplot's definition of the scale: in @p n_steps of one colour each, or continuous if there are none.
+    std::string scale_definition(const int n_steps)
+    {
+      std::ostringstream text;
+      for (int i = 0; i < n_steps; ++i)
+        {
+          const std::string colour = scale_colour(n_steps > 1 ? static_cast<double>(i) / (n_steps - 1) : 0.);
+          text << (i > 0 ? ", " : "") << i << ' ' << colour << ", " << i + 1 << ' ' << colour;
+        }
+      if (n_steps == 0)
+        for (int i = 0; i < n_scale; ++i)
+          text << (i > 0 ? ", " : "") << i << ' ' << scale_colour(static_cast<double>(i) / (n_scale - 1));
+      return "(" + text.str() + ")";
+    }
 
     /// A text in gnuplot's quotation marks, without its markup.
     std::string quoted(const std::string &text)
@@ -241,9 +272,10 @@ namespace Squeal
           stream << "set yrange " << range_text(panel.y_range) << "\n";
           if (has_scale)
             {
-              stream << "set palette defined " << scale << (panel.counts && panel.colour_end >= 2. ? " maxcolors " + std::to_string(static_cast<int>(panel.colour_end)) : "")
-                     << "\nset cbrange [" << (panel.counts ? "0.5:" : "0:") << (panel.colour_end > 0. ? panel.colour_end : 1.) + (panel.counts ? 0.5 : 0.)
-                     << "]\nset cblabel " << quoted(panel.colour_label) << "\nset cbtics " << (panel.counts && panel.colour_end <= 12. ? "1" : "autofreq")
+              const bool in_steps = panel.counts && panel.colour_end <= most_steps;
+              stream << "set palette defined " << scale_definition(in_steps ? std::max(1, static_cast<int>(panel.colour_end)) : 0) << "\nset cbrange ["
+                     << (panel.counts ? "0.5:" : "0:") << (panel.colour_end > 0. ? panel.colour_end : 1.) + (panel.counts ? 0.5 : 0.)
+                     << "]\nset cblabel " << quoted(panel.colour_label) << "\nset cbtics " << (in_steps ? "1" : "autofreq")
                      << "\nset colorbox vertical user origin screen " << right + static_cast<double>(scale_gap) / width << "," << floor
                      << " size screen " << static_cast<double>(scale_width) / width << "," << ceiling - floor << "\n";
             }

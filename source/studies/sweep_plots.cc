@@ -667,7 +667,7 @@ namespace Squeal
                     lowest  = std::min(lowest, value);
                     highest = std::max(highest, value);
                   }
-            constexpr double margin = 0.08;
+            constexpr double margin = 0.1;
             if (lowest < highest)
               frequencies.y_range = {lowest - margin * (highest - lowest), highest + margin * (highest - lowest)};
             upper.push_back(frequencies);
