@@ -1,3 +1,4 @@
+#include <squeal/base/exceptions.h>
 #include <squeal/output/plot.h>
 
 #include <gtest/gtest.h>
@@ -61,6 +62,55 @@ TEST(Plots, DataScriptAndPicture)
     {
       const std::string picture = content(base / "plots" / "test.svg");
       for (const char *text : {"Two panels", "marks", "lines", "nothing to show", "branch", "quoted"})
+        EXPECT_NE(picture.find(text), std::string::npos) << text;
+    }
+  fs::remove_all(base);
+}
+
+
+
+TEST(Plots, CellsTextsAndBrokenLines)
+{
+  const fs::path base = fs::temp_directory_path() / "squeal plot of cells";
+  fs::remove_all(base);
+  {
+    ResultFolder folder(base.string(), true);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    PlotPanel    panel{"map", "mu", "load [N]", false, true, {}, {}, {0., 3.}, {1., 100.}, {1., 10., 100.}};
+    panel.colour_label = "rate [%]";
+    panel.colour_end   = 5.;
+    PlotSeries cells{"", {0.5, 1.5}, {3., 3.}, PlotSeries::Style::cells};
+    cells.cells  = {{0., 1., 1., 10.}, {1., 2., 1., 10.}};
+    cells.values = {1., 4.};
+    PlotSeries texts{"", {0.5}, {3.}, PlotSeries::Style::texts};
+    texts.labels = {"A0-4 -"};
+    PlotSeries line{"limit", {nan, 0., 1., nan, nan, 2., 3., nan}, {nan, 1., 1., nan, nan, 2., 2., nan}, PlotSeries::Style::lines};
+    line.dashed    = true;
+    line.key_place = 1;
+    PlotSeries mark{"first in the key", {1.}, {50.}};
+    panel.series = {cells, texts, line, mark};
+    EXPECT_EQ(write_plot("cells", {"Cells", {panel}, 1}, folder), std::system("gnuplot --version >/dev/null 2>&1") == 0);
+
+    // What some points have all must have
+    panel.series[0].cells.pop_back();
+    EXPECT_THROW(write_plot("bad", {"Cells", {panel}, 1}, folder), Error);
+    panel.series[0] = texts;
+    panel.series[0].labels.clear();
+    EXPECT_THROW(write_plot("bad", {"Cells", {panel}, 1}, folder), Error);
+    folder.commit();
+  }
+  const std::string data = content(base / "plots" / "cells.dat");
+  EXPECT_EQ(n_lines_of_data(data), 2u + 1u + 4u + 1u);
+  EXPECT_NE(data.find("0.5 3 0 1 1 10 1\n"), std::string::npos);
+  // One empty line between the parts of the line, two at its end
+  EXPECT_NE(data.find("0 1\n1 1\n\n2 2\n3 2\n\n\n"), std::string::npos);
+  const std::string script = content(base / "plots" / "cells.gp");
+  EXPECT_NE(script.find("set cbrange [0:5]"), std::string::npos);
+  EXPECT_LT(script.find("set label 1 \"first in the key\""), script.find("set label 2 \"limit\""));
+  if (fs::exists(base / "plots" / "cells.svg"))
+    {
+      const std::string picture = content(base / "plots" / "cells.svg");
+      for (const char *text : {"rate [%]", "A0-4 -", "limit"})
         EXPECT_NE(picture.find(text), std::string::npos) << text;
     }
   fs::remove_all(base);
