@@ -1,17 +1,21 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/version.h>
+#include <squeal/output/chart_checkpoint.h>
 #include <squeal/stability/branches.h>
 #include <squeal/stability/certified_sweep.h>
+#include <squeal/stability/contour_count.h>
 #include <squeal/stability/mode_links.h>
 #include <squeal/studies/contact_states.h>
 #include <squeal/studies/frictionless_modes.h>
 #include <squeal/studies/mode_fields.h>
-#include <squeal/studies/sliding_results.h>
+#include <squeal/studies/sweep_plots.h>
 #include <squeal/studies/sweep_study.h>
 #include <squeal/studies/sweep_tables.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <ostream>
 #include <set>
@@ -23,7 +27,7 @@ namespace Squeal
     /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
     constexpr double band_margin = 0.05;
     /// Thresholds less certain than this times the tolerance of the search get vectors of their own, in as many rounds.
-    constexpr double threshold_safety         = 3.;
+    constexpr double threshold_safety         = 5.;
     constexpr int    maximum_threshold_rounds = 2;
 
     // ------------------------------------------------------------- what is asked
@@ -118,31 +122,40 @@ namespace Squeal
 
     // ------------------------------------------------------------- what comes out
 
-    /// A chart over a stretch of a line on which the contact set stays the same.
-    struct LineChart
+    /// Number of modes at one friction coefficient by the sweep and by the argument principle.
+    struct CountAt
     {
-      int                      line;
-      StabilityChart           chart;
-      std::vector<std::string> labels; ///< of the branches
-    };
-
-    /// The most unstable mode at an operating point of the map.
-    struct MapPoint
-    {
-      double          friction_coefficient, value;
-      int             n_open;
-      bool            is_known = false;
-      ModalQuantities mode{};
-      std::string     leader;
-      int             n_unstable = 0, n_undecided = 0;
-      double          error      = 0.;
+      double       friction_coefficient;
+      int          n_found; ///< in the rectangle
+      ContourCount count;
     };
 
     struct SweepResults
     {
-      std::vector<LineChart> charts;
-      std::vector<MapPoint>  map;
+      std::map<int, std::vector<ChartLine>> charts; ///< by line: stretches with one contact set each
+      std::map<std::pair<double, double>, MapCell> map; ///< by load or speed, and friction coefficient
+      std::map<std::pair<double, double>, double>  map_errors; ///< largest estimated |δλ| / |λ| [-]
+      std::vector<CountAt> counts;
     };
+
+    /// Where an unfinished sweep keeps what it has found, and what it is the sweep of.
+    struct CheckpointPlace
+    {
+      std::string folder, key;
+    };
+
+    CheckpointPlace checkpoint_place(const Run &run)
+    {
+      // What only adds to the results does not change them
+      Parameters parameters        = run.parameters;
+      parameters.output            = {};
+      parameters.sweep.mode_shapes = {};
+      parameters.sweep.counts      = {};
+      std::ostringstream key;
+      key << "# squeal " << version << '\n';
+      parameters.print(key, false);
+      return {checkpoint_folder(run.folder().name()), key.str()};
+    }
 
     bool is_in_band(const std::complex<double> &lambda, const double largest_frequency)
     {
@@ -166,11 +179,17 @@ namespace Squeal
     class RegimeModel
     {
     public:
-      RegimeModel(const Scene &scene, const ContactRegime &regime, const std::vector<Line> &lines, const ContactStates &states, Run &run)
+      RegimeModel(const Scene           &scene,
+                  const ContactRegime   &regime,
+                  const std::vector<Line> &lines,
+                  const ContactStates   &states,
+                  const CheckpointPlace &checkpoint,
+                  Run                   &run)
         : scene(scene)
         , regime(regime)
         , lines(lines)
         , states(states)
+        , checkpoint(checkpoint)
         , run(run)
         , omega_max(circular_frequency(run.parameters.discretization.maximum_frequency))
       {
@@ -207,14 +226,14 @@ namespace Squeal
         for (std::size_t l = 0; l < lines.size(); ++l)
           if (lines[l].kind != Line::Kind::map)
             for (const auto &stretch : stretches(static_cast<int>(l)))
-              results.charts.push_back(follow(static_cast<int>(l), stretch));
+              {
+                results.charts[static_cast<int>(l)].push_back(follow(static_cast<int>(l), stretch));
+                if (lines[l].kind == Line::Kind::main)
+                  compare_with_inertia(results.charts[static_cast<int>(l)].back().chart);
+              }
         collect_map(results);
-        write_shapes(results);
-      }
-
-      const FrictionlessModes &modes() const
-      {
-        return frictionless;
+        count(results);
+        write_shapes();
       }
 
     private:
@@ -233,7 +252,10 @@ namespace Squeal
         CertifiedSweepOptions options;
         options.tolerance     = run.parameters.sweep.tolerance;
         options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
-        sweep                 = certified_sweep(*model, points, training(), options, nullptr, run.communicator, run.progress);
+        const auto store      = open_store("sweep");
+        if (store->n_found() > 0)
+          run.progress.note(text("  an interrupted sweep goes on: ", store->n_found(), " operating points are known"));
+        sweep = certified_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
         for (std::size_t i = 0; i < points.size(); ++i)
           if (sweep.points[i])
             known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
@@ -244,6 +266,28 @@ namespace Squeal
         if (!sweep.why_stopped.empty())
           run.progress.note(text("  note: ", points.size() - known.size(), " operating points miss the tolerance of ", options.tolerance, ": ",
                                  sweep.why_stopped, "; what is written was proved. Raise Sweep/Maximum basis or Sweep/Tolerance"));
+      }
+
+      std::unique_ptr<ChartCheckpoint> open_store(const std::string &phase) const
+      {
+        const std::string name = checkpoint.folder + "/" + text(regime.closed.size(), "_closed_", regime.points.front().line, "_",
+                                                                regime.points.front().friction_coefficient) +
+                                 "/" + phase;
+        return std::make_unique<ChartCheckpoint>(name, checkpoint.key, linearisation.coupled.map(), run.communicator, omega_max);
+      }
+
+      /// Without friction as many modes as inertia counts.
+      void compare_with_inertia(const StabilityChart &chart) const
+      {
+        const auto       &real   = frictionless.real;
+        const std::size_t n_real = n_in_band(real.eigenvalues, omega_max * omega_max) - real.n_rigid_body;
+        if (chart.points.front().friction_coefficient != 0.)
+          run.progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared among its values only");
+        else if (chart.counts.front().n_modes + chart.counts.front().n_overdamped != static_cast<int>(n_real))
+          run.progress.note(text("  note: ", chart.counts.front().n_modes, " modes lie in the band at mu = 0, where ", n_real,
+                                 " real modes were counted: damping moved some across its end"));
+        if (n_incomplete(chart) > 0)
+          run.progress.note(text("  note: at ", n_incomplete(chart), " points the number of modes is not the expected one, see counts.csv"));
       }
 
       /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
@@ -287,17 +331,26 @@ namespace Squeal
         std::vector<OperatingPoint> missing;
         for (const double mu : friction_coefficients)
           if (known.count({line, mu}) == 0)
-            missing.push_back(operating_point(line, mu, states.at(operation_at(lines[line], mu))));
-        const auto found = evaluate(*model, missing, run.communicator);
-        for (std::size_t i = 0; i < missing.size(); ++i)
-          known.emplace(std::make_pair(line, missing[i].friction_coefficient), found[i]);
+            {
+              const OperatingPoint point  = operating_point(line, mu, states.at(operation_at(lines[line], mu)));
+              const auto           stored = refinements ? refinements->find(point) : std::nullopt;
+              if (stored)
+                known.emplace(std::make_pair(line, mu), *stored);
+              else
+                missing.push_back(point);
+            }
+        evaluate(*model, missing, run.communicator, [&](const int i, const ChartPoint &found) {
+          known.emplace(std::make_pair(line, missing[i].friction_coefficient), found);
+          if (refinements)
+            refinements->keep(missing[i], found);
+        });
         std::vector<ChartPoint> result;
         for (const double mu : friction_coefficients)
           result.push_back(known.at({line, mu}));
         return result;
       }
 
-      LineChart follow(const int line, const std::vector<double> &friction_coefficients)
+      ChartLine follow(const int line, const std::vector<double> &friction_coefficients)
       {
         run.progress.begin("Branches");
         ChartOptions options;
@@ -318,14 +371,22 @@ namespace Squeal
         // values of the grid tell.
         ChartOptions coarse        = options;
         coarse.maximum_refinements = 0;
-        LineChart result{line, chart_of(coarse), {}};
-        sharpen(result, friction_coefficients);
-        for (int round = 0; round < maximum_threshold_rounds; ++round)
+        const auto open_round      = [&](const int round) {
+          refinements = open_store(text("line_", line, "_from_", friction_coefficients.front(), "_round_", round));
+        };
+        ChartLine result{title(line), {}, {}};
+        open_round(0);
+        sharpen(line, chart_of(coarse), friction_coefficients);
+        for (int round = 1;; ++round)
           {
             result.chart = chart_of(options);
-            if (!sharpen(result, friction_coefficients))
+            if (round == maximum_threshold_rounds)
+              break;
+            open_round(round);
+            if (!sharpen(line, result.chart, friction_coefficients))
               break;
           }
+        refinements.reset();
         result.labels = labels(result.chart);
         const StabilityChart &chart = result.chart;
         run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
@@ -339,9 +400,8 @@ namespace Squeal
        * Adds to the basis what the modes of uncertain thresholds lack on both sides, and forgets the results
        * there and at refinements: they were found without it. Returns whether there was anything to add.
        */
-      bool sharpen(const LineChart &line, const std::vector<double> &grid)
+      bool sharpen(const int line, const StabilityChart &chart, const std::vector<double> &grid)
       {
-        const StabilityChart            &chart = line.chart;
         std::vector<ChartModel::ModesAt> sets;
         for (const Threshold &threshold : chart.thresholds)
           {
@@ -356,7 +416,7 @@ namespace Squeal
                 const auto i = std::find_if(chart.points.begin(), chart.points.end(),
                                             [&](const ChartPoint &point) { return point.friction_coefficient == *place; }) -
                                chart.points.begin();
-                ChartModel::ModesAt set{operating_point(line.line, *place, states.at(operation_at(lines[line.line], *place))), &chart.points[i], {}};
+                ChartModel::ModesAt set{operating_point(line, *place, states.at(operation_at(lines[line], *place))), &chart.points[i], {}};
                 for (const int branch : {threshold.branch, threshold.partner})
                   if (branch >= 0 && chart.branches[branch].modes[i] >= 0)
                     set.modes.push_back(chart.branches[branch].modes[i]);
@@ -365,15 +425,21 @@ namespace Squeal
           }
         if (sets.empty())
           return false;
-        const auto vectors = model->new_vectors(sets);
-        if (!vectors || model->size() + vectors->NumVectors() > static_cast<int>(run.parameters.sweep.maximum_basis))
-          return false;
-        model->extend(*vectors);
+        if (const auto earlier = refinements->basis(); !earlier.empty())
+          model->extend(earlier.front());
+        else
+          {
+            const auto vectors = model->new_vectors(sets);
+            if (!vectors || model->size() + vectors->NumVectors() > static_cast<int>(run.parameters.sweep.maximum_basis))
+              return false;
+            refinements->keep(*vectors);
+            model->extend(*vectors);
+          }
         for (std::size_t i = 0; i < chart.points.size(); ++i)
           if (chart.is_refinement[i])
-            known.erase({line.line, chart.points[i].friction_coefficient});
+            known.erase({line, chart.points[i].friction_coefficient});
         for (const ChartModel::ModesAt &set : sets)
-          known.erase({line.line, set.point.friction_coefficient});
+          known.erase({line, set.point.friction_coefficient});
         return true;
       }
 
@@ -407,63 +473,112 @@ namespace Squeal
         return result;
       }
 
-      void collect_map(SweepResults &results)
+      std::string title(const int line) const
       {
-        // Named after the branch of the first chart that the leading mode resembles most at the nearest friction coefficient
-        const auto name = [&](const ChartPoint &point, const int mode) {
-          std::string                   label;
-          double                        largest = 0.;
-          for (const LineChart &line : results.charts)
-            {
-              const auto &points  = line.chart.points;
-              const auto  nearest = std::min_element(points.begin(), points.end(), [&](const ChartPoint &a, const ChartPoint &b) {
-                return std::abs(a.friction_coefficient - point.friction_coefficient) < std::abs(b.friction_coefficient - point.friction_coefficient);
-              });
-              const std::size_t i = nearest - points.begin();
-              for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
-                if (const int j = line.chart.branches[b].modes[i]; j >= 0)
-                  {
-                    std::complex<double> product = 0.;
-                    for (int row = 0; row < std::min(point.right.n_rows(), nearest->right.n_rows()); ++row)
-                      product += std::conj(point.right(row, mode)) * nearest->right(row, j);
-                    if (std::abs(product) > largest)
-                      {
-                        largest = std::abs(product);
-                        label   = line.labels[b];
-                      }
-                  }
-              break;
-            }
-          return label;
-        };
+        return lines[line].operation.radial_dissipation == RadialDissipation::none ? "without radial dissipation" : "with radial dissipation";
+      }
 
+      /// Label of the branch of the first chart that a mode resembles most, at the point of the chart nearest to its own.
+      std::string nearest_label(const SweepResults &results, const ChartPoint &point, const int mode) const
+      {
+        std::string label;
+        double      largest = 0.;
+        const auto  main    = results.charts.find(0);
+        if (main == results.charts.end())
+          return no_label;
+        const auto        &line     = main->second.back();
+        const auto        &points   = line.chart.points;
+        const auto         distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
+        const auto         nearest  = std::min_element(points.begin(), points.end(),
+                                                       [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
+        const std::size_t  i        = nearest - points.begin();
+        for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
+          if (const int j = line.chart.branches[b].modes[i]; j >= 0)
+            {
+              std::complex<double> product = 0.;
+              for (int row = 0; row < std::min(point.right.n_rows(), nearest->right.n_rows()); ++row)
+                product += std::conj(point.right(row, mode)) * nearest->right(row, j);
+              if (std::abs(product) > largest)
+                {
+                  largest = std::abs(product);
+                  label   = line.labels[b];
+                }
+            }
+        return label;
+      }
+
+      void collect_map(SweepResults &results) const
+      {
         for (const SweepPoint &operating : regime.points)
           {
-            if (lines[operating.line].kind != Line::Kind::map)
+            const Line &line = lines[operating.line];
+            if (line.kind != Line::Kind::map)
               continue;
-            MapPoint result{operating.friction_coefficient, lines[operating.line].value,
-                            static_cast<int>(scene.interface.size() - regime.closed.size())};
-            const auto found = known.find({operating.line, operating.friction_coefficient});
+            MapCell cell;
+            cell.friction_coefficient = operating.friction_coefficient;
+            cell.value                = line.value;
+            cell.n_open               = static_cast<int>(scene.interface.size() - regime.closed.size());
+            const auto found          = known.find({operating.line, operating.friction_coefficient});
             if (found != known.end())
               {
                 const ChartPoint &point = found->second;
                 const int         mode  = leading_mode(point, omega_max);
-                result.is_known         = mode >= 0;
-                result.mode             = modal_quantities(point.lambda[mode]);
-                result.leader           = name(point, mode);
-                result.error            = model->largest_error(point);
+                cell.is_known           = mode >= 0;
+                if (cell.is_known)
+                  {
+                    const ModalQuantities quantities = modal_quantities(point.lambda[mode]);
+                    cell.growth_rate                 = quantities.growth_rate;
+                    cell.divergence_rate             = quantities.divergence_rate;
+                    cell.frequency                   = quantities.frequency;
+                    cell.leader                      = nearest_label(results, point, mode);
+                  }
                 for (std::size_t j = 0; j < point.lambda.size(); ++j)
                   if (is_in_band(point.lambda[j], omega_max))
                     {
-                      result.n_unstable += point.verdicts[j] == Verdict::unstable;
-                      result.n_undecided += point.verdicts[j] == Verdict::undecided;
+                      cell.n_unstable += point.verdicts[j] == Verdict::unstable;
+                      cell.n_undecided += point.verdicts[j] == Verdict::undecided;
                     }
+                results.map_errors[{cell.value, cell.friction_coefficient}] = model->largest_error(point);
               }
-            results.map.push_back(result);
+            results.map[{cell.value, cell.friction_coefficient}] = cell;
           }
       }
 
-      void write_shapes(const SweepResults &results)
+      /// Counts the modes at chosen friction coefficients by the argument principle.
+      void count(SweepResults &results)
+      {
+        for (const double mu : run.parameters.sweep.counts)
+          {
+            const ContactStateAt contact = states.at(operation_at(lines[0], mu));
+            if (contact.closed != regime.closed)
+              continue;
+            run.progress.begin("Argument principle");
+            const CoupledSystem here = with_contact_damping(linearisation.coupled, selected(contact.damping, regime.closed));
+            ContourOptions      options;
+            options.largest_frequency  = omega_max;
+            options.lowest_frequency   = 1e-3 * omega_max;
+            options.largest_growth     = 0.1 * omega_max;
+            options.method             = here.body_damping ? ContourMethod::sparse_lu : ContourMethod::condensed;
+            options.real_modes.solver  = run.parameters.solvers.real_solver;
+            options.real_modes.library = run.parameters.solvers.library;
+            options.real_modes.shift   = frictionless.shift * frictionless.shift;
+            options.real_modes.inverse = &frictionless.inverse->frictionless(); // of the undamped system
+            options.real_modes.what    = "real modes beyond the band";
+            const ContourCount result  = count_by_contour(here, {mu}, options, run.progress).front();
+            const ChartPoint   point   = evaluate_line(0, {mu}).front();
+            const auto         inside  = [&](const std::complex<double> &lambda) {
+              return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max && std::abs(lambda.real()) <= options.largest_growth;
+            };
+            const int n_found = static_cast<int>(std::count_if(point.lambda.begin(), point.lambda.end(), inside));
+            results.counts.push_back({mu, n_found, result});
+            run.progress.finish(text(result.n_modes, " modes counted, ", n_found, " found at mu = ", mu, ", ", result.n_points, " points"));
+            if (result.n_modes != n_found)
+              run.progress.note(text("  note: at mu = ", mu, " the sweep has ", n_found, " modes where ", result.n_modes, " were counted"));
+          }
+      }
+
+      /// Fields of the leading modes at chosen friction coefficients.
+      void write_shapes()
       {
         const auto &wanted = run.parameters.sweep.mode_shapes;
         if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
@@ -491,7 +606,6 @@ namespace Squeal
                 writer.write_animation(field, run.parameters.output.animation_frames);
               ++n_written;
             }
-        (void)results;
         run.progress.finish(text(n_written, " leading modes"));
       }
 
@@ -499,22 +613,21 @@ namespace Squeal
       const ContactRegime       &regime;
       const std::vector<Line>   &lines;
       const ContactStates       &states;
+      const CheckpointPlace     &checkpoint;
       Run                       &run;
       const double               omega_max;
       Linearisation              linearisation;
       FrictionlessModes          frictionless;
       std::unique_ptr<ChartModel> model;
       CertifiedSweep             sweep;
+      std::unique_ptr<ChartCheckpoint> refinements; ///< of the line that is followed
       std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
     };
 
     // ------------------------------------------------------------------- tables
 
-    Table map_table(std::vector<MapPoint> points, const MapParameter parameter)
+    Table map_table(const SweepResults &results, const MapParameter parameter)
     {
-      std::sort(points.begin(), points.end(), [](const MapPoint &a, const MapPoint &b) {
-        return std::make_pair(a.value, a.friction_coefficient) < std::make_pair(b.value, b.friction_coefficient);
-      });
       const bool is_load = parameter == MapParameter::load;
       Table      table({{"mu", "-", 4},
                    {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", 3},
@@ -526,15 +639,88 @@ namespace Squeal
                    {"divergence rate", "%", 4},
                    {"estimated error of lambda", "-", 1, true},
                    {"open contact nodes", "-"}});
-      for (const MapPoint &point : points)
+      for (const auto &[place, cell] : results.map)
         {
-          const auto known = [&](const Cell &cell) { return point.is_known ? cell : Cell(); };
-          table.add_row({point.friction_coefficient, point.value, known(static_cast<long>(point.n_unstable)),
-                         known(static_cast<long>(point.n_undecided)), known(point.leader), known(point.mode.frequency),
-                         known(point.mode.growth_rate), known(100. * point.mode.divergence_rate), known(point.error),
-                         static_cast<long>(point.n_open)});
+          const bool is_known = cell.is_known;
+          const auto known    = [is_known](const Cell &value) { return is_known ? value : Cell(); };
+          table.add_row({cell.friction_coefficient, cell.value, known(static_cast<long>(cell.n_unstable)), known(static_cast<long>(cell.n_undecided)),
+                         known(cell.leader), known(cell.frequency), known(cell.growth_rate), known(100. * cell.divergence_rate),
+                         known(is_known ? results.map_errors.at(place) : 0.), static_cast<long>(cell.n_open)});
         }
       return table;
+    }
+
+    Table argument_table(const std::vector<CountAt> &counts)
+    {
+      Table table({{"mu", "-", 4},
+                   {"modes of the sweep", "-"},
+                   {"modes counted", "-"},
+                   {"real modes by inertia", "-"},
+                   {"contour points", "-"},
+                   {"largest phase step", "rad", 3},
+                   {"truncation bound", "-", 1, true}});
+      for (const CountAt &count : counts)
+        table.add_row({count.friction_coefficient, static_cast<long>(count.n_found), static_cast<long>(count.count.n_modes),
+                       static_cast<long>(count.count.n_frictionless), static_cast<long>(count.count.n_points), count.count.largest_phase_step,
+                       count.count.truncation_bound});
+      return table;
+    }
+
+    /// Contact sets along a line: where they change.
+    Table contact_table(const std::vector<Line> &lines, const std::vector<ContactRegime> &regimes, const std::size_t n_pairs)
+    {
+      Table table({{"mu", "-", 4}, {"load per side", "N", 3}, {"rotation speed", "rad/s", 3}, {"contact set", "-"}, {"open contact nodes", "-"}});
+      for (std::size_t l = 0; l < lines.size(); ++l)
+        for (const double mu : lines[l].friction_coefficients)
+          for (std::size_t r = 0; r < regimes.size(); ++r)
+            for (const int i : regimes[r].on_line(static_cast<int>(l)))
+              if (regimes[r].points[i].friction_coefficient == mu && lines[l].kind != Line::Kind::without_dissipation)
+                table.add_row({mu, lines[l].operation.load_per_side, lines[l].operation.rotation_speed, static_cast<long>(r + 1),
+                               static_cast<long>(n_pairs - regimes[r].closed.size())});
+      return table;
+    }
+
+    // ------------------------------------------------------------------ in words
+
+    /// Divergence rates that the least structural damping outweighs [-].
+    constexpr double weak_divergence = 1e-4;
+
+    std::string verdict(const std::vector<ChartLine> &stretches, const double largest_frequency)
+    {
+      double      first = -1., strong = -1., largest = 0., worst = 0., frequency = 0.;
+      std::string first_label, strong_label, label;
+      for (const ChartLine &line : stretches)
+        for (std::size_t i = 0; i < line.chart.points.size(); ++i)
+          for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
+            {
+              const ChartPoint &point = line.chart.points[i];
+              const int         j     = line.chart.branches[b].modes[i];
+              if (j < 0 || !is_in_band(point.lambda[j], largest_frequency) || point.verdicts[j] != Verdict::unstable)
+                continue;
+              const ModalQuantities mode = modal_quantities(point.lambda[j]);
+              if (first < 0.)
+                {
+                  first       = point.friction_coefficient;
+                  first_label = line.labels[b];
+                }
+              if (strong < 0. && mode.divergence_rate > weak_divergence)
+                {
+                  strong       = point.friction_coefficient;
+                  strong_label = line.labels[b];
+                }
+              if (mode.divergence_rate > largest)
+                {
+                  largest   = mode.divergence_rate;
+                  worst     = point.friction_coefficient;
+                  frequency = mode.frequency;
+                  label     = line.labels[b];
+                }
+            }
+      if (first < 0.)
+        return "  stable: no mode of the band grows at any friction coefficient of the sweep";
+      return text("  squeal from mu = ", first, " on (", first_label, ")",
+                  strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
+                  "; most at mu = ", worst, ": ", label, " at ", frequency, " Hz with ", 100. * largest, " %");
     }
   } // namespace
 
@@ -556,24 +742,69 @@ namespace Squeal
     const auto              regimes = contact_regimes(lines, states, run);
 
     // ------------------------------------------------------------- every regime
-    SweepResults results;
+    const CheckpointPlace checkpoint = checkpoint_place(run);
+    SweepResults          results;
     for (const ContactRegime &regime : regimes)
-      RegimeModel(scene, regime, lines, states, run).add_to(results);
+      RegimeModel(scene, regime, lines, states, checkpoint, run).add_to(results);
 
     // ------------------------------------------------------------------ results
-    for (std::size_t c = 0; c < results.charts.size(); ++c)
+    std::vector<ChartLine> drawn;
+    for (const auto &[l, stretches] : results.charts)
+      for (std::size_t s = 0; s < stretches.size(); ++s)
+        {
+          const ChartLine  &line   = stretches[s];
+          const std::string suffix = (lines[l].kind == Line::Kind::main ? "" : "_without_dissipation") + (s > 0 ? text("_", s + 1) : "");
+          const auto write_quietly = [&](const std::string &name, const Table &table) {
+            run.folder().write(name + suffix + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+          };
+          write_quietly("branches", branch_table(line.chart, line.labels, omega_max));
+          write_quietly("counts", count_table(line.chart));
+          run.write_table("thresholds" + suffix, threshold_table(line.chart, line.labels));
+          if (line.chart.crossings.empty())
+            write_quietly("band_crossings", crossing_table(line.chart, line.labels));
+          else
+            run.write_table("band_crossings" + suffix, crossing_table(line.chart, line.labels));
+        }
+    if (!results.counts.empty())
+      run.write_table("argument_counts", argument_table(results.counts));
+    if (regimes.size() > 1)
       {
-        const LineChart  &line = results.charts[c];
-        const std::string suffix = lines[line.line].kind == Line::Kind::main ? "" : "_without_dissipation";
-        run.folder().write("branches" + suffix + ".csv",
-                           [&](std::ostream &stream) { branch_table(line.chart, line.labels, omega_max).write_csv(stream); });
-        run.write_table("thresholds" + suffix, threshold_table(line.chart, line.labels));
-        run.folder().write("counts" + suffix + ".csv", [&](std::ostream &stream) { count_table(line.chart).write_csv(stream); });
-        run.folder().write("band_crossings" + suffix + ".csv",
-                           [&](std::ostream &stream) { crossing_table(line.chart, line.labels).write_csv(stream); });
+        run.folder().write("contact_sets.csv",
+                           [&](std::ostream &stream) { contact_table(lines, regimes, scene.interface.size()).write_csv(stream); });
+        run.progress.note(text("  note: ", regimes.size(), " contact sets, see contact_sets.csv; branches end where the set changes"));
       }
     if (!results.map.empty())
-      run.write_table("map", map_table(results.map, parameters.sweep.map_parameter));
+      run.folder().write("map.csv", [&](std::ostream &stream) { map_table(results, parameters.sweep.map_parameter).write_csv(stream); });
+
+    // The paper's figures: without dissipation first, in black
+    bool is_drawn = true;
+    for (auto line = results.charts.rbegin(); line != results.charts.rend(); ++line)
+      drawn.insert(drawn.end(), line->second.begin(), line->second.end());
+    if (!drawn.empty())
+      {
+        std::vector<double> shown = parameters.sweep.mode_shapes;
+        if (shown.empty())
+          shown = {parameters.sweep.friction_coefficients.linear().back()};
+        is_drawn = write_plot("complex_plane", complex_plane_plot(drawn, shown, omega_max), run.folder()) &&
+                   write_plot("overview", overview_plot(drawn, omega_max), run.folder());
+        for (const NamedPlot &plot : frequency_plots(drawn, omega_max))
+          is_drawn = write_plot(plot.name, plot.plot, run.folder()) && is_drawn;
+      }
+    if (!results.map.empty())
+      {
+        const bool   is_load = parameters.sweep.map_parameter == MapParameter::load;
+        StabilityMap map{"", parameters.sweep.map_grid(), parameters.sweep.map_values.geometric(), is_load ? "load per side" : "rotation speed",
+                         is_load ? "N" : "rad/s", {}};
+        for (const auto &[place, cell] : results.map)
+          map.cells.push_back(cell);
+        is_drawn = write_plot("map", map_plot(map), run.folder()) && is_drawn;
+      }
+    if (!is_drawn && run.is_root)
+      run.progress.note("  note: gnuplot is not installed or failed; `gnuplot NAME.gp` in plots/ draws the pictures");
+    if (const auto main = results.charts.find(0); main != results.charts.end())
+      run.progress.note(verdict(main->second, omega_max));
     run.finish();
+    if (run.is_root)
+      std::filesystem::remove_all(checkpoint.folder);
   }
 } // namespace Squeal
