@@ -2,6 +2,7 @@
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 
 namespace Squeal
@@ -28,6 +29,20 @@ namespace Squeal
             halves(row + i, j)     = value.real();
             halves(row + i, k + j) = value.imag();
           }
+    }
+
+    bool any(const std::vector<double> &coefficients)
+    {
+      return std::any_of(coefficients.begin(), coefficients.end(), [](const double c) { return c != 0.; });
+    }
+
+    /// Rows [first, first + n).
+    DenseMatrix rows(const DenseMatrix &X, const int first, const int n)
+    {
+      DenseMatrix result(n, X.n_columns());
+      for (int j = 0; j < X.n_columns(); ++j)
+        std::copy(X.column(j) + first, X.column(j) + first + n, result.column(j));
+      return result;
     }
 
     MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
@@ -64,33 +79,39 @@ namespace Squeal
     }
   } // namespace
 
-  ProjectedResiduals::ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const double shift, const bool radial)
+  ProjectedResiduals::ProjectedResiduals(const CoupledSystem  &system,
+                                         const UpdatedInverse &inverse,
+                                         const double          shift,
+                                         const ContactDamping &damping)
     : system(system)
     , inverse(inverse)
     , shift(shift)
     , has_body_damping(system.body_damping || system.modal_damping)
+    , has_radial_damping(any(damping.radial))
+    , has_sliding_damping(any(damping.sliding))
+    , n_c(system.friction_forces->NumGlobalCols())
   {
-    fixed.push_back({system.friction_forces.get(), false});
     fixed.push_back({system.normal_stiffness.get(), true});
     fixed.push_back({system.normal_mass.get(), true});
     if (system.normal_damping)
       fixed.push_back({system.normal_damping.get(), true});
-    if (radial)
+    n_reactions = n_c * static_cast<int>(fixed.size());
+    if (has_radial_damping)
       fixed.push_back({system.radial_motion.get(), true});
+    fixed.push_back({system.friction_forces.get(), false});
 
     for (std::size_t p = 0; p < fixed.size(); ++p)
       {
         const SparseMatrix &part = *fixed[p].matrix;
         // The responses to friction forces are at hand
         const MultiVector X =
-          p == 0 ? inverse.attachment_modes() : solve(inverse, transpose_times(part, unit_vectors(part.RangeMap())));
+          fixed[p].transposed ? solve(inverse, transpose_times(part, unit_vectors(part.RangeMap()))) : inverse.attachment_modes();
         fixed_gram = append_columns(fixed_gram, fixed_products(X));
       }
   }
 
   DenseMatrix ProjectedResiduals::fixed_products(const MultiVector &X) const
   {
-    const int   n_c = system.friction_forces->NumGlobalCols();
     DenseMatrix result(n_c * static_cast<int>(fixed.size()), X.NumVectors());
     for (std::size_t p = 0; p < fixed.size(); ++p)
       insert(result, replicate(fixed[p].transposed ? *fixed[p].matrix * X : transpose_times(*fixed[p].matrix, X)), n_c * static_cast<int>(p), 0);
@@ -100,7 +121,7 @@ namespace Squeal
   void ProjectedResiduals::clear()
   {
     blocks     = {};
-    fixed_mass = fixed_damping = mass_mass = mass_damping = damping_damping = remainder = {};
+    fixed_mass = fixed_damping = mass_mass = mass_damping = damping_damping = left_columns = right_block = {};
   }
 
   void ProjectedResiduals::extend(const ReducedModel &model)
@@ -129,35 +150,54 @@ namespace Squeal
         mass_damping = std::move(products);
       }
 
-    // Wᵀ S⁻¹ W and Tᵀ W
-    const int   n_grown = has_body_damping ? 2 * r : r, n_c = system.friction_forces->NumGlobalCols();
-    const int   size    = n_grown + fixed_gram.n_rows();
+    // Wᵀ S⁻¹ W and Tᵀ W; the columns that grow stand between those of reactions and the other fixed ones
+    const int   n_grown = has_body_damping ? 2 * r : r, n_fixed = fixed_gram.n_rows(), size = n_grown + n_fixed;
+    const int   grown = n_reactions, rest = n_reactions + n_grown, n_rest = n_fixed - n_reactions;
     DenseMatrix G(size, size), H(r, size);
-    insert(G, mass_mass, 0, 0);
-    insert(G, fixed_mass, n_grown, 0);
-    insert(G, transpose(fixed_mass), 0, n_grown);
-    insert(G, fixed_gram, n_grown, n_grown);
-    insert(H, blocks.mass, 0, 0);
+    const auto  insert_fixed = [&](const DenseMatrix &products, const int column) {
+      for (const auto &[target, first, n] : {std::array<int, 3>{{0, 0, n_reactions}}, {{rest, n_reactions, n_rest}}})
+        {
+          const DenseMatrix part = rows(products, first, n);
+          insert(G, part, target, column);
+          insert(G, transpose(part), column, target);
+        }
+    };
+    const DenseMatrix reactions = columns(fixed_gram, 0, n_reactions), others = columns(fixed_gram, n_reactions, n_rest);
+    for (const auto &[part, column] : {std::make_pair(&reactions, 0), std::make_pair(&others, rest)})
+      {
+        insert(G, rows(*part, 0, n_reactions), 0, column);
+        insert(G, rows(*part, n_reactions, n_rest), rest, column);
+      }
+    insert(G, mass_mass, grown, grown);
+    insert_fixed(fixed_mass, grown);
+    insert(H, blocks.mass, 0, grown);
     if (has_body_damping)
       {
-        insert(G, damping_damping, r, r);
-        insert(G, mass_damping, 0, r);
-        insert(G, transpose(mass_damping), r, 0);
-        insert(G, fixed_damping, n_grown, r);
-        insert(G, transpose(fixed_damping), r, n_grown);
-        insert(H, blocks.body_damping, 0, r);
+        insert(G, damping_damping, grown + r, grown + r);
+        insert(G, mass_damping, grown, grown + r);
+        insert(G, transpose(mass_damping), grown + r, grown);
+        insert_fixed(fixed_damping, grown + r);
+        insert(H, blocks.body_damping, 0, grown + r);
       }
-    std::vector<const DenseMatrix *> projected = {&blocks.friction_forces, &blocks.normal_stiffness, &blocks.normal_mass};
+    int        column = 0;
+    const auto append = [&](const DenseMatrix &projected) {
+      insert(H, transpose(projected), 0, column);
+      column += n_c;
+    };
+    append(blocks.normal_stiffness);
+    append(blocks.normal_mass);
     if (system.normal_damping)
-      projected.push_back(&blocks.normal_damping);
-    if (projected.size() < fixed.size())
-      projected.push_back(&blocks.radial_motion);
-    for (std::size_t p = 0; p < projected.size(); ++p)
-      insert(H, transpose(*projected[p]), 0, n_grown + n_c * static_cast<int>(p));
+      append(blocks.normal_damping);
+    column = rest;
+    if (has_radial_damping)
+      append(blocks.radial_motion);
+    append(blocks.friction_forces);
 
     DenseMatrix responses = H;
     DenseLU(add(blocks.stiffness, blocks.mass, shift * shift), "stiffness of a reduced model").solve(responses);
-    remainder = add(G, multiply(H, responses, true), -1.);
+    const DenseMatrix remainder = add(G, multiply(H, responses, true), -1.);
+    left_columns                = columns(remainder, 0, size - (has_sliding_damping ? 0 : n_c));
+    right_block                 = rows(columns(remainder, grown, size - grown), grown, size - grown);
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const double                mu,
@@ -166,23 +206,35 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  left) const
   {
-    const int   k = static_cast<int>(lambda.size()), n_c = system.friction_forces->NumGlobalCols();
-    DenseMatrix result(remainder.n_rows(), 2 * k);
-    const auto  square  = [&](const int j) { return lambda[j] * lambda[j]; };
-    int         row     = 0;
-    const auto  put     = [&](const ComplexDenseMatrix &part, const std::function<Complex(int, int)> &factor) {
+    const int   k = static_cast<int>(lambda.size());
+    DenseMatrix result(left ? left_columns.n_columns() : right_block.n_columns(), 2 * k);
+    const auto  square = [&](const int j) { return lambda[j] * lambda[j]; };
+    int         row    = 0;
+    const auto  put    = [&](const ComplexDenseMatrix &part, const std::function<Complex(int, int)> &factor) {
       insert(result, part, row, factor);
       row += part.n_rows();
     };
     const auto coefficient = [](const std::vector<double> &c, const int i) { return c.empty() ? 0. : c[i]; };
 
+    const ComplexDenseMatrix tangential = multiply(blocks.friction_forces, vectors);
+    if (left) // V_Kᵀ, V_Mᵀ, V_Cᵀ: friction of the left vectors
+      {
+        put(tangential, [&](int, int) { return -mu; });
+        put(tangential, [&](int, const int j) { return -mu * square(j); });
+        if (system.normal_damping)
+          put(tangential, [&](int, const int j) { return -mu * lambda[j]; });
+      }
+
     put(vectors, [&](int, const int j) { return square(j) - shift * shift; });
     if (has_body_damping)
       put(vectors, [&](int, const int j) { return lambda[j]; });
+    if (has_radial_damping)
+      put(multiply(blocks.radial_motion, vectors), [&](const int i, const int j) { return lambda[j] * coefficient(damping.radial, i); });
 
-    // A: friction of the right vectors, damping along t of both
-    const ComplexDenseMatrix tangential = multiply(blocks.friction_forces, vectors);
-    ComplexDenseMatrix       forces(n_c, k);
+    // A: damping along t of both, friction of the right vectors
+    if (row == result.n_rows())
+      return result;
+    ComplexDenseMatrix forces(n_c, k);
     for (int j = 0; j < k; ++j)
       for (int i = 0; i < n_c; ++i)
         forces(i, j) = lambda[j] * coefficient(damping.sliding, i) * tangential(i, j);
@@ -200,17 +252,6 @@ namespace Squeal
           add_friction(blocks.normal_damping, [&](const int j) { return lambda[j]; });
       }
     put(forces, [](int, int) { return 1.; });
-
-    // V_Kᵀ, V_Mᵀ, V_Cᵀ: friction of the left vectors
-    const double friction = left ? -mu : 0.;
-    put(tangential, [&](int, int) { return friction; });
-    put(tangential, [&](int, const int j) { return friction * square(j); });
-    if (system.normal_damping)
-      put(tangential, [&](int, const int j) { return friction * lambda[j]; });
-
-    // Rᵀ
-    if (row < result.n_rows())
-      put(multiply(blocks.radial_motion, vectors), [&](const int i, const int j) { return lambda[j] * coefficient(damping.radial, i); });
     return result;
   }
 
@@ -221,7 +262,8 @@ namespace Squeal
                                                 const ComplexDenseMatrix   &left) const
   {
     const DenseMatrix y = coefficients(mu, damping, lambda, right, false), z = coefficients(mu, damping, lambda, left, true);
-    const DenseMatrix Gy = multiply(remainder, y), Gz = multiply(remainder, z);
-    return {from_halves(multiply(z, Gy, true)), hermitian_products(y, Gy), hermitian_products(z, Gz)};
+    const DenseMatrix Gy = multiply(right_block, y), Gz = multiply(left_columns, z);
+    return {from_halves(multiply(rows(Gz, n_reactions, y.n_rows()), y, true)), hermitian_products(y, Gy),
+            hermitian_products(z, rows(Gz, 0, z.n_rows()))};
   }
 } // namespace Squeal

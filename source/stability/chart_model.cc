@@ -9,12 +9,6 @@ namespace Squeal
 {
   namespace
   {
-    bool has_radial_damping(const CoupledSystem &system)
-    {
-      const auto &c = system.contact_damping.radial;
-      return std::any_of(c.begin(), c.end(), [](const double value) { return value != 0.; });
-    }
-
     /// Columns of X in the band and its margin, each half scaled by a factor of its own, side by side.
     void append_scaled(DenseMatrix &target, const ComplexDenseMatrix &X, const std::vector<std::complex<double>> &lambda)
     {
@@ -40,7 +34,7 @@ namespace Squeal
     , largest_frequency(largest_frequency)
     , margin(margin)
     , model(starting_model(system, inverse, real_modes, true))
-    , residuals(system, inverse, shift, has_radial_damping(system))
+    , residuals(system, inverse, shift, system.contact_damping)
   {
     residuals.extend(model);
   }

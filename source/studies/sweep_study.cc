@@ -26,8 +26,9 @@ namespace Squeal
   {
     /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
     constexpr double band_margin = 0.05;
-    /// Thresholds less certain than this times the tolerance of the search get vectors of their own, in as many rounds.
-    constexpr double threshold_safety         = 5.;
+    /// Thresholds less certain, as far as modes answer for it, than this times the tolerance of the search get vectors of
+    /// their own, in so many rounds.
+    constexpr double threshold_safety         = 10.;
     constexpr int    maximum_threshold_rounds = 2;
 
     // ------------------------------------------------------------- what is asked

@@ -155,8 +155,14 @@ TEST(CertifiedSweep, GoesOnAsIfNotInterrupted)
       for (std::size_t i = 0; i < points.size(); ++i)
         {
           ASSERT_TRUE(again.points[i] && result.points[i]);
-          EXPECT_EQ(again.points[i]->lambda, result.points[i]->lambda) << "point " << i;
-          EXPECT_EQ(again.points[i]->errors, result.points[i]->errors) << "point " << i;
+          // The same to the last bit, but where sums over processes differ in rounding from run to run
+          if (chart.s.model.free_map().Comm().NumProc() == 1)
+            {
+              EXPECT_EQ(again.points[i]->lambda, result.points[i]->lambda) << "point " << i;
+              EXPECT_EQ(again.points[i]->errors, result.points[i]->errors) << "point " << i;
+            }
+          else
+            EXPECT_LT(largest(distances(again.points[i]->lambda, result.points[i]->lambda)), 1e-11) << "point " << i;
         }
     }
 }

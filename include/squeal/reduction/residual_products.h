@@ -20,11 +20,11 @@ namespace Squeal
    * The products of residuals from small matrices: residuals are affine in μ, λ,
    * λ² and the coefficients of contact damping,
    *
-   *   Q(λ) T φ_r  = S T φ_r + W y,   W = [M_c T, C T, A, Rᵀ, V_Kᵀ, V_Mᵀ, V_Cᵀ]
+   *   Q(λ) T φ_r  = S T φ_r + W y,   W = [V_Kᵀ, V_Mᵀ, V_Cᵀ, M_c T, C T, Rᵀ, A]
    *   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   C = T_cᵀ C T_c + C_m
    *
-   * with S = K_c + s² M_c and short y, z (for the right residual the last three
-   * parts are zero). Reduced modes make residuals orthogonal to T, so that the
+   * with S = K_c + s² M_c and short y, z (the first three parts of y are zero,
+   * and the last one of z without damping along t). Reduced modes make residuals orthogonal to T, so that the
    * part along S T is known to cancel that of W y along it, and
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
@@ -38,11 +38,11 @@ namespace Squeal
   public:
     /**
      * @param inverse factor of S, of a system without damping if the @p shift s [rad/s] is positive
-     * @param radial  whether there will be contact damping along b
+     * @param damping of the contact where there is most of it: what vanishes there must vanish in products(), too
      *
      * The arguments must outlive it.
      */
-    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, bool radial);
+    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ContactDamping &damping);
 
     /// Takes over the vectors by which the basis of @p model has grown.
     void extend(const ReducedModel &model);
@@ -78,12 +78,14 @@ namespace Squeal
     const CoupledSystem   &system;
     const UpdatedInverse  &inverse;
     double                 shift;
-    bool                   has_body_damping;
-    std::vector<FixedPart> fixed;
-    ReducedModel::Blocks   blocks;   ///< of the model as far as it is known
-    DenseMatrix            fixed_gram;               ///< of the fixed columns among themselves
-    DenseMatrix            fixed_mass, fixed_damping;  ///< of the fixed columns with M T and C T
+    bool                   has_body_damping, has_radial_damping, has_sliding_damping;
+    int                    n_c;
+    std::vector<FixedPart> fixed;           ///< V_Kᵀ, V_Mᵀ, V_Cᵀ, Rᵀ, A
+    int                    n_reactions = 0; ///< columns V_Kᵀ, V_Mᵀ, V_Cᵀ, which only left residuals have
+    ReducedModel::Blocks   blocks;          ///< of the model as far as it is known
+    DenseMatrix            fixed_gram;      ///< of the fixed columns among themselves
+    DenseMatrix            fixed_mass, fixed_damping; ///< of the fixed columns with M T and C T
     DenseMatrix            mass_mass, mass_damping, damping_damping;
-    DenseMatrix            remainder; ///< the bracket
+    DenseMatrix            left_columns, right_block; ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal
