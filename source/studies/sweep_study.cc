@@ -181,12 +181,14 @@ namespace Squeal
     public:
       RegimeModel(const Scene           &scene,
                   const ContactRegime   &regime,
+                  const std::size_t      number,
                   const std::vector<Line> &lines,
                   const ContactStates   &states,
                   const CheckpointPlace &checkpoint,
                   Run                   &run)
         : scene(scene)
         , regime(regime)
+        , number(number)
         , lines(lines)
         , states(states)
         , checkpoint(checkpoint)
@@ -270,9 +272,8 @@ namespace Squeal
 
       std::unique_ptr<ChartCheckpoint> open_store(const std::string &phase) const
       {
-        const std::string name = checkpoint.folder + "/" + text(regime.closed.size(), "_closed_", regime.points.front().line, "_",
-                                                                regime.points.front().friction_coefficient) +
-                                 "/" + phase;
+        // Not after anything that depends on parameters: a sweep of other ones must find what lies there
+        const std::string name = checkpoint.folder + "/contact_set_" + std::to_string(number) + "/" + phase;
         return std::make_unique<ChartCheckpoint>(name, checkpoint.key, linearisation.coupled.map(), run.communicator, omega_max);
       }
 
@@ -611,6 +612,7 @@ namespace Squeal
 
       const Scene               &scene;
       const ContactRegime       &regime;
+      const std::size_t          number; ///< of the contact set, from one on
       const std::vector<Line>   &lines;
       const ContactStates       &states;
       const CheckpointPlace     &checkpoint;
@@ -744,8 +746,8 @@ namespace Squeal
     // ------------------------------------------------------------- every regime
     const CheckpointPlace checkpoint = checkpoint_place(run);
     SweepResults          results;
-    for (const ContactRegime &regime : regimes)
-      RegimeModel(scene, regime, lines, states, checkpoint, run).add_to(results);
+    for (std::size_t r = 0; r < regimes.size(); ++r)
+      RegimeModel(scene, regimes[r], r + 1, lines, states, checkpoint, run).add_to(results);
 
     // ------------------------------------------------------------------ results
     std::vector<ChartLine> drawn;
