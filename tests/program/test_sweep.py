@@ -149,11 +149,11 @@ class Sweep(SweepTest):
                     for name in ("eps_res right [-]", "eps_res left [-]"):
                         self.assertGreaterEqual(float(row[name]), 0)
                     self.assertIn(row["verdict"], ("stable", "unstable", "undecided"))
-                    error = float(row["estimated error of lambda [-]"]) * abs(value) / value.imag
                     if row["verdict"] == "unstable":
-                        self.assertGreater(divergence(value), -PRINTED)
-                    if divergence(value) > 10 * error + GROWING:
-                        self.assertEqual(row["verdict"], "unstable", row)
+                        self.assertGreater(divergence(value), 0)
+                    # Close to where modes meet even larger rates are undecided.
+                    elif row["refinement [-]"] == "0":
+                        self.assertLess(divergence(value), 10 * TOLERANCE, row)
             # No branch ends before the band does, and each keeps its name.
             branches = {}
             for here in rows.values():
@@ -212,8 +212,9 @@ class Sweep(SweepTest):
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
-        leader = max((row for row in read_table(self.results / "branches.csv") if float(row["mu [-]"]) == self.grid[8]),
-                     key=lambda row: float(row["divergence rate [%]"]))
+        # Named after the mode there, as in a run of its own; a branch is named after the mode with which it begins.
+        alone = self.run_scene("alone", *KRYLOV, CONSISTENT, "Operation/Friction coefficient=0.4")
+        leader = max(read_table(alone / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])
         self.assertTrue((self.results / "animations" / f"{name}.pvd").is_file())
