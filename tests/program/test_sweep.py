@@ -305,9 +305,16 @@ class OtherSweeps(SweepTest):
         table = results / "branches.csv"
         n_proved = len(grid_of(results)) if table.is_file() else 0
         self.assertLess(n_proved, 10)
+        self.assertNotIn("stable: no mode", screen)
         if n_proved > 0:
             self.assert_proved(results, 1e-9)
             self.assert_complete(results)
+
+    def test_modes_beyond_what_was_proved(self):
+        process = self.call_sweep("beyond", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
+                                  "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn("at mu = 0.4 the modes miss the tolerance", process.stdout + process.stderr)
 
     def test_end_of_band(self):
         wide = self.sweep("wide", "Sweep/Number of friction coefficients=4")
@@ -357,6 +364,19 @@ class OtherSweeps(SweepTest):
             self.assert_same_modes(found[mu], self.modes_at(mu, STEADY, CONSISTENT), DEFAULT_ACCURACY)
 
 
+    def test_chosen_values_between_contact_sets(self):
+        # Some nodes are open at 0.8, none at 0.4, and more at 1.2.
+        process = self.call_sweep("between", STEADY, "Sweep/First friction coefficient=0.4", "Sweep/Last friction coefficient=1.2",
+                                  "Sweep/Number of friction coefficients=2", "Sweep/Count modes at=0.8", "Sweep/Mode shapes at=0.8",
+                                  "Output/Mode shapes=unstable")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        screen = process.stdout + process.stderr
+        for message in ("modes are not counted", "no mode shape is written"):
+            self.assertEqual(screen.count(message), 1, screen)
+        self.assertFalse((self.folder / "between" / "argument_counts.csv").exists())
+        self.assertFalse((self.folder / "between" / "modes").exists())
+
+
 class Interrupted(SweepTest):
     """Runs that are killed and started again."""
 
@@ -384,8 +404,8 @@ class Interrupted(SweepTest):
         self.assertGreater(len(list(checkpoint.glob("*/*/points.csv"))), 0)
         return checkpoint
 
-    def assert_goes_on(self, output, checkpoint):
-        process = self.call_sweep(output, CONSISTENT, self.NUMBER)
+    def assert_goes_on(self, output, checkpoint, *additions):
+        process = self.call_sweep(output, CONSISTENT, self.NUMBER, *additions)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn("an interrupted sweep goes on", process.stdout + process.stderr)
         self.assertFalse(checkpoint.exists())
@@ -393,7 +413,9 @@ class Interrupted(SweepTest):
             self.assertEqual((self.folder / output / name).read_bytes(), (self.reference / name).read_bytes(), name)
 
     def test_while_the_basis_grows(self):
-        self.assert_goes_on("early", self.kill("early", 5))
+        # What only adds to the results may be asked for meanwhile.
+        self.assert_goes_on("early", self.kill("early", 5), "Sweep/Count modes at=0.3")
+        self.assertTrue((self.folder / "early" / "argument_counts.csv").is_file())
 
     def test_at_the_refinements(self):
         self.assert_goes_on("late", self.kill("late", 5, "line_0_from_*"))
@@ -450,6 +472,8 @@ class Refusals(SweepTest):
         self.refused(["ascend", "Sweep/First map value"], *load, "Sweep/First map value=2000", "Sweep/Last map value=1000")
         self.refused(["Number of map values"], *load, "Sweep/Number of map values=0")
         self.refused(["Map friction coefficients"], *load, "Sweep/Map friction coefficients=0")
+        self.refused(["ascend", "Map friction coefficients"], *load, "Sweep/First friction coefficient=0.5",
+                     "Sweep/Number of friction coefficients=1")
         self.refused(["Steady sliding/Control"], *load, STEADY, "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-5")
 
     def test_options(self):
