@@ -99,5 +99,8 @@ namespace Squeal
     check_range(map_values, "map values", "Sweep/First map value, Last map value and Number of map values");
     if (!(map_values.first > 0.))
       throw ParameterError("the map begins at zero", "parameter Sweep/First map value", "give a positive load or speed");
+    // A sweep of one value does not ask for an ascending range
+    check_range({friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}, "friction coefficients of the map",
+                "Sweep/First friction coefficient, Last friction coefficient and Map friction coefficients");
   }
 } // namespace Squeal

@@ -182,12 +182,14 @@ namespace Squeal
     public:
       RegimeModel(const Scene           &scene,
                   const ContactRegime   &regime,
+                  const std::size_t      number,
                   const std::vector<Line> &lines,
                   const ContactStates   &states,
                   const CheckpointPlace &checkpoint,
                   Run                   &run)
         : scene(scene)
         , regime(regime)
+        , number(number)
         , lines(lines)
         , states(states)
         , checkpoint(checkpoint)
@@ -271,9 +273,8 @@ namespace Squeal
 
       std::unique_ptr<ChartCheckpoint> open_store(const std::string &phase) const
       {
-        const std::string name = checkpoint.folder + "/" + text(regime.closed.size(), "_closed_", regime.points.front().line, "_",
-                                                                regime.points.front().friction_coefficient) +
-                                 "/" + phase;
+        // Not after anything that depends on parameters: a sweep of other ones must find what lies there
+        const std::string name = checkpoint.folder + "/contact_set_" + std::to_string(number) + "/" + phase;
         return std::make_unique<ChartCheckpoint>(name, checkpoint.key, linearisation.coupled.map(), run.communicator, omega_max);
       }
 
@@ -545,6 +546,15 @@ namespace Squeal
           }
       }
 
+      /// The chosen friction coefficients may be ones of which nothing was proved.
+      void note_if_inaccurate(const ChartPoint &point) const
+      {
+        const double error = model->largest_error(point);
+        if (!(error <= run.parameters.sweep.tolerance))
+          run.progress.note(text("  note: at mu = ", point.friction_coefficient, " the modes miss the tolerance of ", run.parameters.sweep.tolerance,
+                                 ": the estimated error is ", error));
+      }
+
       /// Counts the modes at chosen friction coefficients by the argument principle.
       void count(SweepResults &results)
       {
@@ -567,6 +577,7 @@ namespace Squeal
             options.real_modes.what    = "real modes beyond the band";
             const ContourCount result  = count_by_contour(here, {mu}, options, run.progress).front();
             const ChartPoint   point   = evaluate_line(0, {mu}).front();
+            note_if_inaccurate(point);
             const auto         inside  = [&](const std::complex<double> &lambda) {
               return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max && std::abs(lambda.real()) <= options.largest_growth;
             };
@@ -591,6 +602,7 @@ namespace Squeal
           if (states.at(operation_at(lines[0], mu)).closed == regime.closed)
             {
               const ChartPoint point = evaluate_line(0, {mu}).front();
+              note_if_inaccurate(point);
               const int        mode  = leading_mode(point, omega_max);
               if (mode < 0 || !is_growing(point.lambda[mode]))
                 {
@@ -612,6 +624,7 @@ namespace Squeal
 
       const Scene               &scene;
       const ContactRegime       &regime;
+      const std::size_t          number; ///< of the contact set, from one on
       const std::vector<Line>   &lines;
       const ContactStates       &states;
       const CheckpointPlace     &checkpoint;
@@ -686,10 +699,13 @@ namespace Squeal
     /// Divergence rates that the least structural damping outweighs [-].
     constexpr double weak_divergence = 1e-4;
 
-    std::string verdict(const std::vector<ChartLine> &stretches, const double largest_frequency)
+    std::string verdict(const std::vector<ChartLine> &stretches, const std::size_t n_asked, const double largest_frequency)
     {
       double      first = -1., strong = -1., largest = 0., worst = 0., frequency = 0.;
       std::string first_label, strong_label, label;
+      std::size_t n_known = 0; // of the values asked for
+      for (const ChartLine &line : stretches)
+        n_known += std::count(line.chart.is_refinement.begin(), line.chart.is_refinement.end(), false);
       for (const ChartLine &line : stretches)
         for (std::size_t i = 0; i < line.chart.points.size(); ++i)
           for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
@@ -718,7 +734,9 @@ namespace Squeal
                 }
             }
       if (first < 0.)
-        return "  stable: no mode of the band grows at any friction coefficient of the sweep";
+        return n_known == n_asked ? "  stable: no mode of the band grows at any friction coefficient of the sweep" :
+                                    text("  no mode of the band grows at ", n_known, " of ", n_asked,
+                                         " friction coefficients; of the others nothing was proved");
       return text("  squeal from mu = ", first, " on (", first_label, ")",
                   strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
                   "; most at mu = ", worst, ": ", label, " at ", frequency, " Hz with ", 100. * largest, " %");
@@ -745,8 +763,18 @@ namespace Squeal
     // ------------------------------------------------------------- every regime
     const CheckpointPlace checkpoint = checkpoint_place(run);
     SweepResults          results;
-    for (const ContactRegime &regime : regimes)
-      RegimeModel(scene, regime, lines, states, checkpoint, run).add_to(results);
+    for (std::size_t r = 0; r < regimes.size(); ++r)
+      RegimeModel(scene, regimes[r], r + 1, lines, states, checkpoint, run).add_to(results);
+
+    for (const auto *chosen : {&parameters.sweep.mode_shapes, &parameters.sweep.counts})
+      for (const double mu : *chosen)
+        {
+          const auto closed = states.at(operation_at(lines[0], mu)).closed;
+          if (std::none_of(regimes.begin(), regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
+            run.progress.note(text("  note: at mu = ", mu, " other contact nodes are closed than at any value of the sweep: ",
+                                   chosen == &parameters.sweep.counts ? "modes are not counted" : "no mode shape is written",
+                                   ". Raise Sweep/Number of friction coefficients"));
+        }
 
     // ------------------------------------------------------------------ results
     std::vector<ChartLine> drawn;
@@ -803,7 +831,7 @@ namespace Squeal
     if (!is_drawn && run.is_root)
       run.progress.note("  note: gnuplot is not installed or failed; `gnuplot NAME.gp` in plots/ draws the pictures");
     if (const auto main = results.charts.find(0); main != results.charts.end())
-      run.progress.note(verdict(main->second, omega_max));
+      run.progress.note(verdict(main->second, lines[0].friction_coefficients.size(), omega_max));
     run.finish();
     if (run.is_root)
       std::filesystem::remove_all(checkpoint.folder);
