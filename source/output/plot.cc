@@ -20,7 +20,7 @@ namespace Squeal
     constexpr int         n_markers = sizeof(markers) / sizeof(markers[0]);
 
     constexpr int key_height = 24, smallest_key = 230, key_mark = 56, letter = 7, title_height = 30; // [pixels]
-    constexpr int left_margin = 76, right_margin = 15, bottom_margin = 56, top_margin = 33;         // [pixels]
+    constexpr int left_margin = 92, right_margin = 15, bottom_margin = 56, top_margin = 33;         // [pixels]
     constexpr int scale_margin = 88, scale_gap = 10, scale_width = 14;                              // [pixels]
 
     /// From pale to dark, without white and grey, which cells of other meanings have; black texts are legible on all of them.

@@ -67,7 +67,7 @@ namespace Squeal
                          "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.",
                          Double(1e-10, 1e-2));
     prm.add_parameter("Maximum basis", maximum_basis,
-                      "Largest reduced basis; a sweep that would need more stops at what it proved. Units: vectors.", Integer(1));
+                      "Largest reduced basis, at least the real modes; a sweep that would need more stops at what it proved. Units: vectors.", Integer(1));
     add_number_parameter(prm, "Threshold tolerance", threshold_tolerance,
                          "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", Double(1e-13, 1e-2));
     prm.add_parameter("Compare dissipation", compare_dissipation,

@@ -146,7 +146,9 @@ namespace Squeal
           }
         for (ChartPoint &chart : charts)
           chart = padded(chart, model.size());
-        const MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance);
+        // Real modes first, then axes in their order: a basis that may not be larger ends earlier
+        const MultiVector compressed = model.compressed_basis(charts, compression_factor * options.tolerance);
+        const MultiVector smaller    = view(compressed, 0, std::min(compressed.NumVectors(), std::max(options.maximum_basis, model.n_real_modes())));
         if (store != nullptr)
           store->keep(smaller);
         model.restart(smaller);

@@ -44,6 +44,11 @@ namespace Squeal
     return model.size();
   }
 
+  int ChartModel::n_real_modes() const
+  {
+    return real_modes.NumVectors();
+  }
+
   const ReducedModel &ChartModel::reduced() const
   {
     return model;

@@ -16,7 +16,7 @@ namespace Squeal
   struct CertifiedSweepOptions
   {
     double tolerance     = 1e-6; ///< on the estimated |δλ| / |λ| of every mode of the band at every operating point [-]
-    int    maximum_basis = 1500; ///< vectors
+    int    maximum_basis = 1500; ///< vectors, at least the real modes
   };
 
   /// Where results are kept as they come, and where an interrupted sweep finds them again.

@@ -44,6 +44,9 @@ namespace Squeal
     /// Vectors in the basis.
     int size() const;
 
+    /// Real modes among them.
+    int n_real_modes() const;
+
     const ReducedModel &reduced() const;
 
     /// Modes with their estimates. Only this process works, and no other need.
