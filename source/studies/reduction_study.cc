@@ -644,14 +644,15 @@ namespace Squeal
     run.write_table("reduction_errors", error_table(candidates, groups));
     run.write_table("reduction_estimates", estimate_table(candidates, unstable));
     run.folder().write("reduction_modes.csv", [&](std::ostream &stream) { mode_table(candidates, labels, groups).write_csv(stream); });
+    const bool errors_are_drawn = write_plot("reduction_errors", error_plot(candidates, groups, order), run.folder());
     const bool is_drawn =
-      write_plot("reduction_errors", error_plot(candidates, groups, order), run.folder()) &&
       write_plot("reduction_cost",
                  {"Cost and accuracy of reduced bases",
                   {cost_panel(candidates, friction, friction ? "time per friction coefficient" : "time of solving", [](const Candidate &c) { return c.solve_seconds; }),
                    cost_panel(candidates, friction, "time of building", [](const Candidate &c) { return c.build_seconds; })},
                   2},
-                 run.folder());
+                 run.folder()) &&
+      errors_are_drawn;
     run.screen << '\n';
     if (!is_drawn)
       run.progress.note("  note: gnuplot is not installed; plots/*.gp draw the plots");
