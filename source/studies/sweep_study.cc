@@ -135,7 +135,6 @@ namespace Squeal
     {
       std::map<int, std::vector<ChartLine>> charts; ///< by line: stretches with one contact set each
       std::map<std::pair<double, double>, MapCell> map; ///< by load or speed, and friction coefficient
-      std::map<std::pair<double, double>, double>  map_errors; ///< largest estimated |δλ| / |λ| [-]
       std::vector<CountAt> counts;
     };
 
@@ -258,7 +257,7 @@ namespace Squeal
         const auto store      = open_store("sweep");
         if (store->n_found() > 0)
           run.progress.note(text("  an interrupted sweep goes on: ", store->n_found(), " operating points are known"));
-        sweep = certified_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
+        const CertifiedSweep sweep = certified_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
         for (std::size_t i = 0; i < points.size(); ++i)
           if (sweep.points[i])
             known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
@@ -540,7 +539,7 @@ namespace Squeal
                       cell.n_unstable += point.verdicts[j] == Verdict::unstable;
                       cell.n_undecided += point.verdicts[j] == Verdict::undecided;
                     }
-                results.map_errors[{cell.value, cell.friction_coefficient}] = model->largest_error(point);
+                cell.error = model->largest_error(point);
               }
             results.map[{cell.value, cell.friction_coefficient}] = cell;
           }
@@ -633,7 +632,6 @@ namespace Squeal
       Linearisation              linearisation;
       FrictionlessModes          frictionless;
       std::unique_ptr<ChartModel> model;
-      CertifiedSweep             sweep;
       std::unique_ptr<ChartCheckpoint> refinements; ///< of the line that is followed
       std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
     };
@@ -659,7 +657,7 @@ namespace Squeal
           const auto known    = [is_known](const Cell &value) { return is_known ? value : Cell(); };
           table.add_row({cell.friction_coefficient, cell.value, known(static_cast<long>(cell.n_unstable)), known(static_cast<long>(cell.n_undecided)),
                          known(cell.leader), known(cell.frequency), known(cell.growth_rate), known(100. * cell.divergence_rate),
-                         known(is_known ? results.map_errors.at(place) : 0.), static_cast<long>(cell.n_open)});
+                         known(cell.error), static_cast<long>(cell.n_open)});
         }
       return table;
     }
@@ -814,9 +812,10 @@ namespace Squeal
         std::vector<double> shown = parameters.sweep.mode_shapes;
         if (shown.empty())
           shown = {parameters.sweep.friction_coefficients.linear().back()};
-        is_drawn = write_plot("complex_plane", complex_plane_plot(drawn, shown, omega_max), run.folder()) &&
-                   write_plot("overview", overview_plot(drawn, omega_max), run.folder());
-        for (const NamedPlot &plot : frequency_plots(drawn, omega_max))
+        std::vector<NamedPlot> plots = frequency_plots(drawn, omega_max);
+        plots.push_back({"complex_plane", complex_plane_plot(drawn, shown, omega_max)});
+        plots.push_back({"overview", overview_plot(drawn, omega_max)});
+        for (const NamedPlot &plot : plots)
           is_drawn = write_plot(plot.name, plot.plot, run.folder()) && is_drawn;
       }
     if (!results.map.empty())

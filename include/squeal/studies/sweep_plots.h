@@ -78,6 +78,7 @@ namespace Squeal
     int         n_open               = 0;     ///< contact nodes that are lifted
     std::string leader;                       ///< label of the most unstable mode
     bool        is_known             = false; ///< whether it was computed
+    double      error                = 0.;    ///< largest estimated |δλ| / |λ| [-]
   };
 
   /// Stability over friction coefficient and load or speed.
