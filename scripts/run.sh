@@ -31,7 +31,7 @@ done
 options=("$@")
 ((${#parameter_files[@]} > 0)) || parameter_files=("$squeal_root/prm/disc_pins.prm")
 
-setup
+setup squeal
 
 cd "$squeal_root"
 for parameter_file in "${parameter_files[@]}"; do

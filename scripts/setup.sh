@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the checkout ready: installs the Debian packages that are missing, configures and builds.
-# run.sh and test.sh source this file; called by itself it does the same and stops there:
+# run.sh and test.sh source this file; called by itself it builds the program and stops there:
 #
 #   scripts/setup.sh              what building, running and testing need
 #   scripts/setup.sh pictures     also what scripts/render_*.py and the plots need
@@ -97,9 +97,12 @@ build_jobs()
   echo "$jobs"
 }
 
-# Configures when needed and builds; the output is shown when something fails, and kept in build/release/build.log.
+# Configures when needed and builds the targets named, or everything; the output is shown when something fails,
+# and kept in build/release/build.log.
 build_release()
 {
+  local targets=()
+  (($# == 0)) || targets=(--target "$@")
   local directory=$squeal_root/build/release
   local log=$directory/build.log fresh=()
   mkdir -p "$directory"
@@ -114,7 +117,7 @@ build_release()
     if [[ ! -f $directory/build.ninja ]] || ((${#fresh[@]} > 0)); then
       cmake --preset release "${fresh[@]}" || exit 1
     fi
-    cmake --build --preset release -- --quiet -j "$(build_jobs)"
+    cmake --build --preset release "${targets[@]}" -- --quiet -j "$(build_jobs)"
   ) >"$log" 2>&1; then
     cat "$log" >&2
     complain "The build failed; the messages above are in $log."
@@ -137,11 +140,12 @@ set_environment()
   fi
 }
 
+# setup [TARGET]: everything up to a program that can be run; without TARGET, the tests are built, too.
 setup()
 {
-  install_packages "${packages[@]}" "$@"
+  install_packages "${packages[@]}"
   check_blas
-  build_release
+  build_release "$@"
   set_environment
 }
 
@@ -154,5 +158,6 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
       *) complain "usage: scripts/setup.sh [pictures] [peers]"; exit 2 ;;
     esac
   done
-  setup "${additional[@]}"
+  install_packages "${packages[@]}" "${additional[@]}"
+  setup squeal
 fi
