@@ -37,6 +37,7 @@ missing_packages()
 install_packages()
 {
   local missing privilege=()
+  (($# > 0)) || return 0
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     complain "This is not a Debian system: packages are not checked here, CMake reports what it does not find."
     return
@@ -66,6 +67,16 @@ install_packages()
     exit 1
   fi
   rm -f "$log"
+}
+
+# The linker that deal.II asks for (Debian 13's was built to be linked with mold); prints the package, or nothing.
+linker_package()
+{
+  local linker
+  linker=$(grep -hos 'fuse-ld=[a-z]*' /usr/share/cmake/deal.II/deal.IIConfig.cmake | head -n 1 || true)
+  case ${linker#fuse-ld=} in
+    mold | lld) echo "${linker#fuse-ld=}" ;;
+  esac
 }
 
 # deal.II calls the BLAS that the system's alternatives name; the reference BLAS is about ten times slower.
@@ -144,6 +155,8 @@ set_environment()
 setup()
 {
   install_packages "${packages[@]}"
+  mapfile -t packages_linker < <(linker_package)
+  install_packages "${packages_linker[@]}"
   check_blas
   build_release "$@"
   set_environment

@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# Tries the README's two commands on a bare Debian in a chroot: what they need and this machine happens to have
+# cannot hide there. Needs root and debootstrap.
+#
+#   scripts/try_debian.sh [RELEASE] [--kernels NAME]... [--run-only] [--keep] [--in DIR]
+#
+#   RELEASE          bookworm (Debian 12, default) or trixie (Debian 13)
+#   --kernels NAME   OPENBLAS_CORETYPE of the tests; repeated, the tests run once with each (default: as detected)
+#   --run-only       only scripts/run.sh
+#   --keep           leaves the chroot in place, to look around or to try again quickly
+#   --in DIR         where the chroot is made (default: a temporary folder)
+#
+# Tried is the last commit of this checkout, cloned afresh. Packages come from where this machine gets its own.
+# The times printed last are those of the commands, with the installation of packages.
+
+set -euo pipefail
+# Mounts belong to this script alone and vanish with it, however it ends.
+if [[ -z ${squeal_private_mounts:-} ]] && (($(id -u) == 0)); then
+  squeal_private_mounts=yes exec unshare --mount "${BASH_SOURCE[0]}" "$@"
+fi
+squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+usage() { sed -n '2,/^$/s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; }
+complain() { printf '%s\n' "$*" >&2; }
+
+release=bookworm kernels=() run_only=false keep=false directory=
+while (($# > 0)); do
+  case $1 in
+    -h | --help) usage; exit 0 ;;
+    --run-only) run_only=true; shift ;;
+    --keep) keep=true; shift ;;
+    --kernels | --in)
+      if (($# < 2)); then usage >&2; exit 2; fi
+      if [[ $1 == --in ]]; then directory=$2; else kernels+=("$2"); fi
+      shift 2
+      ;;
+    bookworm | trixie) release=$1; shift ;;
+    *) usage >&2; exit 2 ;;
+  esac
+done
+((${#kernels[@]} > 0)) || kernels=("")
+if (($(id -u) != 0)); then complain "A chroot needs root."; exit 1; fi
+if ! command -v debootstrap >/dev/null; then complain "debootstrap is missing: apt-get install debootstrap"; exit 1; fi
+mirror=$(apt-get indextargets 'Created-By: Packages' --format '$(REPO_URI)' | grep -E '/debian/?$' | head -n 1)
+if [[ -z $mirror ]]; then complain "apt-get names no Debian mirror; see /etc/apt/sources.list."; exit 1; fi
+
+directory=${directory:-$(mktemp -d)}
+root=$directory/$release
+clean_up()
+{
+  umount --recursive --lazy "$root/proc" "$root/dev" "$root/sys" 2>/dev/null || true
+  $keep || rm -rf --one-file-system "$root"
+}
+trap clean_up EXIT
+
+if [[ ! -x $root/usr/bin/apt-get ]]; then
+  echo "Debian $release in $root"
+  mkdir -p "$root"
+  debootstrap --variant=minbase --include=ca-certificates "$release" "$root" "$mirror" >"$directory/debootstrap.log" 2>&1 ||
+    { tail -n 20 "$directory/debootstrap.log" >&2; complain "debootstrap failed; see $directory/debootstrap.log"; exit 1; }
+fi
+# Proxies and certificates of this machine lead to the mirror
+cp -r /etc/apt/apt.conf.d/. "$root/etc/apt/apt.conf.d/" 2>/dev/null || true
+cp -L --remove-destination /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/" 2>/dev/null || true
+cp -L --remove-destination /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev" && mount --make-rslave "$root/dev"
+mount --rbind /sys "$root/sys" && mount --make-rslave "$root/sys"
+
+rm -rf "$root/root/squeal"
+git clone --quiet "$squeal_root" "$root/root/squeal"
+
+# A clean environment: what this shell exports must not help
+inside() { chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 "$@"; }
+times=()
+try()
+{
+  local name=$1 start=$SECONDS status=0
+  shift
+  echo "--- $release: $name"
+  inside "$@" || status=$?
+  times+=("$release: $name: $((SECONDS - start)) s, exit status $status")
+  return "$status"
+}
+
+failed=false
+try "scripts/run.sh" /root/squeal/scripts/run.sh || failed=true
+if ! $run_only; then
+  for kernel in "${kernels[@]}"; do
+    try "scripts/test.sh${kernel:+ with $kernel kernels}" ${kernel:+"OPENBLAS_CORETYPE=$kernel"} /root/squeal/scripts/test.sh || failed=true
+  done
+fi
+warnings=$(grep -c 'warning:' "$root/root/squeal/build/release/build.log" || true)
+times+=("$release: warnings of the last build: $warnings")
+printf '%s\n' "${times[@]}"
+! $failed
