@@ -1,0 +1,84 @@
+#include "scenes.h"
+
+#include <squeal/base/conventions.h>
+#include <squeal/bases/mode_count_estimate.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/geometry/generate_mesh.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// Four pins of given diameter and height on a default disc; the mesh still resolves the waves asked for.
+  HexMesh four_pins(const double diameter = 0.052, const double height = 0.0318, const int pin_layers = 4)
+  {
+    GeometryParameters geometry;
+    geometry.top.angles   = {-10., 10.};
+    geometry.top.radii    = {0.2275, 0.2275};
+    geometry.bottom       = geometry.top;
+    geometry.pin_diameter = diameter;
+    geometry.pin_height   = height;
+    geometry.pin_layers   = pin_layers;
+    geometry.disc_layers  = 3;
+    geometry.element_size = 0.02;
+    return generate_mesh(geometry, {});
+  }
+
+  /// The estimate over the number of modes by inertia.
+  double ratio(const HexMesh &mesh, const MaterialParameters &materials, const double frequency)
+  {
+    const Scene  scene(mesh, materials, operating());
+    const double omega = circular_frequency(frequency);
+    const int    n     = count_modes(*scene.coupled.frictionless.stiffness, *scene.coupled.frictionless.mass, omega * omega, "a scene");
+    return expected_number_of_modes(mesh, materials, omega).coupled() / n;
+  }
+
+  void expect_within_factor_two(const double ratio)
+  {
+    EXPECT_GT(ratio, 0.5);
+    EXPECT_LT(ratio, 2.);
+  }
+} // namespace
+
+
+
+TEST(ModeCountEstimate, AgreesWithTheInertiaOverTheBand)
+{
+  const HexMesh mesh = four_pins();
+  for (const double frequency : {3000., 5000., 8000., 12000.})
+    {
+      SCOPED_TRACE(frequency);
+      expect_within_factor_two(ratio(mesh, mounted(), frequency));
+      expect_within_factor_two(ratio(mesh, mounted({}), frequency));
+    }
+}
+
+TEST(ModeCountEstimate, FollowsTheMaterials)
+{
+  const HexMesh      mesh = four_pins();
+  MaterialParameters soft_pins = mounted(), soft_disc = mounted();
+  soft_pins.pin.young_modulus /= 9.;
+  soft_disc.disc.young_modulus /= 9.;
+  expect_within_factor_two(ratio(mesh, soft_pins, 5000.));
+  expect_within_factor_two(ratio(mesh, soft_disc, 5000.));
+}
+
+TEST(ModeCountEstimate, SlenderPinsBend)
+{
+  const HexMesh mesh = four_pins(0.02, 0.12, 16);
+  for (const double frequency : {1000., 3000., 5000.})
+    {
+      SCOPED_TRACE(frequency);
+      expect_within_factor_two(ratio(mesh, mounted(), frequency));
+    }
+}
+
+TEST(ModeCountEstimate, GrowsWithTheCubeOfTheFrequencyInTheEnd)
+{
+  const HexMesh mesh = four_pins();
+  const double  n    = expected_number_of_modes(mesh, mounted(), 1e8).coupled();
+  EXPECT_NEAR(expected_number_of_modes(mesh, mounted(), 2e8).coupled() / n, 8., 0.1);
+}
