@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/sparse.h>
 
@@ -8,9 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    /// ω²/ω_max² below which a rigid-body motion counts as free: far above rounding, far below any mount worth the name.
-    constexpr double free_motion = 1e-8;
-    /// ω_max / s for a free disc.
+    /// ω_max / s for a disc that is free or held softly.
     constexpr double band_per_shift = 50.;
 
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
@@ -27,6 +26,16 @@ namespace Squeal
       // Every process must cut the same motions off.
       agree(X.Comm(), K, values);
       return {Y * K, values};
+    }
+
+    /**
+     * The inverse of K magnifies a motion at ω_1 by (ω/ω_1)² over a mode at ω, and rounding errors with it: from ω_1 < s on
+     * that of K + s² M does so less.
+     */
+    double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
+    {
+      const double s = largest_circular_frequency / band_per_shift;
+      return eigenvalues.front() < s * s ? s : 0.;
     }
   } // namespace
 
@@ -56,7 +65,7 @@ namespace Squeal
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, const double largest_circular_frequency)
   {
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
-    const double threshold = free_motion * largest_circular_frequency * largest_circular_frequency;
+    const double slowest   = zero_frequency * largest_circular_frequency, threshold = slowest * slowest;
     const int    n_free    = std::upper_bound(eigenvalues.begin(), eigenvalues.end(), threshold) - eigenvalues.begin();
     if (n_free == 0)
       return {};
@@ -65,8 +74,12 @@ namespace Squeal
 
   double stabilizing_shift(const Model &model, const CoupledSystem &system, const double largest_circular_frequency)
   {
-    const auto [modes, eigenvalues] = rayleigh_ritz(rigid_disc_motions(model, system), system.frictionless);
-    const double omega              = largest_circular_frequency;
-    return eigenvalues.front() < free_motion * omega * omega ? omega / band_per_shift : 0.;
+    const std::vector<double> eigenvalues = rayleigh_ritz(rigid_disc_motions(model, system), system.frictionless).second;
+    return shift_for(eigenvalues, largest_circular_frequency);
+  }
+
+  double stabilizing_shift(const Model &model, const SecondOrderSystem &system, const double largest_circular_frequency)
+  {
+    return shift_for(rayleigh_ritz(rigid_motions(model, 0), system).second, largest_circular_frequency);
   }
 } // namespace Squeal

@@ -73,7 +73,8 @@ namespace Squeal
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
                                             const DenseMatrix &stiffness,
-                                            const double       largest_frequency)
+                                            const double       largest_frequency,
+                                            const RealVectors  real_vectors)
   {
     DenseQuadraticModes modes;
     const int           r = mass.n_rows();
@@ -116,6 +117,8 @@ namespace Squeal
             modes.real_values.push_back(lambda.real());
             if (linear)
               modes.real_values.push_back(-lambda.real());
+            if (real_vectors == RealVectors::wanted)
+              wanted.push_back(j);
           }
         else if (lambda.imag() > 0. && lambda.imag() <= largest_frequency)
           wanted.push_back(j);

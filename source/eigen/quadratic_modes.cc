@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/eigen/quadratic_modes.h>
@@ -17,8 +18,6 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// λ below this fraction of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
-    constexpr double zero_fraction = 1e-4;
     /// λ is real if |Im λ| is below this fraction of |λ|.
     constexpr double real_fraction = 1e-7;
     /// Values beyond the radius that have to converge, so that none inside can still be on its way.
@@ -42,8 +41,11 @@ namespace Squeal
         , s(options.shift)
         , degree(pencil.damping != nullptr ? 2 : 1)
       {
+        // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² hold every wanted λ. Of degree one the last to be reached is the
+        // corner with the largest Im λ, of degree two it is -ρ.
         const Complex corner(-options.largest_damping * options.largest_frequency, options.largest_frequency);
-        radius = degree == 2 ? std::abs(corner - s) : std::sqrt(std::abs(corner * corner - s * s));
+        largest_modulus = std::abs(corner);
+        radius          = degree == 2 ? largest_modulus + s : std::sqrt(std::abs(corner * corner - s * s));
       }
 
       /// Upper part of S x for the states x = [u v] (degree two) or [u] (degree one).
@@ -99,7 +101,7 @@ namespace Squeal
       {
         const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
         const double lambda = std::abs(value(nu)) / radius;
-        if (lambda < zero_fraction)
+        if (lambda < zero_frequency)
           return epsilon * theta;
         if (degree == 1)
           return epsilon * theta * theta / (lambda * lambda);
@@ -109,6 +111,7 @@ namespace Squeal
       const QuadraticPencil &pencil;
       const LinearOperator  &inverse;
       double                 s, radius;
+      double                 largest_modulus; ///< ρ: of the wanted λ
       int                    degree;
       mutable int            n_solves = 0;
     };
@@ -214,9 +217,9 @@ namespace Squeal
           const Complex nu     = ritz.values[i];
           const Complex lambda = transformation.value(nu);
           const bool    pair   = nu.imag() != 0.;
-          if (!transformation.inside(nu))
+          if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
-          if (std::abs(lambda) <= zero_fraction * options.largest_frequency)
+          if (std::abs(lambda) <= zero_frequency * options.largest_frequency)
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
           else if (std::abs(lambda.imag()) <= real_fraction * std::abs(lambda))
             {

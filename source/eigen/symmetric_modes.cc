@@ -1,5 +1,6 @@
 #include "shift_invert.h"
 
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/linear_algebra/sparse.h>
@@ -16,7 +17,7 @@ namespace Squeal
   namespace
   {
     /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
-    constexpr double rigid_body_threshold = 1e-9;
+    constexpr double rigid_body_threshold = zero_frequency * zero_frequency;
 
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_vain_starts = 4;
@@ -197,10 +198,12 @@ namespace Squeal
         Residuals residuals;
         for (int j = 0; j < n_modes; ++j)
           {
-            const double scale    = is_rigid(pairs.values[j]) ? count.limit * norm_MV[j] : norm_KV[j];
+            // Where a soft mount holds the body, ω² = 0 leaves the residual ω² / limit
+            const bool   rigid    = is_rigid(pairs.values[j]);
+            const double scale    = rigid ? count.limit * norm_MV[j] : norm_KV[j];
             const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
             residuals.values.push_back(norm_R[j] / scale);
-            const double excess = residuals.values[j] / std::max(options.tolerance, rounding);
+            const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? rigid_body_threshold : 0.});
             // Written so that NaN is the worst.
             if (!(excess <= residuals.excess))
               {

@@ -46,9 +46,9 @@ namespace Squeal
   {
     // Its inverse would hold the dense C_m
     if (shift != 0. && system.modal_damping)
-      throw SolverError("modal damping and a disc that can move as a rigid body do not go together with the Krylov solver",
+      throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver",
                         "complex modes",
-                        "choose Complex modes/Solver = residual iteration, hold the disc by Mounts/Elastic mounts, or leave "
+                        "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
     // The pencil: sparse matrices, but for modal damping
@@ -71,6 +71,7 @@ namespace Squeal
     QuadraticModesOptions options;
     options.shift             = shift;
     options.largest_frequency = largest_circular_frequency;
+    options.largest_damping   = largest_rate_of_band;
     options.expected          = n_expected;
     options.tolerance         = parameters.complex_tolerance;
     options.stiffness_norm    = matrices.stiffness->NormInf();
@@ -81,7 +82,7 @@ namespace Squeal
     modes.lambda         = found.values;
     modes.real_part      = found.real_part;
     modes.imaginary_part = found.imaginary_part;
-    modes.overdamped     = found.real_values;
+    modes.real_values    = found.real_values;
     modes.n_rigid_body   = found.n_zero_values / 2;
     modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
     finish_modes(system, mu, inverse, modes);

@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/stability/reduced_modes.h>
 
@@ -13,8 +14,6 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// λ below this part of the largest frequency count as zero: a defective double zero splits into ± √(rounding).
-    constexpr double zero_fraction = 1e-4;
     /// Im λ below this part of the largest frequency counts as zero: a multiple real λ splits into pairs by rounding.
     constexpr double real_fraction = 1e-7;
     /// Estimates of ill-conditioned eigenvalues are not claimed.
@@ -40,6 +39,11 @@ namespace Squeal
       return result;
     }
 
+    bool is_real(const Complex lambda, const double largest_frequency)
+    {
+      return std::abs(lambda.imag()) <= real_fraction * largest_frequency;
+    }
+
     /**
      * Leaves only oscillating modes: real values of rounding join the others
      * of their kind, zeros, those of rigid-body motions, are counted.
@@ -47,12 +51,12 @@ namespace Squeal
     void separate_real(ReducedModes &modes, const double largest_frequency)
     {
       // What holds for an oscillating value holds for its conjugate, too
-      const double     limit = zero_fraction * largest_frequency;
+      const double     limit = zero_frequency * largest_frequency;
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
         if (const Complex l = modes.lambda[j]; std::abs(l) <= limit)
           modes.n_zeros += 2;
-        else if (std::abs(l.imag()) <= real_fraction * largest_frequency)
+        else if (is_real(l, largest_frequency))
           modes.real_values.insert(modes.real_values.end(), 2, l.real());
         else
           others.push_back(static_cast<int>(j));
@@ -85,6 +89,29 @@ namespace Squeal
       broadcast(modes.right.column(), r * k);
       broadcast(modes.left.column(), r * k);
       comm.Broadcast(modes.real_values.data(), counts[1], 0);
+    }
+
+    /// Every eigenvalue that dense_quadratic_modes() gives.
+    ReducedModes all_modes(const ReducedModel   &model,
+                           const double          mu,
+                           const ContactDamping &damping,
+                           const double          largest_frequency,
+                           const RealVectors     real_vectors)
+    {
+      ReducedModes modes;
+      modes.friction_coefficient = mu;
+      modes.contact_damping      = damping;
+      modes.pencil               = model.at(mu, damping);
+      modes.mass                 = model.blocks().mass;
+      modes.stiffness            = model.blocks().stiffness;
+
+      DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
+                                                        modes.pencil.stiffness, largest_frequency, real_vectors);
+      modes.lambda              = std::move(found.values);
+      modes.right               = std::move(found.right);
+      modes.left                = std::move(found.left);
+      modes.real_values         = std::move(found.real_values);
+      return modes;
     }
 
     double band_limit(const double largest_frequency, const BandEnd end)
@@ -144,19 +171,7 @@ namespace Squeal
                                    const double          largest_frequency,
                                    const BandEnd         end)
   {
-    ReducedModes modes;
-    modes.friction_coefficient = mu;
-    modes.contact_damping      = damping;
-    modes.pencil               = model.at(mu, damping);
-    modes.mass                 = model.blocks().mass;
-    modes.stiffness            = model.blocks().stiffness;
-
-    DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
-                                                      modes.pencil.stiffness, band_limit(largest_frequency, end));
-    modes.lambda              = std::move(found.values);
-    modes.right               = std::move(found.right);
-    modes.left                = std::move(found.left);
-    modes.real_values         = std::move(found.real_values);
+    ReducedModes modes = all_modes(model, mu, damping, band_limit(largest_frequency, end), RealVectors::none);
     separate_real(modes, largest_frequency);
     return modes;
   }
@@ -164,6 +179,20 @@ namespace Squeal
   ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_frequency, const BandEnd end)
   {
     ReducedModes modes = local_reduced_modes(model, mu, model.contact_damping(), largest_frequency, end);
+    agree_on_modes(model.basis().Comm(), modes);
+    return modes;
+  }
+
+  ReducedModes
+  real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_frequency, const double radius)
+  {
+    ReducedModes     modes = all_modes(model, mu, model.contact_damping(), largest_frequency, RealVectors::wanted);
+    std::vector<int> real;
+    for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+      if (const double size = std::abs(modes.lambda[j]);
+          is_real(modes.lambda[j], largest_frequency) && size > zero_frequency * largest_frequency && size <= radius)
+        real.push_back(static_cast<int>(j));
+    modes = selected(modes, real);
     agree_on_modes(model.basis().Comm(), modes);
     return modes;
   }
@@ -179,7 +208,7 @@ namespace Squeal
 
     DenseMatrix               vectors = modes.stiffness;
     const std::vector<double> squares = symmetric_eigenvalues(vectors, modes.mass);
-    const double              limit   = band_limit(largest_frequency, end), zero = zero_fraction * largest_frequency;
+    const double              limit   = band_limit(largest_frequency, end), zero = zero_frequency * largest_frequency;
     std::vector<int>          kept;
     for (std::size_t j = 0; j < squares.size(); ++j)
       if (squares[j] <= zero * zero)

@@ -49,14 +49,84 @@ namespace Squeal
       return X * columns(axes, first, k - first);
     }
 
-    /// Modes at one friction coefficient with their estimates.
-    struct State
+    /// Modes of one kind at one friction coefficient with their estimates.
+    struct AssessedModes
     {
+      AssessedModes(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, ReducedModes found)
+        : modes(std::move(found))
+        , residuals(residual_vectors(system, inverse, model, modes))
+        , estimates(estimate_eigenvalues(modes, residuals.products()))
+      {}
+
+      /// Largest estimated error.
+      double worst() const
+      {
+        return *std::max_element(estimates.errors.begin(), estimates.errors.end());
+      }
+
+      /// Residuals of the modes that miss the tolerance; nothing if none does.
+      std::optional<MultiVector> directions(const double tolerance) const
+      {
+        std::vector<int> inaccurate;
+        for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+          if (!(estimates.errors[j] <= tolerance))
+            inaccurate.push_back(static_cast<int>(j));
+        if (inaccurate.empty())
+          return {};
+        return residual_directions(residuals, modes, inaccurate);
+      }
+
       ReducedModes        modes;
       ResidualVectors     residuals;
       EigenvalueEstimates estimates;
-      double              worst;
     };
+
+    /// Everything inside the radius of the band at one friction coefficient.
+    struct State
+    {
+      AssessedModes                complex;
+      std::optional<AssessedModes> real; ///< real eigenvalues where there are any
+
+      double worst() const
+      {
+        return real ? std::max(complex.worst(), real->worst()) : complex.worst();
+      }
+
+      MultiVector directions(const double tolerance) const
+      {
+        const auto of_complex = complex.directions(tolerance), of_real = real ? real->directions(tolerance) : std::nullopt;
+        if (of_complex && of_real)
+          return join({&*of_complex, &*of_real});
+        return of_complex ? *of_complex : *of_real;
+      }
+    };
+
+    /// Oscillating modes inside the radius of the band.
+    ReducedModes modes_in_band(const ReducedModel &model, const double mu, const double largest_frequency)
+    {
+      const ReducedModes modes = reduced_modes(model, mu, largest_frequency);
+      std::vector<int>   inside;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        if (std::abs(modes.lambda[j]) <= band_radius(largest_frequency))
+          inside.push_back(static_cast<int>(j));
+      if (inside.empty())
+        throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
+      return inside.size() == modes.lambda.size() ? modes : selected(modes, inside);
+    }
+
+    State assess(const CoupledSystem  &system,
+                 const UpdatedInverse &inverse,
+                 const ReducedModel   &model,
+                 const double          mu,
+                 const double          largest_frequency)
+    {
+      const double radius = band_radius(largest_frequency);
+      State        state{AssessedModes(system, inverse, model, modes_in_band(model, mu, largest_frequency)), {}};
+      const auto  &values = state.complex.modes.real_values;
+      if (std::any_of(values.begin(), values.end(), [radius](const double l) { return std::abs(l) <= radius; }))
+        state.real.emplace(system, inverse, model, real_eigenvalue_modes(model, mu, largest_frequency, radius));
+      return state;
+    }
 
     /// The state of the largest error among all friction coefficients.
     State worst_state(const CoupledSystem       &system,
@@ -68,14 +138,9 @@ namespace Squeal
       std::unique_ptr<State> result;
       for (const double mu : friction_coefficients)
         {
-          ReducedModes modes = reduced_modes(model, mu, largest_frequency);
-          if (modes.lambda.empty())
-            throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
-          ResidualVectors     residuals = residual_vectors(system, inverse, model, modes);
-          EigenvalueEstimates estimates = estimate_eigenvalues(modes, residuals.products());
-          const double        worst     = *std::max_element(estimates.errors.begin(), estimates.errors.end());
-          if (!result || !(worst <= result->worst))
-            result = std::make_unique<State>(State{std::move(modes), std::move(residuals), std::move(estimates), worst});
+          State state = assess(system, inverse, model, mu, largest_frequency);
+          if (!result || !(state.worst() <= result->worst()))
+            result = std::make_unique<State>(std::move(state));
         }
       return std::move(*result);
     }
@@ -132,23 +197,20 @@ namespace Squeal
 
     for (int step = 0;; ++step)
       {
-        State state = worst_state(system, inverse, model, friction_coefficients, options.largest_frequency);
+        State        state = worst_state(system, inverse, model, friction_coefficients, options.largest_frequency);
+        const double worst = state.worst();
 
         std::ostringstream text;
-        text << model.size() << " vectors, estimated error " << state.worst;
+        text << model.size() << " vectors, estimated error " << worst;
         progress.update(text.str());
-        if (state.worst <= options.tolerance)
-          return {std::move(model), std::move(state.modes), std::move(state.estimates), state.worst, step};
+        if (worst <= options.tolerance)
+          return {std::move(model), std::move(state.complex.modes), std::move(state.complex.estimates), worst, step};
 
-        std::vector<int> inaccurate;
-        for (std::size_t j = 0; j < state.modes.lambda.size(); ++j)
-          if (!(state.estimates.errors[j] <= options.tolerance))
-            inaccurate.push_back(static_cast<int>(j));
-        const auto fresh = new_vectors(system, model, residual_directions(state.residuals, state.modes, inaccurate));
+        const auto fresh = new_vectors(system, model, state.directions(options.tolerance));
         if (!fresh || step == options.maximum_steps || model.size() + fresh->NumVectors() > options.maximum_basis)
           {
             std::ostringstream what;
-            what << "the residual iteration ends with an estimated error of lambda of " << state.worst << " where " << options.tolerance
+            what << "the residual iteration ends with an estimated error of lambda of " << worst << " where " << options.tolerance
                  << " was asked for (" << model.size() << " vectors, " << step << " growths)";
             throw SolverError(what.str(), "complex modes",
                               "raise Complex modes/Maximum basis or Complex modes/Iteration tolerance, or choose the Krylov solver");
@@ -167,8 +229,8 @@ namespace Squeal
     const GrownBasis grown = grow_residual_basis(system, inverse, real_modes, {mu}, options, progress);
     ComplexModes     modes = full_order_modes(system, inverse, grown.model, grown.modes, &grown.estimates);
     for (const double l : grown.modes.real_values)
-      if (std::abs(l) <= options.largest_frequency)
-        modes.overdamped.push_back(l);
+      if (std::abs(l) <= band_radius(options.largest_frequency))
+        modes.real_values.push_back(l);
     std::ostringstream summary;
     summary << grown.model.size() << " vectors, estimated error " << grown.worst_error << ", " << grown.n_growths << " growths";
     modes.summary = summary.str();

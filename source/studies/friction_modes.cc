@@ -16,6 +16,9 @@ namespace Squeal
     /// Divergence rates that the least structural damping outweighs [-].
     constexpr double weak_divergence = 1e-4;
 
+    /// Modes with R > ω grow by e^(2π) and more within a period: rather a slow oscillation about a divergence than a sound [-].
+    constexpr double fastest_oscillating_divergence = 1.;
+
     /// The largest of the estimated errors of λ may be that much too small.
     constexpr double estimate_safety = 3.;
 
@@ -39,6 +42,11 @@ namespace Squeal
   std::size_t FrictionModes::n_unstable() const
   {
     return std::count(unstable.begin(), unstable.end(), true);
+  }
+
+  std::size_t FrictionModes::n_growing_real() const
+  {
+    return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
   }
 
   FrictionModes friction_modes(const Scene             &scene,
@@ -76,29 +84,67 @@ namespace Squeal
     result.identities = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
     result.labels     = labels_of(result.identities);
     run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", mu,
-                             modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "", "; ", modes.summary));
+                             modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
+                             modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ", modes.summary));
     return result;
   }
 
-  std::string verdict(const FrictionModes &friction, const double mu, const double maximum_frequency)
+  namespace
   {
-    const auto &lambda = friction.modes.lambda;
-    std::size_t n_weak = 0, leading = 0;
-    bool        found = false;
-    for (std::size_t j = 0; j < lambda.size(); ++j)
-      if (friction.unstable[j])
-        {
-          const double rate = modal_quantities(lambda[j]).divergence_rate;
-          if (!found || rate > modal_quantities(lambda[leading]).divergence_rate)
-            leading = j;
-          found = true;
-          n_weak += rate < weak_divergence;
-        }
-    if (!found)
-      return text("  stable: no unstable mode below ", maximum_frequency, " Hz at mu = ", mu);
-    const ModalQuantities mode = modal_quantities(lambda[leading]);
-    return text("  squeal: ", friction.n_unstable(), friction.n_unstable() == 1 ? " unstable mode" : " unstable modes", " at mu = ", mu,
-                ", led by ", friction.labels[leading], " at ", mode.frequency, " Hz with a divergence rate of ", 100. * mode.divergence_rate,
-                " %", n_weak > 0 ? text("; ", n_weak, " below ", 100. * weak_divergence, " %") : "");
+    /// What a reader hears first of the unstable modes: those that oscillate while they grow.
+    std::string squeal(const FrictionModes &friction, const double mu)
+    {
+      const auto &lambda = friction.modes.lambda;
+      std::size_t n_weak = 0, n_monotonic = 0, leading = lambda.size();
+      double      highest = 0.;
+      for (std::size_t j = 0; j < lambda.size(); ++j)
+        if (friction.unstable[j])
+          {
+            const double rate = modal_quantities(lambda[j]).divergence_rate;
+            n_weak += rate < weak_divergence;
+            n_monotonic += rate > fastest_oscillating_divergence;
+            if (rate > highest && rate <= fastest_oscillating_divergence)
+              {
+                leading = j;
+                highest = rate;
+              }
+          }
+      const std::size_t n = friction.n_unstable();
+      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", mu);
+      if (leading < lambda.size())
+        result += text(", led by ", friction.labels[leading], " at ", modal_quantities(lambda[leading]).frequency,
+                       " Hz with a divergence rate of ", 100. * highest, " %");
+      if (n_weak > 0)
+        result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");
+      if (n_monotonic > 0)
+        result += text("; ", n_monotonic, " grow faster than they oscillate, above ", 100. * fastest_oscillating_divergence, " %");
+      return result;
+    }
+  } // namespace
+
+  std::vector<std::string> verdict(const FrictionModes &friction, const double mu, const double maximum_frequency)
+  {
+    std::vector<std::string> lines;
+    if (const std::size_t n = friction.n_growing_real(); n > 0)
+      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ", mu,
+                           ", the largest growth rate ", friction.modes.real_values.back(), " 1/s"));
+    if (friction.n_unstable() > 0)
+      lines.push_back(squeal(friction, mu));
+    if (lines.empty())
+      lines.push_back(text("  stable: no unstable mode below ", maximum_frequency, " Hz at mu = ", mu));
+    return lines;
+  }
+
+  std::string note_on_count(const FrictionModes &friction, const std::size_t n_real_modes)
+  {
+    const ComplexModes &modes     = friction.modes;
+    const std::size_t   n_complex = modes.lambda.size() + modes.n_rigid_body, n_values = modes.real_values.size();
+    if (n_complex == n_real_modes)
+      return "";
+    const std::string counts = text("  note: ", n_real_modes, " real but ", n_complex, " complex modes lie in the band: ");
+    const std::string real   = text(n_values, " real eigenvalues stand for modes that do not oscillate");
+    if (2 * n_complex + n_values == 2 * n_real_modes)
+      return counts + real;
+    return counts + (n_values > 0 ? real + ", and " : "") + "with friction modes crossed its end";
   }
 } // namespace Squeal

@@ -69,11 +69,12 @@ namespace Squeal
     result.shift      = stabilizing_shift(*scene.model, coupled, omega_max);
 
     // -------------------------------------------------------- component modes
-    const auto components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
+    const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);
+    const auto   components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
       SymmetricModesOptions component_options = options;
       component_options.what                  = name;
       run.progress.update(name);
-      component_options.shift = component == Component::disc ? result.shift * result.shift : 0.;
+      component_options.shift = component == Component::disc ? disc_shift * disc_shift : 0.;
       // Pins are alike: every mode of one comes once for each of them, bending modes twice, and a block finds the members
       // of such a cluster together.
       if (component == Component::pins)
@@ -97,7 +98,7 @@ namespace Squeal
     result.inverse = std::make_unique<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
     run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
-                             result.shift > 0. ? ", shifted: the disc can move as a rigid body" : ""));
+                             result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
 
     run.progress.begin("Real modes");
     options.what  = "real modes of the coupled system";

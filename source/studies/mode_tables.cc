@@ -67,6 +67,14 @@ namespace Squeal
     return table;
   }
 
+  Table real_eigenvalue_table(const std::vector<double> &values)
+  {
+    Table table({{"growth rate", "1/s", 4}, {"kind", ""}});
+    for (auto value = values.rbegin(); value != values.rend(); ++value)
+      table.add_row({*value, std::string(*value > 0. ? "static divergence" : "decay")});
+    return table;
+  }
+
   Table pin_table(const std::vector<PinContact> &pins)
   {
     Table table({{"pin", ""},

@@ -150,6 +150,10 @@ namespace Squeal
     const FrictionModes friction = friction_modes(scene, linearisation, frictionless, operation.friction_coefficient, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
+    run.count("real eigenvalues", friction.modes.real_values.size());
+    run.count("growing real eigenvalues", friction.n_growing_real());
+    if (friction.n_growing_real() > 0)
+      run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
 
     // ----------------------------------------------------------------- results
     if (sliding)
@@ -158,14 +162,14 @@ namespace Squeal
     run.write_table("component_modes", component_table(frictionless, omega_max * omega_max));
     run.write_table("real_modes", real_table(frictionless));
     run.write_table("complex_modes", complex_table(friction.modes, friction.labels, friction.identities));
+    if (!friction.modes.real_values.empty())
+      run.write_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
     run.write_table("table1", table_one(beside_paper(frictionless, friction), operation.radial_dissipation, agreement));
     run.screen << '\n';
     run.progress.note(text("  beside the paper's Table 1: component frequencies ", 100. * agreement.component, " % rms (",
                            agreement.n_component, "), coupled ", 100. * agreement.coupled, " % rms (", agreement.n_coupled, ")"));
-    const std::size_t n_complex = friction.modes.lambda.size() + friction.modes.n_rigid_body, n_real = frictionless.real.eigenvalues.size();
-    if (n_complex != n_real)
-      run.progress.note(text("  note: ", n_real, " real but ", n_complex,
-                             " complex modes lie in the band: with friction a mode crossed its end"));
+    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
+      run.progress.note(note);
 
     if (parameters.output.fields != FieldSelection::none)
       {
@@ -178,7 +182,8 @@ namespace Squeal
       write_matrices(scene, linearisation, run);
     if (run.is_root)
       write_msh(scene.mesh, run.folder().path("mesh.msh"));
-    run.progress.note(verdict(friction, operation.friction_coefficient, parameters.discretization.maximum_frequency));
+    for (const std::string &line : verdict(friction, operation.friction_coefficient, parameters.discretization.maximum_frequency))
+      run.progress.note(line);
     run.finish();
   }
 } // namespace Squeal

@@ -116,7 +116,7 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
               EXPECT_LT(defect, 1e-12);
               EXPECT_GE(modes.energy_residuals[j], 0.);
             }
-          EXPECT_TRUE(modes.overdamped.empty());
+          EXPECT_TRUE(modes.real_values.empty());
           EXPECT_EQ(modes.n_rigid_body, 0);
         }
     }

@@ -194,8 +194,8 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
       EXPECT_LT(largest(distances(other.lambda, modes.lambda)), 2e-9);
       for (const ComplexModes &found : {modes, other})
         {
-          ASSERT_EQ(found.overdamped.size(), 3u);
-          for (const double l : found.overdamped)
+          ASSERT_EQ(found.real_values.size(), 3u);
+          for (const double l : found.real_values)
             EXPECT_NEAR(l, -alpha, 1e-6);
         }
       if (friction == 0.)

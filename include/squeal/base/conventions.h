@@ -19,6 +19,9 @@ namespace Squeal
   /// Quantities of a complex eigenvalue @p lambda [rad/s], of which Im λ ≥ 0.
   ModalQuantities modal_quantities(const std::complex<double> &lambda);
 
+  /// Frequencies below this part of the band's end count as zero: those of a body that can move freely [-].
+  inline constexpr double zero_frequency = 1e-4;
+
   /// Circular frequency [rad/s] of a frequency in Hz.
   double circular_frequency(double hertz);
 

@@ -23,10 +23,13 @@ namespace Squeal
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
   /**
-   * A shift s ≥ 0 [rad/s] with which K_c + s² M_c is safely positive definite:
-   * zero if every rigid-body motion of the disc meets an elastic resistance,
-   * else a small part of the band. Decided by the smallest Rayleigh quotient
-   * of K_c and M_c on the rigid-body motions.
+   * A shift s ≥ 0 [rad/s] with which K_c + s² M_c is well-conditioned positive
+   * definite: zero if every rigid-body motion of the disc is faster than the
+   * fiftieth part of the band's end, else that part. Decided by the smallest
+   * Rayleigh quotient of K_c and M_c on the rigid-body motions.
    */
   double stabilizing_shift(const Model &model, const CoupledSystem &system, double largest_circular_frequency);
+
+  /// The same for the disc alone, of which @p system has M and K on the uncoupled dofs.
+  double stabilizing_shift(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 } // namespace Squeal

@@ -8,15 +8,24 @@
 
 namespace Squeal
 {
+  /// Whether vectors belong to real eigenvalues.
+  enum class RealVectors
+  {
+    none,
+    wanted
+  };
+
   /// Eigenvalues of a small quadratic pencil with vectors on both sides.
   struct DenseQuadraticModes
   {
-    std::vector<std::complex<double>> values; ///< λ, 0 < Im λ ≤ largest_frequency, ascending by Im, then Re
+    /// λ with vectors, ascending by Im, then Re: 0 < Im λ ≤ largest_frequency and, where wanted, the real λ (of ±λ without damping
+    /// that with λ ≥ 0).
+    std::vector<std::complex<double>> values;
 
     ComplexDenseMatrix right; ///< φ, r × k: Q(λ) φ = 0, ‖φ‖₂ = 1, the entry of largest modulus real and positive
     ComplexDenseMatrix left;  ///< ψ, r × k: ψᵀ Q(λ) = 0 (plain transpose), normalised alike
 
-    std::vector<double> real_values; ///< all real λ, ascending: overdamped, divergent or zero; no vectors
+    std::vector<double> real_values; ///< all real λ, ascending: overdamped, divergent or zero
   };
 
   /**
@@ -36,5 +45,6 @@ namespace Squeal
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
                                             const DenseMatrix &stiffness,
-                                            double             largest_frequency = std::numeric_limits<double>::infinity());
+                                            double             largest_frequency = std::numeric_limits<double>::infinity(),
+                                            RealVectors        real_vectors      = RealVectors::none);
 } // namespace Squeal

@@ -53,7 +53,7 @@ namespace Squeal
     /// ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]; for rigid-body modes ‖Kφ‖ / (largest eigenvalue · ‖Mφ‖).
     std::vector<double> residuals;
 
-    /// Eigenvalues below 1e-9 of the largest wanted one: those of rigid-body motions.
+    /// Eigenvalues below 1e-8 of the largest wanted one, frequencies below 1e-4: those of rigid-body motions.
     int n_rigid_body = 0;
 
     /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found.
@@ -72,7 +72,7 @@ namespace Squeal
    *
    * Throws SolverError if fewer modes are found than exist, or if the residual
    * of one exceeds both the tolerance and what rounding in K φ allows,
-   * 10 ε ‖K‖ ‖φ‖ / ‖Kφ‖. An eigenvalue that equals the limit to rounding is
+   * 10 ε ‖K‖ ‖φ‖ / ‖Kφ‖; that of a rigid-body mode may reach 1e-8. An eigenvalue that equals the limit to rounding is
    * included.
    */
   SymmetricModes symmetric_modes(const SparseMatrix          &K,

@@ -49,6 +49,12 @@ namespace Squeal
                                    double                largest_frequency,
                                    BandEnd               end = BandEnd::cut);
 
+  /**
+   * The real eigenvalues of @p model with their vectors, zeros excluded, |λ| ≤ @p radius [1/s]: static divergence and
+   * overdamped motions. Without damping that with λ > 0 stands for both of ±λ.
+   */
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_frequency, double radius);
+
   /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_frequency, BandEnd end = BandEnd::cut);
 

@@ -46,8 +46,9 @@ namespace Squeal
 
   /**
    * Grows a basis by residuals (Bobillot; section 4.3 of the paper), made
-   * two-sided, until the estimated errors of all modes in the band are below
-   * the tolerance at every one of the @p friction_coefficients. It starts from
+   * two-sided, until the estimated errors of all modes in the band and of all
+   * real eigenvalues within its radius are below the tolerance at every one of
+   * the @p friction_coefficients. It starts from
    * the real modes Φ_R and their responses to friction and damping of first
    * order, right and left,
    *

@@ -17,6 +17,9 @@ namespace Squeal
     std::vector<bool>         unstable; ///< beyond what their accuracy leaves open
 
     std::size_t n_unstable() const;
+
+    /// Real eigenvalues λ > 0: static divergence.
+    std::size_t n_growing_real() const;
   };
 
   /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
@@ -27,6 +30,12 @@ namespace Squeal
                                Run                     &run,
                                const std::string       &step = "Complex modes");
 
-  /// Stable or squeal, in one sentence.
-  std::string verdict(const FrictionModes &modes, double mu, double maximum_frequency);
+  /// Stable, squeal or static divergence, one line for each.
+  std::vector<std::string> verdict(const FrictionModes &modes, double mu, double maximum_frequency);
+
+  /**
+   * Where the numbers of real modes and of modes with friction differ, what became of the difference; else empty. Two real
+   * eigenvalues stand for one mode that has stopped oscillating.
+   */
+  std::string note_on_count(const FrictionModes &modes, std::size_t n_real_modes);
 } // namespace Squeal

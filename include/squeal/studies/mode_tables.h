@@ -20,6 +20,9 @@ namespace Squeal
   /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, and estimates where there are any.
   Table complex_table(const ComplexModes &modes, const std::vector<std::string> &labels, const std::vector<ModeIdentity> &identities);
 
+  /// Real eigenvalues, fastest growth first: growth rate, kind.
+  Table real_eigenvalue_table(const std::vector<double> &values);
+
   /// The state of contact, one row for each pin.
   Table pin_table(const std::vector<PinContact> &pins);
 
