@@ -80,10 +80,12 @@ namespace Squeal
       pencil.damping = DenseMatrix(size(), size());
     if (system->normal_damping)
       pencil.damping = add(pencil.damping, friction_C, -mu);
-    for (const auto &[motion, coefficients] : {std::make_pair(&parts.radial_motion, &damping.radial),
-                                               std::make_pair(&parts.friction_forces, &damping.sliding)})
-      if (pencil.has_damping && !coefficients->empty())
-        pencil.damping = add(pencil.damping, multiply(*motion, rows_scaled(*motion, *coefficients), true));
+    const auto add_contact_damping = [&pencil](const DenseMatrix &motion, const std::vector<double> &coefficients) {
+      if (pencil.has_damping && !coefficients.empty())
+        pencil.damping = add(pencil.damping, multiply(motion, rows_scaled(motion, coefficients), true));
+    };
+    add_contact_damping(parts.radial_motion, damping.radial);
+    add_contact_damping(parts.friction_forces, damping.sliding);
     return pencil;
   }
 } // namespace Squeal

@@ -163,11 +163,12 @@ namespace Squeal
         }
     };
     const DenseMatrix reactions = columns(fixed_gram, 0, n_reactions), others = columns(fixed_gram, n_reactions, n_rest);
-    for (const auto &[part, column] : {std::make_pair(&reactions, 0), std::make_pair(&others, rest)})
-      {
-        insert(G, rows(*part, 0, n_reactions), 0, column);
-        insert(G, rows(*part, n_reactions, n_rest), rest, column);
-      }
+    const auto insert_rows = [&](const DenseMatrix &part, const int column) {
+      insert(G, rows(part, 0, n_reactions), 0, column);
+      insert(G, rows(part, n_reactions, n_rest), rest, column);
+    };
+    insert_rows(reactions, 0);
+    insert_rows(others, rest);
     insert(G, mass_mass, grown, grown);
     insert_fixed(fixed_mass, grown);
     insert(H, blocks.mass, 0, grown);

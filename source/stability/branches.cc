@@ -242,13 +242,14 @@ namespace Squeal
         for (const Complex &x : predicted)
           for (const int j : block.second)
             farthest = std::max(farthest, std::abs(x - lambda[j]));
-        for (const auto &[before, after] : {std::make_pair(&carried.right, &points[k + 1].right), {&carried.left, &points[k + 1].left}})
-          {
-            const auto C = multiply(padded(selected_columns(*before, block.first), r), padded(selected_columns(*after, block.second), r), true);
-            for (int j = 0; j < n; ++j)
-              for (int i = 0; i < n; ++i)
-                overlaps(i, j) += 0.5 * std::norm(C(i, j));
-          }
+        const auto add_overlaps = [&](const ComplexDenseMatrix &before, const ComplexDenseMatrix &after) {
+          const auto C = multiply(padded(selected_columns(before, block.first), r), padded(selected_columns(after, block.second), r), true);
+          for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i)
+              overlaps(i, j) += 0.5 * std::norm(C(i, j));
+        };
+        add_overlaps(carried.right, points[k + 1].right);
+        add_overlaps(carried.left, points[k + 1].left);
         // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
         const auto grow_alike = [](const Complex &x, const Complex &y) {
           return growth_class(x, least_divergence) == growth_class(y, least_divergence);
