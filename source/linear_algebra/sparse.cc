@@ -7,8 +7,10 @@
 #include <Epetra_IntVector.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <numeric>
 
 namespace Squeal
@@ -188,7 +190,7 @@ namespace Squeal
     check_epetra(gathered.Import(A, Epetra_Import(target, A.RowMap()), Insert), "gathering of a matrix on process 0");
     check_epetra(gathered.FillComplete(A.DomainMap(), target), "gathering of a matrix on process 0");
 
-    int succeeded = 1;
+    int problem = 0; // errno of the first error
     if (is_writer)
       {
         const int base    = A.RowMap().IndexBase();
@@ -214,30 +216,31 @@ namespace Squeal
         const std::string temporary = file + ".part";
         std::FILE        *stream    = std::fopen(temporary.c_str(), "w");
         if (stream == nullptr)
-          succeeded = 0;
+          problem = errno;
         else
           {
-            std::fprintf(stream,
-                         "%%%%MatrixMarket matrix coordinate real %s\n%d %d %lld\n",
-                         symmetric ? "symmetric" : "general",
-                         A.NumGlobalRows(),
-                         A.NumGlobalCols(),
-                         n_entries);
+            if (std::fprintf(stream,
+                             "%%%%MatrixMarket matrix coordinate real %s\n%d %d %lld\n",
+                             symmetric ? "symmetric" : "general",
+                             A.NumGlobalRows(),
+                             A.NumGlobalCols(),
+                             n_entries) < 0)
+              problem = errno;
             for_all([&](const int i, const int j, const double entry) {
-              std::fprintf(stream, "%d %d %.17g\n", i + 1, j + 1, entry);
+              if (problem == 0 && std::fprintf(stream, "%d %d %.17g\n", i + 1, j + 1, entry) < 0)
+                problem = errno;
             });
-            const bool written = std::ferror(stream) == 0;
-            const bool closed  = std::fclose(stream) == 0;
-            if (!written || !closed || std::rename(temporary.c_str(), file.c_str()) != 0)
-              {
-                std::remove(temporary.c_str());
-                succeeded = 0;
-              }
+            if (std::fclose(stream) != 0 && problem == 0)
+              problem = errno;
+            if (problem == 0 && std::rename(temporary.c_str(), file.c_str()) != 0)
+              problem = errno;
+            if (problem != 0)
+              std::remove(temporary.c_str());
           }
       }
-    A.Comm().Broadcast(&succeeded, 1, 0);
-    if (succeeded == 0)
-      throw FileError("a matrix could not be written",
+    A.Comm().Broadcast(&problem, 1, 0);
+    if (problem != 0)
+      throw FileError(std::string("a matrix could not be written: ") + std::strerror(problem),
                       "file `" + file + "`",
                       "check that the directory exists, is writable and has space left");
   }

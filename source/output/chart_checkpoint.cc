@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/output/chart_checkpoint.h>
 
@@ -9,7 +10,6 @@
 #include <Epetra_Comm.h>
 #include <boost/serialization/string.hpp>
 #include <fcntl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -72,23 +72,7 @@ namespace Squeal
     /// Writes to the disk itself: a file must not lose its content after those that rest on it have been written.
     void write(const fs::path &file, const int flags, const std::initializer_list<std::string_view> &parts)
     {
-      const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | flags, 0666);
-      int       reason     = descriptor < 0 ? errno : 0;
-      for (std::string_view part : parts)
-        while (reason == 0 && !part.empty())
-          {
-            const ssize_t n = ::write(descriptor, part.data(), part.size());
-            if (n >= 0)
-              part.remove_prefix(n);
-            else if (errno != EINTR)
-              reason = errno;
-          }
-      // Some file systems do not know fsync() and say that the argument is invalid.
-      if (reason == 0 && ::fsync(descriptor) != 0 && errno != EINVAL)
-        reason = errno;
-      if (descriptor >= 0 && ::close(descriptor) != 0 && reason == 0)
-        reason = errno;
-      if (reason != 0)
+      if (const int reason = write_file(file, flags, parts, true); reason != 0)
         fail("what the sweep has found cannot be kept", file, reason);
     }
 
