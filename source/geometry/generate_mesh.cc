@@ -1,16 +1,23 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/generate_mesh.h>
-#include <squeal/geometry/gmsh_session.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
+#include <squeal/geometry/mesher.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
 
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <limits>
+#include <sstream>
+#include <stdexcept>
 
 namespace Squeal
 {
@@ -18,20 +25,7 @@ namespace Squeal
   {
     namespace fs = std::filesystem;
 
-    fs::path find_geometry(const std::string &name)
-    {
-      const fs::path given(name);
-      if (fs::is_regular_file(given))
-        return fs::absolute(given);
-      const fs::path supplied = fs::path(SQUEAL_GEOMETRY_DIRECTORY) / given;
-      if (!given.has_parent_path() && fs::is_regular_file(supplied))
-        return supplied;
-      throw MeshError("There is no geometry '" + name + "'",
-                      given.has_parent_path() ?
-                        fs::absolute(given).string() :
-                        fs::current_path().string() + " and " + SQUEAL_GEOMETRY_DIRECTORY,
-                      "set Geometry/File to an existing .geo or .msh");
-    }
+    constexpr const char *built_in_geometry = "disc_pins.geo";
 
     /// A directory of its own that vanishes at the end.
     struct TemporaryDirectory
@@ -81,52 +75,140 @@ namespace Squeal
       scalar("disc_layers", parameters.disc_layers);
       scalar("element_size", parameters.element_size);
       scalar("pairing_tolerance", parameters.pairing_tolerance);
+      for (const GeometryParameters::Variable &variable : parameters.variables)
+        if (variable.value && variable.declaration.onelab_name.empty())
+          scalar(variable.declaration.name.c_str(), *variable.value);
       file << "Include \"" << geometry.string() << "\";\n";
       if (!file.flush())
         throw FileError("The values for Gmsh could not be written", driver.string(), "check space and permissions");
     }
+
+    // Statements of Gmsh by which a script reaches beyond the mesh
+    const std::vector<std::string> shell_statements = {"SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print",
+                                                       "Printf", "Plugin"};
+
+    GmshMesh run_script(const GeometryParameters &parameters, const std::string &script, const fs::path &scratch, const MesherLimits &limits)
+    {
+      const fs::path driver = scratch / "driver.geo";
+      write_driver(driver, script, parameters);
+      std::map<std::string, double> numbers;
+      for (const GeometryParameters::Variable &variable : parameters.variables)
+        if (variable.value && !variable.declaration.onelab_name.empty())
+          numbers[variable.declaration.onelab_name] = *variable.value;
+      try
+        {
+          return run_mesher(driver.string(), script, scratch.string(), numbers, limits);
+        }
+      catch (const ForbiddenAction &action)
+        {
+          throw MeshError(std::string("The geometry ") + action.what(), GeometryScript(script).find(shell_statements).value_or(script),
+                          "remove the statement; if you trust every line of the file, set Geometry/Allow shell commands = true");
+        }
+    }
+
+    /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more.
+    GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
+    {
+      const TemporaryDirectory scratch;
+      const MesherLimits       limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit,
+                                !parameters.allow_shell_commands};
+      return is_script(geometry) ? run_script(parameters, geometry, scratch.path, limits) :
+                                   run_mesher(geometry, geometry, scratch.path.string(), {}, limits);
+    }
+
+    /// The same on every process of the communicator: one runs Gmsh, and all get its mesh or its error.
+    GmshMesh run_gmsh_once(const GeometryParameters &parameters, const std::string &geometry, MPI_Comm communicator)
+    {
+      GmshMesh    mesh;
+      std::string bytes, message;
+      if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+        try
+          {
+            mesh = run_gmsh(parameters, geometry);
+            if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
+              return mesh;
+            bytes = to_bytes(mesh);
+          }
+        catch (const std::exception &error)
+          {
+            message = error.what();
+            if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+              dealii::Utilities::MPI::broadcast(communicator, message);
+            throw;
+          }
+      message = dealii::Utilities::MPI::broadcast(communicator, message);
+      if (!message.empty())
+        throw std::runtime_error(message);
+      return from_bytes(dealii::Utilities::MPI::broadcast(communicator, bytes));
+    }
+
+    // ---------------------------------------------------------- unit of length
+
+    /**
+     * Power of ten that is 1 for a disc of some decimetres. The plan that comes with the program
+     * is drawn and extruded in this unit: Gmsh's tolerances are lengths, so that
+     * the same plan in another size would be meshed otherwise.
+     */
+    int decimal_exponent(const GeometryParameters &parameters, const std::string &geometry)
+    {
+      return is_supplied(geometry) && fs::path(geometry).filename() == built_in_geometry ?
+               1 + static_cast<int>(std::floor(std::log10(parameters.disc_outer_radius))) :
+               0;
+    }
+
+    /// All lengths divided by a power of ten as a decimal number is, by moving the point; exact for up to 15 digits.
+    GeometryParameters in_unit(GeometryParameters parameters, const int exponent)
+    {
+      const auto move_point = [exponent](double &length) {
+        std::ostringstream text;
+        text << std::setprecision(std::numeric_limits<double>::digits10) << length * std::pow(10., -exponent);
+        if (exponent != 0)
+          length = std::stod(text.str());
+      };
+      for (double *length : {&parameters.disc_inner_radius, &parameters.disc_outer_radius, &parameters.disc_thickness, &parameters.pin_diameter,
+                             &parameters.pin_height, &parameters.element_size, &parameters.pairing_tolerance})
+        move_point(*length);
+      for (std::vector<double> *lengths : {&parameters.top.radii, &parameters.bottom.radii})
+        std::for_each(lengths->begin(), lengths->end(), move_point);
+      return parameters;
+    }
+
+    HexMesh extruded(const GmshMesh &gmsh, const GeometryParameters &parameters, const std::string &where)
+    {
+      Plan plan = make_plan(gmsh, where);
+      smooth(plan);
+      return extrude(plan, parameters);
+    }
   } // namespace
 
-  HexMesh generate_mesh(const GeometryParameters &parameters, const std::vector<std::string> &additional_surfaces)
+  HexMesh generate_mesh(const GeometryParameters       &given,
+                        const std::vector<std::string> &additional_surfaces,
+                        MPI_Comm                        communicator)
   {
-    parameters.check();
-    const fs::path    geometry = find_geometry(parameters.file);
-    const std::string where    = geometry.string();
+    given.check();
+    const std::string        where      = given.path();
+    const int                exponent   = decimal_exponent(given, where);
+    const GeometryParameters parameters = in_unit(given, exponent);
+    const GmshMesh           gmsh       = run_gmsh_once(parameters, where, communicator);
 
-    // Open
-    const TemporaryDirectory directory;
-    GmshSession              gmsh;
-    if (geometry.extension() == ".geo")
-      {
-        const fs::path driver = directory.path / "driver.geo";
-        write_driver(driver, geometry, parameters);
-        gmsh.open(driver.string(), where);
-      }
-    else
-      gmsh.open(where, where);
-
-    // Mesh: a solid as it is, a plan by extrusion
+    // A solid as it is, a plan by extrusion
     HexMesh mesh;
     switch (gmsh.dimension())
       {
         case 3:
-          if (!gmsh.is_meshed(3))
-            gmsh.mesh_solid();
-          mesh = make_hex_mesh(gmsh.mesh(), additional_surfaces, where);
+          mesh = make_hex_mesh(gmsh, additional_surfaces, where);
           break;
         case 2:
-          if (!gmsh.is_meshed(2))
-            gmsh.mesh_plan();
-          {
-            Plan plan = make_plan(gmsh.mesh(), where);
-            smooth(plan);
-            mesh = extrude(plan, parameters);
-            break;
-          }
+          mesh = extruded(gmsh, parameters, where);
+          break;
         default:
           throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
                           "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
       }
+    if (exponent != 0)
+      for (HexMesh::Point &point : mesh.points)
+        for (double &coordinate : point)
+          coordinate *= std::pow(10., exponent);
 
     // Check
     check_parts(mesh, additional_surfaces, where);

@@ -1,10 +1,10 @@
-#include <squeal/base/exceptions.h>
 #include <squeal/geometry/gmsh_session.h>
 
 #include <gmsh.h>
 
 #include <algorithm>
 #include <map>
+#include <new>
 #include <numeric>
 #include <unordered_map>
 
@@ -131,10 +131,10 @@ namespace Squeal
     }
   } // namespace
 
-  GmshSession::GmshSession()
+  GmshSession::GmshSession(const bool prints)
   {
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
-    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("General.Terminal", prints);
     gmsh::option::setNumber("General.NumThreads", 1);
     // An exception could not leave the parallel region in which Gmsh meshes
     // surfaces and would end the program; errors are found in the log instead.
@@ -164,6 +164,10 @@ namespace Squeal
       {
         action();
       }
+    catch (const std::bad_alloc &)
+      {
+        throw;
+      }
     catch (...) // 4.8 throws integers in places, strings in others
       {
         failed = true;
@@ -175,13 +179,16 @@ namespace Squeal
     for (const std::string &line : log)
       failed = failed || is_error(line);
     if (failed)
-      throw MeshError("Gmsh failed while " + step + ". Its log:" + relevant_lines(log), shown,
-                      "correct the geometry; opening it in Gmsh shows the place");
+      throw GmshError("Gmsh failed while " + step + ". Its log:" + relevant_lines(log));
   }
 
-  void GmshSession::open(const std::string &file, const std::string &name)
+  void GmshSession::set_number(const std::string &name, const double value)
   {
-    shown = name;
+    run("setting a parameter of the geometry", [&] { gmsh::onelab::setNumber(name, {value}); });
+  }
+
+  void GmshSession::open(const std::string &file)
+  {
     run("reading the geometry", [&] { gmsh::open(file); });
   }
 
@@ -279,7 +286,6 @@ namespace Squeal
 
   void GmshSession::write(const std::string &file)
   {
-    shown = file;
     run("writing the mesh", [&] {
       gmsh::option::setNumber("Mesh.MshFileVersion", 4.1);
       gmsh::option::setNumber("Mesh.Binary", 0);

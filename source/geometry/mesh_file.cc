@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/geometry/gmsh_session.h>
 #include <squeal/geometry/mesh_file.h>
 
 #include <algorithm>
@@ -168,10 +169,10 @@ namespace Squeal
         session.load(gmsh_mesh);
         session.write(temporary);
       }
-    catch (...)
+    catch (const GmshError &error)
       {
         std::filesystem::remove(temporary, failure);
-        throw;
+        throw FileError(error.what(), file, "check free space");
       }
     std::filesystem::rename(temporary, file, failure);
     if (failure)

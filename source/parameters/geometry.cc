@@ -2,6 +2,9 @@
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/number_parameter.h>
 
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
@@ -21,6 +24,17 @@ namespace Squeal
     [[noreturn]] void refuse(const std::string &what, const std::string &name, const std::string &change)
     {
       throw ParameterError(what, "Geometry/" + name, change);
+    }
+
+    /// Gmsh with its libraries alone takes less than half of this [GB].
+    constexpr double least_memory_limit = 1.;
+
+    void check_format(const std::string &file)
+    {
+      const std::string format = std::filesystem::path(file).extension().string();
+      if (!is_script(file) && format != ".msh")
+        refuse("The format of Geometry/File = " + file + (format.empty() ? " is unknown" : ", " + format + ", is not supported"), "File",
+               "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts meshes of other formats to .msh");
     }
 
     void check_positive(const double value, const std::string &name)
@@ -95,17 +109,64 @@ namespace Squeal
     }
   } // namespace
 
+  namespace
+  {
+    /// Variables by which a script takes over the parameters themselves.
+    const std::vector<std::string> own_variables = {
+      "disc_inner_radius", "disc_outer_radius", "disc_thickness",    "pin_diameter",       "pin_height", "top_pin_radii",
+      "top_pin_angles",    "bottom_pin_radii",  "bottom_pin_angles", "nodes_per_pin_face", "pin_layers", "disc_layers",
+      "element_size",      "pairing_tolerance"};
+
+    void declare_variable(dealii::ParameterHandler &prm, GeometryParameters::Variable &variable)
+    {
+      const std::string &name = variable.declaration.name;
+      prm.declare_entry(name, variable.value ? exact_text(*variable.value) : "", dealii::Patterns::Anything(),
+                        "Variable of the geometry; empty for the value there, " + variable.declaration.value +
+                          ". Units: as the geometry says.");
+      prm.add_action(name, [&variable, name](const std::string &text) {
+        variable.value.reset();
+        if (text.empty())
+          return;
+        try
+          {
+            variable.value = dealii::Utilities::string_to_double(text);
+          }
+        catch (const dealii::ExceptionBase &)
+          {}
+        if (!variable.value || !std::isfinite(*variable.value))
+          refuse(Squeal::text("Geometry/", name, " is `", text, "`, which is not a finite number"), name,
+                 "give a number, or leave it empty for the value in the geometry");
+      });
+    }
+  } // namespace
+
+  void GeometryParameters::set_file(const std::string &name, const std::string &parameter_directory)
+  {
+    file      = name;
+    directory = parameter_directory;
+    variables.clear();
+    if (const std::string geometry = path(); is_script(geometry))
+      for (const GeometryVariable &variable : GeometryScript(geometry).variables())
+        if (std::find(own_variables.begin(), own_variables.end(), variable.name) == own_variables.end())
+          variables.push_back({variable, {}});
+  }
+
+  std::string GeometryParameters::path() const
+  {
+    return find_geometry(file, directory);
+  }
+
   void GeometryParameters::add_parameters(dealii::ParameterHandler &prm)
   {
     using namespace dealii::Patterns;
 
     prm.enter_subsection("Geometry");
     prm.add_parameter("File", file,
-                      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). A name without a "
-                      "directory is looked for in the current directory, then among the geometries that come with "
+                      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the "
+                      "parameter file, in the current directory, then among the geometries that come with "
                       "the program. A file with physical volumes is a solid and is used as it is; one with physical "
-                      "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below. "
-                      "Units: none.",
+                      "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below, and its "
+                      "own variables (DefineConstant, DefineNumber) are parameters of this section. Units: none.",
                       Anything());
     add_number_parameter(prm, "Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
     add_number_parameter(prm, "Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
@@ -139,6 +200,13 @@ namespace Squeal
                          "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
                          "Units: m.",
                          Double(0.));
+    prm.add_parameter("Allow shell commands", allow_shell_commands,
+                      "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. "
+                      "Only for files whose every line you trust. Units: none.");
+    add_number_parameter(prm, "Meshing time limit", meshing_time_limit, "Longest time that Gmsh may take. Units: s.", Double(0.));
+    add_number_parameter(prm, "Meshing memory limit", meshing_memory_limit, "Most memory that Gmsh may take. Units: GB.", Double(0.));
+    for (Variable &variable : variables)
+      declare_variable(prm, variable);
     prm.leave_subsection();
   }
 
@@ -147,6 +215,7 @@ namespace Squeal
     // Sizes and counts
     if (file.empty())
       refuse("Geometry/File is empty", "File", "name a .geo or .msh, or leave it out for disc_pins.geo");
+    check_format(file);
     check_positive(disc_inner_radius, "Disc inner radius");
     check_positive(disc_outer_radius, "Disc outer radius");
     check_positive(disc_thickness, "Disc thickness");
@@ -154,6 +223,10 @@ namespace Squeal
     check_positive(pin_height, "Pin height");
     check_positive(element_size, "Element size");
     check_positive(pairing_tolerance, "Pairing tolerance");
+    check_positive(meshing_time_limit, "Meshing time limit");
+    if (!(meshing_memory_limit >= least_memory_limit))
+      refuse(text("Geometry/Meshing memory limit is ", meshing_memory_limit, " GB, with which Gmsh cannot start"), "Meshing memory limit",
+             text("set it to at least ", least_memory_limit, " GB"));
     check_positive(pin_layers, "Pin layers");
     check_positive(disc_layers, "Disc layers");
     check_nodes_per_pin_face(nodes_per_pin_face);

@@ -5,6 +5,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -205,9 +206,31 @@ namespace Squeal
     }
   } // namespace
 
+  namespace
+  {
+    /// Geometry/File as file and overrides give it, read ahead because the variables of a geometry are parameters, too.
+    std::string geometry_file(const std::string &file, const std::vector<std::string> &overrides)
+    {
+      GeometryParameters       geometry;
+      dealii::ParameterHandler prm;
+      geometry.add_parameters(prm);
+      try
+        {
+          prm.parse_input(file, "", /* skip_undefined */ true);
+        }
+      catch (const dealii::ExceptionBase &)
+        {} // what is wrong is said where all of the file is read
+      for (const std::string &text : overrides)
+        if (const auto equal = text.find('='); equal != std::string::npos && normalize(text.substr(0, equal)) == "Geometry/File")
+          geometry.file = dealii::Utilities::trim(text.substr(equal + 1));
+      return geometry.file;
+    }
+  } // namespace
+
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
   {
     Parameters               parameters;
+    parameters.geometry.set_file(geometry_file(file, overrides), std::filesystem::path(file).parent_path().string());
     dealii::ParameterHandler prm;
     add_parameters(prm, parameters);
     const std::vector<std::string> known = known_names(prm);

@@ -20,7 +20,7 @@ namespace Squeal
     const Parameters &parameters = run.parameters;
     Scene             scene;
     run.progress.begin("Mesh");
-    scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces());
+    scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces(), run.communicator);
     const MeshQuality quality = check_mesh(scene.mesh);
     run.count("elements", scene.mesh.hexahedra.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);

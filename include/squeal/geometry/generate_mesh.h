@@ -3,6 +3,8 @@
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/parameters/geometry.h>
 
+#include <mpi.h>
+
 #include <string>
 #include <vector>
 
@@ -10,8 +12,9 @@ namespace Squeal
 {
   /**
    * The mesh of disc and pins described by the parameters: runs Gmsh on the
-   * file, then checks names, parts and shapes of what comes out. The same
-   * parameters give the same mesh. Gmsh must not be running already.
+   * file in a process of its own (see run_mesher()), then checks names, parts and shapes of what comes out. The same
+   * parameters give the same mesh; the supplied plan of disc and pins gives the same
+   * mesh in every decimal unit of length.
    *
    * A .geo is given all parameters as variables of the names of the members of
    * GeometryParameters (lists: top_pin_radii(), top_pin_angles(),
@@ -22,16 +25,17 @@ namespace Squeal
    *   quadrilaterals, smoothed and extruded (see smooth(), extrude()). Gmsh halves every element of
    *   a plan after meshing, so sizes in the file are twice those of the mesh.
    *
-   * A file name without a directory is looked for in the current directory,
-   * then among the geometries that come with the program.
+   * The variables of a .geo are set as GeometryParameters::variables says.
    *
    * @param additional_surfaces names of surfaces that must exist besides those
    *   every geometry has, such as those of elastic mounts
+   * @param communicator processes that all get the mesh; one of them runs Gmsh
    *
    * Throws ParameterError as GeometryParameters::check() does, and MeshError
    * for all that is wrong with file, geometry or mesh, quoting Gmsh's log where
-   * Gmsh failed.
+   * Gmsh failed; other processes than the one that ran it throw std::runtime_error then.
    */
   HexMesh generate_mesh(const GeometryParameters       &parameters,
-                        const std::vector<std::string> &additional_surfaces = {});
+                        const std::vector<std::string> &additional_surfaces = {},
+                        MPI_Comm                        communicator        = MPI_COMM_SELF);
 } // namespace Squeal

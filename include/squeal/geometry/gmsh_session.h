@@ -1,57 +1,43 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <squeal/geometry/gmsh_mesh.h>
+
 #include <functional>
+#include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace Squeal
 {
-  /// What Gmsh holds: nodes, and elements by physical group.
-  struct GmshMesh
+  /// Gmsh failed or reported an error: at what, and what its log says.
+  class GmshError : public std::runtime_error
   {
-    /// Elements of one type on one physical group.
-    struct Block
-    {
-      std::string               type;            ///< Gmsh's name, e.g. "Quadrilateral 4"
-      unsigned int              nodes_per_element;
-      std::vector<std::size_t>  tags;            ///< one per element, ascending
-      std::vector<unsigned int> nodes;           ///< indices into points, element by element
-    };
-
-    struct Group
-    {
-      int                dimension;
-      std::string        name; ///< empty where the group has only a number
-      std::vector<Block> blocks;
-    };
-
-    std::vector<std::array<double, 3>> points; ///< in the order of Gmsh's node tags [m]
-    std::vector<Group>                 groups; ///< by dimension, then in the order of their numbers
-    std::size_t                        n_unnamed_volume_elements; ///< 3-D elements in no physical group
+  public:
+    using std::runtime_error::runtime_error;
   };
 
   /**
-   * Gmsh, from its start to its end; one at a time. Silent on the terminal,
-   * without the user's configuration files, on one thread and with fixed
+   * Gmsh, from its start to its end; one at a time. Runs without the user's configuration files, on one thread and with fixed
    * seeds, so that the same input gives the same mesh. The only code that
    * speaks to Gmsh.
    *
-   * Every member that runs Gmsh throws MeshError quoting the end of Gmsh's
-   * log when Gmsh fails or reports an error.
+   * Every member that runs Gmsh throws GmshError with the end of Gmsh's log
+   * when Gmsh fails or reports an error, and std::bad_alloc where memory ends.
    */
   class GmshSession
   {
   public:
-    GmshSession();
+    /// @param prints whether Gmsh prints its log, for a reader that is there when Gmsh no longer is
+    explicit GmshSession(bool prints = false);
     ~GmshSession();
 
     GmshSession(const GmshSession &)            = delete;
     GmshSession &operator=(const GmshSession &) = delete;
 
-    /// Opens a geometry or a mesh; @p shown is the name that errors quote.
-    void open(const std::string &file, const std::string &shown);
+    /// Gives a parameter a value that DefineNumber[..., Name "..."] takes over.
+    void set_number(const std::string &name, double value);
+
+    /// Opens a geometry or a mesh.
+    void open(const std::string &file);
 
     /// The highest dimension that has a physical group; 0 without any.
     int dimension() const;
@@ -74,9 +60,7 @@ namespace Squeal
     void write(const std::string &file);
 
   private:
-    /// Runs one step and turns what goes wrong into a MeshError.
+    /// Runs one step and turns what goes wrong into a GmshError.
     void run(const std::string &step, const std::function<void()> &action) const;
-
-    std::string shown; ///< file named in errors
   };
 } // namespace Squeal

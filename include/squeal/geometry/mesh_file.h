@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/geometry/gmsh_session.h>
+#include <squeal/geometry/gmsh_mesh.h>
 #include <squeal/geometry/hex_mesh.h>
 
 #include <string>
@@ -26,8 +26,7 @@ namespace Squeal
   /**
    * Writes a mesh with its physical names as .msh (Gmsh 4.1, text), from where
    * it reads back unchanged. An existing file is replaced only once the new one
-   * is complete. Throws FileError if the file cannot be written, MeshError if
-   * Gmsh refuses the mesh. Starts Gmsh, which must not be running.
+   * is complete. Throws FileError if the file cannot be written. Starts Gmsh, which must not be running.
    */
   void write_msh(const HexMesh &mesh, const std::string &file);
 } // namespace Squeal

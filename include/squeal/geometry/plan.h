@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/geometry/gmsh_session.h>
+#include <squeal/geometry/gmsh_mesh.h>
 
 #include <array>
 #include <string>

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <squeal/parameters/geometry_file.h>
+
 #include <deal.II/base/parameter_handler.h>
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +36,25 @@ namespace Squeal
     unsigned int disc_layers          = 3;
     double       element_size         = 0.0115; ///< in the plane of the disc [m]
     double       pairing_tolerance    = 1e-6;   ///< distance of the two nodes of a contact pair [m]
+    bool         allow_shell_commands = false;  ///< whether a geometry may run programs and write files
+    double       meshing_time_limit   = 600.;   ///< [s]
+    double       meshing_memory_limit = 8.;     ///< [GB]
+
+    /// A number of the user's own script, and the value it is given, if any.
+    struct Variable
+    {
+      GeometryVariable      declaration;
+      std::optional<double> value;
+    };
+
+    std::string           directory; ///< where the parameter file is; a relative file is looked for there first
+    std::vector<Variable> variables; ///< of the script, those that parameters above set left out
+
+    /// Takes over file and directory, and the variables of the file where it is a script. Throws MeshError if there is no such file.
+    void set_file(const std::string &name, const std::string &parameter_directory);
+
+    /// Path of the file. Throws MeshError if there is none.
+    std::string path() const;
 
     void add_parameters(dealii::ParameterHandler &prm);
 

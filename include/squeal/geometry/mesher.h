@@ -1,0 +1,46 @@
+#pragma once
+
+#include <squeal/geometry/gmsh_mesh.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+
+namespace Squeal
+{
+  /// What a process that runs Gmsh on a geometry may take and do.
+  struct MesherLimits
+  {
+    double seconds;     ///< wall time [s]
+    double bytes;       ///< address space [byte]
+    bool   is_confined; ///< no programs, no files, no network
+  };
+
+  /// A confined process tried what it may not: e.g. "starts another program".
+  class ForbiddenAction : public std::runtime_error
+  {
+  public:
+    using std::runtime_error::runtime_error;
+  };
+
+  /**
+   * Opens a geometry or mesh in a process of its own, meshes it as GmshSession
+   * does (a solid where there are physical volumes, else a plan), and returns
+   * what Gmsh then holds. Whatever happens to Gmsh there leaves this process and, if
+   * confined, the user's files alone. The process works in @p scratch, sees
+   * none of the user's environment if confined, and ends with this one.
+   *
+   * @param file    what Gmsh opens
+   * @param where   name of the geometry that errors quote
+   * @param scratch folder for what Gmsh prints
+   * @param numbers values for DefineNumber[..., Name "..."], by that name
+   *
+   * Throws MeshError where Gmsh fails, crashes, ends by itself or exceeds its limits;
+   * ForbiddenAction; FileError where the process cannot be started.
+   */
+  GmshMesh run_mesher(const std::string                   &file,
+                      const std::string                   &where,
+                      const std::string                   &scratch,
+                      const std::map<std::string, double> &numbers,
+                      const MesherLimits                  &limits);
+} // namespace Squeal

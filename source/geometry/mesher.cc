@@ -1,0 +1,232 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/geometry/mesher.h>
+#include <squeal/geometry/mesher_protocol.h>
+#include <squeal/parameters/number_parameter.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <vector>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char **environ;
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr const char *mesher_log   = "gmsh.log";
+    constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the place";
+    constexpr std::size_t quoted_lines = 8;
+
+    [[noreturn]] void cannot_start(const int error)
+    {
+      throw FileError(std::string("The mesher cannot be started: ") + std::strerror(error), SQUEAL_MESHER,
+                      "build the target squeal_mesher; check permissions and limits on processes");
+    }
+
+    /// A process that runs Gmsh, from its start until it is waited for or killed.
+    class MesherProcess
+    {
+    public:
+      MesherProcess(const std::vector<std::string> &arguments, const std::vector<std::string> &environment, const std::string &log)
+      {
+        int pipe_ends[2];
+        if (pipe2(pipe_ends, O_CLOEXEC) != 0)
+          cannot_start(errno);
+        reply = pipe_ends[0];
+
+        posix_spawn_file_actions_t actions;
+        posix_spawn_file_actions_init(&actions);
+        posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], mesher_reply_descriptor);
+        const int error = posix_spawn(&process, SQUEAL_MESHER, &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
+        posix_spawn_file_actions_destroy(&actions);
+        close(pipe_ends[1]);
+        if (error != 0)
+          {
+            close(reply);
+            cannot_start(error);
+          }
+      }
+
+      ~MesherProcess()
+      {
+        close(reply);
+        if (!is_over)
+          {
+            kill(process, SIGKILL);
+            wait();
+          }
+      }
+
+      MesherProcess(const MesherProcess &)            = delete;
+      MesherProcess &operator=(const MesherProcess &) = delete;
+
+      /// All that the process says until it ends; none where it has not ended in time.
+      std::optional<std::string> read(const double seconds)
+      {
+        const auto        end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        std::string       all;
+        std::vector<char> buffer(1 << 16);
+        while (true)
+          {
+            const std::chrono::duration<double, std::milli> left = end - std::chrono::steady_clock::now();
+            if (left.count() <= 0.)
+              return {};
+            pollfd     waiting{reply, POLLIN, 0};
+            const int  longest_wait = 1000; // [ms]
+            if (poll(&waiting, 1, std::min<double>(left.count() + 1., longest_wait)) <= 0)
+              continue;
+            const ssize_t n = ::read(reply, buffer.data(), buffer.size());
+            if (n == 0)
+              return all;
+            if (n > 0)
+              all.append(buffer.data(), n);
+          }
+      }
+
+      /// Its exit status as waitpid() gives it.
+      int wait()
+      {
+        int status = 0;
+        while (waitpid(process, &status, 0) < 0 && errno == EINTR)
+          {}
+        is_over = true;
+        return status;
+      }
+
+    private:
+      static std::vector<char *> pointers(const std::vector<std::string> &texts)
+      {
+        std::vector<char *> result;
+        for (const std::string &text : texts)
+          result.push_back(const_cast<char *>(text.c_str()));
+        result.push_back(nullptr);
+        return result;
+      }
+
+      pid_t process = 0;
+      int   reply   = -1;
+      bool  is_over = false;
+    };
+
+    std::vector<std::string> environment(const std::string &scratch, const bool is_confined)
+    {
+      std::vector<std::string> result;
+      if (is_confined)
+        {
+          // Where the libraries are, and nothing else
+          if (const char *path = std::getenv("LD_LIBRARY_PATH"))
+            result.push_back(std::string("LD_LIBRARY_PATH=") + path);
+          for (const char *name : {"HOME", "TMPDIR"})
+            result.push_back(name + ("=" + scratch));
+        }
+      else
+        for (char **variable = environ; *variable != nullptr; ++variable)
+          result.push_back(*variable);
+      return result;
+    }
+
+    /// What Gmsh printed last, from the first error if there is one.
+    std::string quoted(const std::string &log)
+    {
+      std::ifstream            file(log);
+      std::vector<std::string> lines;
+      for (std::string line; std::getline(file, line);)
+        if (!line.empty())
+          lines.push_back(line);
+      const auto  first_error = std::find_if(lines.begin(), lines.end(), [](const std::string &line) { return line.rfind("Error", 0) == 0; });
+      std::size_t first       = std::min<std::size_t>(first_error - lines.begin(), lines.size() - std::min(lines.size(), quoted_lines));
+      std::string text;
+      for (const std::size_t end = std::min(lines.size(), first + quoted_lines); first < end; ++first)
+        text += "\n    | " + lines[first];
+      return text.empty() ? "It printed nothing" : "Its log:" + text;
+    }
+
+    [[noreturn]] void refuse_memory(const MesherLimits &limits, const std::string &where)
+    {
+      throw MeshError("Gmsh needs more than " + exact_text(std::round(limits.bytes / 1e7) / 100.) + " GB for this geometry", where,
+                      "use larger elements or fewer of them, or raise Geometry/Meshing memory limit");
+    }
+
+    /// What became of a process that said nothing.
+    [[noreturn]] void explain_end(const int status, const std::string &log, const std::string &where)
+    {
+      if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
+        throw ForbiddenAction("starts another program");
+      if (WIFSIGNALED(status))
+        throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
+      throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where,
+                      "remove Exit or Abort from the geometry");
+    }
+
+    GmshMesh mesh_from(const std::string &reply, const MesherLimits &limits, const std::string &where)
+    {
+      const std::string content = reply.substr(1);
+      switch (static_cast<MesherReply>(reply[0]))
+        {
+          case MesherReply::mesh:
+            return from_bytes(content);
+          case MesherReply::failure:
+            throw MeshError(content, where, repair);
+          case MesherReply::out_of_memory:
+            refuse_memory(limits, where);
+          case MesherReply::starts_program:
+            throw ForbiddenAction("starts another program");
+          case MesherReply::writes_file:
+            throw ForbiddenAction("makes or changes the file `" + content + "`");
+          case MesherReply::uses_network:
+            throw ForbiddenAction("opens a network connection");
+          case MesherReply::not_confined:
+            throw MeshError("This system cannot keep a geometry from running shell commands (" + content + ")", where,
+                            "read the file; if you trust everything in it, set Geometry/Allow shell commands = true");
+        }
+      throw MeshError("The mesher gave an unknown reply", where, "build all of the program anew");
+    }
+  } // namespace
+
+  GmshMesh run_mesher(const std::string                   &file,
+                      const std::string                   &where,
+                      const std::string                   &scratch,
+                      const std::map<std::string, double> &numbers,
+                      const MesherLimits                  &limits)
+  {
+    std::vector<std::string> arguments = {SQUEAL_MESHER, file, exact_text(limits.bytes), exact_text(limits.seconds),
+                                          limits.is_confined ? mesher_confined : mesher_free};
+    for (const auto &[name, value] : numbers)
+      arguments.insert(arguments.end(), {name, exact_text(value)});
+    const std::string log = scratch + "/" + mesher_log;
+
+    MesherProcess                    mesher(arguments, environment(scratch, limits.is_confined), log);
+    const std::optional<std::string> reply = mesher.read(limits.seconds);
+    if (!reply)
+      throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
+                      "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");
+    const int status = mesher.wait();
+    if (reply->empty())
+      explain_end(status, log, where);
+    try
+      {
+        return mesh_from(*reply, limits, where);
+      }
+    catch (const std::length_error &)
+      {
+        explain_end(status, log, where); // the reply breaks off
+      }
+  }
+} // namespace Squeal

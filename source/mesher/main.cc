@@ -1,0 +1,79 @@
+// Runs Gmsh for squeal in a process of its own, which a geometry can neither take down nor get out of.
+// Started by run_mesher() (geometry/mesher.h); no program for users.
+
+#include "confinement.h"
+
+#include <squeal/geometry/gmsh_session.h>
+#include <squeal/geometry/mesher_protocol.h>
+
+#include <csignal>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include <sys/prctl.h>
+#include <unistd.h>
+
+namespace
+{
+  using namespace Squeal;
+
+  void send(const MesherReply reply, const std::string &content)
+  {
+    const std::string message = static_cast<char>(reply) + content;
+    for (std::size_t sent = 0; sent < message.size();)
+      {
+        const ssize_t n = write(mesher_reply_descriptor, message.data() + sent, message.size() - sent);
+        if (n <= 0)
+          _exit(1);
+        sent += n;
+      }
+  }
+
+  GmshMesh mesh(GmshSession &gmsh, const std::string &file)
+  {
+    gmsh.open(file);
+    if (gmsh.dimension() == 3 && !gmsh.is_meshed(3))
+      gmsh.mesh_solid();
+    if (gmsh.dimension() == 2 && !gmsh.is_meshed(2))
+      gmsh.mesh_plan();
+    return gmsh.mesh();
+  }
+} // namespace
+
+/// Arguments: file, bytes of memory, seconds, whether confined, then pairs of names and values for DefineNumber.
+int main(int argc, char **argv)
+{
+  if (argc < 5)
+    return 2;
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  close_range(mesher_reply_descriptor + 1, ~0u, 0);
+  limit_resources(std::atof(argv[2]), std::atof(argv[3]));
+  try
+    {
+      GmshSession gmsh(/* prints */ true);
+      for (int i = 5; i + 1 < argc; i += 2)
+        gmsh.set_number(argv[i], std::atof(argv[i + 1]));
+      if (argv[4] != std::string(mesher_free))
+        try
+          {
+            confine();
+          }
+        catch (const std::runtime_error &error)
+          {
+            send(MesherReply::not_confined, error.what());
+            _exit(0);
+          }
+      send(MesherReply::mesh, to_bytes(mesh(gmsh, argv[1])));
+    }
+  catch (const GmshError &error)
+    {
+      send(MesherReply::failure, error.what());
+    }
+  catch (const std::bad_alloc &)
+    {
+      send(MesherReply::out_of_memory, "");
+    }
+  _exit(0); // Gmsh has nothing to tidy up that anyone needs
+}

@@ -1,0 +1,218 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/geometry_file.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    std::string lower_case(std::string text)
+    {
+      std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+      return text;
+    }
+
+    std::string trimmed(const std::string &text)
+    {
+      const auto first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
+      return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+    }
+
+    /// The text with blanks for comments, so that lines keep their numbers.
+    std::string without_comments(std::string text)
+    {
+      bool in_string = false;
+      for (std::size_t i = 0; i < text.size(); ++i)
+        if (text[i] == '"')
+          in_string = !in_string;
+        else if (!in_string && text[i] == '/' && i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '*'))
+          {
+            const bool        is_line = text[i + 1] == '/';
+            const std::size_t end     = is_line ? text.find('\n', i) : text.find("*/", i + 2);
+            const std::size_t last    = end == std::string::npos ? text.size() : end + (is_line ? 0 : 2);
+            for (; i < last; ++i)
+              if (text[i] != '\n')
+                text[i] = ' ';
+            --i;
+          }
+      return text;
+    }
+
+    /// The text between a bracket and its counterpart; empty where there is none.
+    std::string inside_brackets(const std::string &text, const std::size_t open)
+    {
+      int depth = 0;
+      for (std::size_t i = open; i < text.size(); ++i)
+        if (text[i] == '[' || text[i] == '{' || text[i] == '(')
+          ++depth;
+        else if ((text[i] == ']' || text[i] == '}' || text[i] == ')') && --depth == 0)
+          return text.substr(open + 1, i - open - 1);
+      return "";
+    }
+
+    /// Items separated by commas outside all brackets and strings.
+    std::vector<std::string> items(const std::string &text)
+    {
+      std::vector<std::string> result(1);
+      int                      depth     = 0;
+      bool                     in_string = false;
+      for (const char c : text)
+        {
+          in_string = in_string != (c == '"');
+          depth += !in_string && (c == '[' || c == '{' || c == '(');
+          depth -= !in_string && (c == ']' || c == '}' || c == ')');
+          if (c == ',' && depth == 0 && !in_string)
+            result.emplace_back();
+          else
+            result.back() += c;
+        }
+      for (std::string &item : result)
+        item = trimmed(item);
+      return result;
+    }
+
+    /// The text of option Name "..." among the options of a number.
+    std::string onelab_name(const std::vector<std::string> &options)
+    {
+      static const std::regex pattern(R"re(^Name\s*"([^"]*)"$)re");
+      std::smatch             match;
+      for (const std::string &option : options)
+        if (std::regex_match(option, match, pattern))
+          return match[1];
+      return "";
+    }
+
+    /// One item of DefineConstant[...]: name, name = value, or name = {value, options}.
+    std::optional<GeometryVariable> constant(const std::string &item)
+    {
+      static const std::regex pattern(R"re(^([A-Za-z_]\w*)\s*(?:=\s*([\s\S]*))?$)re");
+      std::smatch             match;
+      if (!std::regex_match(item, match, pattern))
+        return {};
+      std::string value = trimmed(match[2]);
+      if (!value.empty() && value[0] == '{')
+        value = items(inside_brackets(value, 0))[0];
+      if (!value.empty() && (value[0] == '"' || value[0] == '{'))
+        return {};
+      return GeometryVariable{match[1], value.empty() ? "0" : value, ""};
+    }
+  } // namespace
+
+  std::string find_geometry(const std::string &name, const std::string &parameter_directory)
+  {
+    const fs::path        given(name);
+    const fs::path        beside = fs::absolute(parameter_directory.empty() ? "." : parameter_directory);
+    std::vector<fs::path> directories = {beside};
+    if (given.is_relative() && !fs::equivalent(beside, fs::current_path()))
+      directories.push_back(fs::current_path());
+    if (!given.has_parent_path())
+      directories.push_back(SQUEAL_GEOMETRY_DIRECTORY);
+    std::string searched;
+    for (const fs::path &directory : directories)
+      {
+        const fs::path  candidate = directory / given;
+        std::error_code ignored;
+        if (fs::is_regular_file(candidate, ignored))
+          return candidate.lexically_normal().string();
+        searched += (searched.empty() ? "" : ", ") + candidate.lexically_normal().parent_path().string();
+      }
+    throw MeshError("There is no geometry '" + name + "'", searched, "set Geometry/File to an existing .geo or .msh");
+  }
+
+  bool is_supplied(const std::string &geometry)
+  {
+    std::error_code ignored;
+    return fs::equivalent(fs::path(geometry).parent_path(), SQUEAL_GEOMETRY_DIRECTORY, ignored);
+  }
+
+  bool is_script(const std::string &geometry)
+  {
+    return lower_case(fs::path(geometry).extension().string()) == ".geo";
+  }
+
+  GeometryScript::GeometryScript(const std::string &file)
+  {
+    read(file);
+  }
+
+  void GeometryScript::read(const std::string &file)
+  {
+    for (const Part &part : parts)
+      if (part.file == file)
+        return;
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    parts.push_back({file, without_comments(text.str())});
+
+    const std::string       here = parts.back().text;
+    static const std::regex pattern(R"re(\b(Include|Merge)\s*\(?\s*"([^"]*)")re");
+    for (std::sregex_iterator match(here.begin(), here.end(), pattern), end; match != end; ++match)
+      {
+        const fs::path  other = (fs::path(file).parent_path() / (*match)[2].str()).lexically_normal();
+        std::error_code ignored;
+        if (!fs::is_regular_file(other, ignored))
+          continue;
+        if ((*match)[1] == "Include" || is_script(other.string()))
+          read(other.string());
+        else
+          merged.push_back(other.string());
+      }
+  }
+
+  std::vector<GeometryVariable> GeometryScript::variables() const
+  {
+    static const std::regex       constants(R"re(\bDefineConstant\s*\[)re");
+    static const std::regex       numbers(R"re(([A-Za-z_]\w*)\s*=\s*DefineNumber\s*\[)re");
+    std::vector<GeometryVariable> result;
+    const auto                    add = [&](const GeometryVariable &variable) {
+      if (std::none_of(result.begin(), result.end(), [&](const GeometryVariable &other) { return other.name == variable.name; }))
+        result.push_back(variable);
+    };
+    for (const Part &part : parts)
+      {
+        const std::string &text = part.text;
+        for (std::sregex_iterator match(text.begin(), text.end(), constants), end; match != end; ++match)
+          for (const std::string &item : items(inside_brackets(text, match->position() + match->length() - 1)))
+            if (const auto variable = constant(item))
+              add(*variable);
+        for (std::sregex_iterator match(text.begin(), text.end(), numbers), end; match != end; ++match)
+          {
+            const auto options = items(inside_brackets(text, match->position() + match->length() - 1));
+            if (const std::string name = onelab_name(options); !name.empty())
+              add({(*match)[1], options[0], name});
+          }
+      }
+    return result;
+  }
+
+  std::vector<std::string> GeometryScript::files() const
+  {
+    std::vector<std::string> result;
+    for (const Part &part : parts)
+      result.push_back(part.file);
+    result.insert(result.end(), merged.begin(), merged.end());
+    return result;
+  }
+
+  std::optional<std::string> GeometryScript::find(const std::vector<std::string> &words) const
+  {
+    for (const Part &part : parts)
+      {
+        std::istringstream lines(part.text);
+        std::string        line;
+        for (unsigned int number = 1; std::getline(lines, line); ++number)
+          for (const std::string &word : words)
+            if (std::regex_search(line, std::regex("\\b" + word + "\\b")))
+              return part.file + ", line " + std::to_string(number) + ": " + trimmed(line);
+      }
+    return {};
+  }
+} // namespace Squeal
