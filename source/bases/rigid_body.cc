@@ -1,5 +1,7 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <algorithm>
@@ -9,6 +11,10 @@ namespace Squeal
 {
   namespace
   {
+    /// Far above rounding, far below any mount worth the name.
+    const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency * zero_frequency);
+    const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
+
     /// ω_max / s for a disc that is free or held softly.
     constexpr double band_per_shift = 50.;
 
@@ -62,11 +68,30 @@ namespace Squeal
     return transpose_times(*system.kernel, rigid_motions(model, 0));
   }
 
+  ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions)
+  {
+    const DenseMatrix D    = replicate(normal * motions);
+    const double      size = max_norm(replicate(motions)) * std::sqrt(D.n_rows());
+    auto [values, V]       = singular_values(D); // descending
+    agree(motions.Comm(), V, values);
+    const int k    = motions.NumVectors();
+    const int rank = std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
+
+    ContactMotions result;
+    if (rank > 0)
+      result.pressing.emplace(motions * columns(V, 0, rank));
+    if (rank < k)
+      result.sliding.emplace(motions * columns(V, rank, k - rank));
+    return result;
+  }
+
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, const double largest_circular_frequency)
   {
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
-    const double slowest   = zero_frequency * largest_circular_frequency, threshold = slowest * slowest;
-    const int    n_free    = std::upper_bound(eigenvalues.begin(), eigenvalues.end(), threshold) - eigenvalues.begin();
+    const double limit     = largest_circular_frequency * largest_circular_frequency;
+    const int    n_free    = std::count_if(eigenvalues.begin(), eigenvalues.end(), [limit](const double value) {
+      return !elastic_resistance.exceeded_by(value / limit);
+    });
     if (n_free == 0)
       return {};
     return view(modes, 0, n_free);

@@ -1,18 +1,15 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/bases/static_modes.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
-#include <cmath>
 #include <vector>
 
 namespace Squeal
 {
   namespace
   {
-    /// Motions along the normals below this part of a rigid-body motion are rounding errors.
-    constexpr double negligible_normal_motion = 1e-8;
-
     bool belongs_to(const Node &node, const Component component)
     {
       return (node.component == 0) == (component == Component::disc);
@@ -35,23 +32,6 @@ namespace Squeal
     MultiVector transposed(const SparseMatrix &P)
     {
       return transpose_times(P, unit_vectors(P.RangeMap()));
-    }
-
-    /// Combinations of the columns of N without motion along the normals, M-orthonormal like N; nothing if there is none.
-    std::optional<MultiVector> sliding_motions(const SparseMatrix &P_n, const MultiVector &N)
-    {
-      DenseMatrix  D     = replicate(P_n * N);
-      const double scale = max_norm(D), size = max_norm(replicate(N));
-      if (scale <= negligible_normal_motion * size)
-        return N;
-      auto [values, V] = singular_values(D);
-      agree(N.Comm(), V, values);
-      int rank = 0;
-      for (const double value : values)
-        rank += value > negligible_normal_motion * size * std::sqrt(D.n_rows());
-      if (rank == N.NumVectors())
-        return {};
-      return N * columns(V, rank, N.NumVectors() - rank);
     }
 
     MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
@@ -123,7 +103,7 @@ namespace Squeal
     // Motions that neither the mounts nor the rigid faces resist
     std::optional<MultiVector> motions;
     if (const MultiVector *N = response.rigid_body_modes(); disc && N != nullptr)
-      if (const auto sliding = sliding_motions(*contact.normal, *N))
+      if (const auto sliding = contact_motions(*contact.normal, *N).sliding)
         motions = coordinates(*T, *sliding);
 
     // u = u_0 + T q, u_0 = n at one node; TᵀK (u_0 + T q) = 0

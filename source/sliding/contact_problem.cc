@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/sliding/contact_problem.h>
 
@@ -13,8 +14,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Violations below this part of the largest reaction or gap are rounding errors.
-    constexpr double rounding = 1e-13;
+    const Decision tension("tension of a closed contact node / largest reaction", 1e-13);
+    const Decision overlap_of_open("overlap of an open contact node / largest gap or deflection", 1e-13);
+    const Decision asymmetry_of_motions("balance but work of the reactions / gaps of the motions", 1e-10);
+    const Decision difference_of_solutions("difference of the reactions of two solutions / largest reaction", 1e-8);
 
     /// Block steps that may pass without fewer violations before single nodes are flipped.
     constexpr int patience = 8;
@@ -41,6 +44,17 @@ namespace Squeal
       {
         for (int i = 0; i < G.n_rows(); ++i)
           unit += std::abs(G(i, i)) / G.n_rows();
+        for (int k = 0; k < problem.motions.n_columns(); ++k)
+          {
+            double motion = 0., force = 0.;
+            for (int c = 0; c < problem.motions.n_rows(); ++c)
+              {
+                motion = std::max(motion, std::abs(problem.motions(c, k)));
+                force  = std::max(force, std::abs(problem.balance(k, c)));
+              }
+            motion_sizes.push_back(motion > 0. ? motion : 1.);
+            balance_sizes.push_back(force > 0. ? force : 1.);
+          }
       }
 
       /// Throws SolverError if the active set leaves the reactions undetermined.
@@ -53,7 +67,7 @@ namespace Squeal
             nodes.push_back(c);
         const int n = nodes.size();
 
-        // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f]
+        // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
         DenseMatrix A(n + n_z, n + n_z), b(n + n_z, 1);
         for (int i = 0; i < n; ++i)
           {
@@ -61,13 +75,13 @@ namespace Squeal
               A(i, j) = G(nodes[i], nodes[j]) / unit;
             for (int k = 0; k < n_z; ++k)
               {
-                A(i, n + k) = problem.motions(nodes[i], k);
-                A(n + k, i) = problem.balance(k, nodes[i]);
+                A(i, n + k) = problem.motions(nodes[i], k) / motion_sizes[k];
+                A(n + k, i) = problem.balance(k, nodes[i]) / balance_sizes[k];
               }
             b(i, 0) = -problem.initial_gap[nodes[i]] / unit;
           }
         for (int k = 0; k < n_z; ++k)
-          b(n + k, 0) = problem.forces[k];
+          b(n + k, 0) = problem.forces[k] / balance_sizes[k];
         for (const int k : problem.held)
           A(n + k, n + k) = 1.;
         const DenseMatrix rhs = b;
@@ -83,7 +97,7 @@ namespace Squeal
         for (int i = 0; i < n; ++i)
           r[nodes[i]] = b(i, 0);
         for (int k = 0; k < n_z; ++k)
-          z.push_back(unit * b(n + k, 0));
+          z.push_back(unit * b(n + k, 0) / motion_sizes[k]);
         double largest_reaction = 0., largest_gap = 0.;
         for (int c = 0; c < G.n_rows(); ++c)
           {
@@ -98,11 +112,13 @@ namespace Squeal
           }
         for (int c = 0; c < G.n_rows(); ++c)
           {
-            const double pull = r[c] > rounding * largest_reaction ? r[c] : 0., overlap = g[c] > rounding * largest_gap ? g[c] : 0.;
-            if (pull > 0. || overlap > 0.)
+            // Without any reaction or gap there is no violation: NaN does not exceed
+            const bool pulls    = active[c] && tension.exceeded_by(r[c] / largest_reaction);
+            const bool overlaps = !active[c] && overlap_of_open.exceeded_by(g[c] / largest_gap);
+            if (pulls || overlaps)
               result.violated.push_back(c);
-            result.pull    = std::max(result.pull, pull);
-            result.overlap = std::max(result.overlap, overlap);
+            result.pull    = std::max(result.pull, pulls ? r[c] : 0.);
+            result.overlap = std::max(result.overlap, overlaps ? g[c] : 0.);
             r[c]           = std::min(r[c], 0.);
             g[c]           = std::min(g[c], 0.);
           }
@@ -140,6 +156,7 @@ namespace Squeal
       const ContactProblem &problem;
       DenseMatrix           G;
       double                unit = 0.; ///< mean diagonal entry of G [m/N]
+      std::vector<double>   motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
     };
 
     /// The best iterate of an attempt; a solution if it violates nothing.
@@ -266,7 +283,7 @@ namespace Squeal
           asymmetry = std::max(asymmetry, std::abs(problem.motions(c, k) + problem.balance(k, c)));
           scale     = std::max(scale, std::abs(problem.motions(c, k)));
         }
-    if (asymmetry <= 1e-10 * scale)
+    if (scale == 0. || !asymmetry_of_motions.exceeded_by(asymmetry / scale))
       {
         DenseMatrix S(n, n);
         for (std::size_t i = 0; i < n; ++i)
@@ -293,7 +310,7 @@ namespace Squeal
                 difference = std::max(difference, std::abs(attempt->solution.reactions[c] - solution.reactions[c]));
                 largest    = std::max(largest, std::abs(solution.reactions[c]));
               }
-            result.found_other = difference > 1e-8 * largest;
+            result.found_other = difference_of_solutions.exceeded_by(difference / largest);
             result.other       = attempt->solution;
           }
       }

@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 #include <squeal/parameters/number_parameter.h>
+#include <squeal/sliding/floating_disc.h>
 #include <squeal/sliding/steady_sliding.h>
 
 #include <Epetra_Comm.h>
@@ -141,80 +142,6 @@ namespace Squeal
       return result;
     }
 
-    /// Motions of the disc that its mounts leave free and reactions can balance; n × k, or nothing.
-    std::optional<MultiVector> balanced_motions(const Model            &model,
-                                                const ContactOperators &contact,
-                                                const SecondOrderSystem &system,
-                                                const StaticResponse   &response,
-                                                const double            mu)
-    {
-      const MultiVector *N = response.rigid_body_modes();
-      if (!N)
-        return {};
-
-      // Those that move the contact nodes along n, and those that do not
-      DenseMatrix gaps = replicate(*contact.normal * *N);
-      DenseMatrix axes = multiply(gaps, gaps, true);
-      auto        squares = symmetric_eigenvalues(axes);
-      agree(N->Comm(), axes, squares);
-      const MultiVector motions = *N * axes;
-      const int         k       = motions.NumVectors();
-      const int n_plane = std::count_if(squares.begin(), squares.end(), [&](const double s) { return s <= 1e-20 * squares.back(); });
-
-      // Among the latter, the drive takes the moment about the axis; nothing takes a force in the plane
-      MultiVector turning = view(rigid_motions(model, 0), 5, 1);
-      double      norm;
-      turning.Dot(*system.mass * turning, &norm);
-      turning.Scale(1. / std::sqrt(norm));
-      if (n_plane > 0 && mu > 0.)
-        {
-          const MultiVector plane   = view(motions, 0, n_plane);
-          const DenseMatrix turned  = gram(plane, *system.mass * turning);
-          const double      captured = multiply(turned, turned, true)(0, 0);
-          if (n_plane > 1 || captured < 1. - 1e-6)
-            throw SolverError("nothing holds the disc in its plane against the friction forces", "steady sliding",
-                              "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
-                              "state = equal load");
-        }
-      if (n_plane == k)
-        return {};
-      return view(motions, n_plane, k - n_plane);
-    }
-
-    /**
-     * A disc that floats between two loaded backplates is in balance wherever it
-     * is along its axis, if the loads are: B y = 0 for a motion y of all. Then
-     * one free motion of the disc, numbered from @p n_plates, is held instead of
-     * balanced.
-     */
-    void fix_undetermined_motion(ContactProblem &problem, const int n_plates)
-    {
-      DenseMatrix y = multiply(problem.motions, problem.motions, true);
-      const auto  squares = symmetric_eigenvalues(y);
-      if (squares.front() > 1e-20 * squares.back())
-        return;
-      double sum = 0., sum_of_sizes = 0.;
-      for (int k = 0; k < y.n_rows(); ++k)
-        {
-          sum += y(k, 0) * problem.forces[k];
-          sum_of_sizes += std::abs(y(k, 0) * problem.forces[k]);
-        }
-      if (std::abs(sum) > 1e-10 * sum_of_sizes)
-        throw SolverError("the disc floats along its axis, and the loads on its sides are not equal", "steady sliding",
-                          "give equal loads on both sides, or a mount with axial stiffness (Mounts/Elastic mounts)");
-      int held = n_plates;
-      for (int k = n_plates; k < y.n_rows(); ++k)
-        if (std::abs(y(k, 0)) > std::abs(y(held, 0)))
-          held = k;
-      // The row of its balance becomes z = 0: it follows from the others
-      for (int c = 0; c < problem.motions.n_rows(); ++c)
-        {
-          problem.motions(c, held) = 0.;
-          problem.balance(held, c) = 0.;
-        }
-      problem.held.push_back(held);
-    }
-
     double largest(const std::vector<double> &values)
     {
       double result = -std::numeric_limits<double>::max();
@@ -294,7 +221,7 @@ namespace Squeal
 
     // Free motions of the disc
     const MultiVector &Psi_n  = responses.normal, &Psi_t = responses.tangential;
-    const auto        motions = balanced_motions(model, contact, system, response, mu);
+    const auto        motions = balanced_disc_motions(model, contact, system, response, mu);
     const int         n_plates = moves ? plates.n : 0, n_z = n_plates + (motions ? motions->NumVectors() : 0);
 
     ContactProblem problem{replicate(*contact.normal * Psi_n), replicate(*contact.normal * Psi_t), mu, {}, DenseMatrix(n_c, n_z),
@@ -327,7 +254,7 @@ namespace Squeal
       }
 
     if (motions && moves)
-      fix_undetermined_motion(problem, n_plates);
+      hold_undetermined_motion(problem, n_plates);
 
     const ContactSolution solution = solve_contact(problem);
     SlidingState          state{solution.reactions, solution.gaps, solution.closed, std::vector<double>(model.component_names().size(), 0.),

@@ -22,6 +22,20 @@ namespace Squeal
    */
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
 
+  /// Combinations of rigid-body motions, M-orthonormal as these are, by what they do to the contact nodes.
+  struct ContactMotions
+  {
+    std::optional<MultiVector> pressing; ///< those that move contact nodes along the normals
+    std::optional<MultiVector> sliding;  ///< those that leave the gaps as they are
+  };
+
+  /**
+   * Splits the M-orthonormal rigid-body @p motions, n × k, by the singular values of
+   * @p normal times them; root mean squares over the contact nodes below 10⁻⁸ of the
+   * largest displacement are rounding errors. The same on every process.
+   */
+  ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions);
+
   /**
    * A shift s ≥ 0 [rad/s] with which K_c + s² M_c is well-conditioned positive
    * definite: zero if every rigid-body motion of the disc is faster than the

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// What a decision has been asked, on this process.
+  struct DecisionRecord
+  {
+    std::string quantity;
+    double      threshold;
+    double      below, above;     ///< nearest values on either side; below is 0 and above infinite where there was none
+    long        n_below, n_above; ///< how often each side was taken
+
+    /// Orders of magnitude between the threshold and the nearest value on either side; infinite where there is none.
+    double margin_below() const;
+    double margin_above() const;
+  };
+
+  /**
+   * A threshold between what counts and what rounding leaves, such as the rank
+   * of a matrix or equal eigenvalues. Quantities are dimensionless: scaled by
+   * the size of that from which they come. Made once, at namespace scope, where
+   * the quantity is computed; it keeps the nearest value on either side, so that
+   * a run can tell how far its decisions were from falling the other way.
+   * Nothing that is computed depends on what it keeps.
+   */
+  class Decision
+  {
+  public:
+    /// @param quantity what is compared, and with what it is scaled; must outlive the decision
+    Decision(const char *quantity, double threshold);
+    ~Decision();
+
+    Decision(const Decision &)            = delete;
+    Decision &operator=(const Decision &) = delete;
+
+    /// Whether @p value > threshold: it counts. NaN does not.
+    bool exceeded_by(double value) const;
+
+    double threshold() const;
+
+    /// Every decision that has been asked, ascending by name.
+    static std::vector<DecisionRecord> records();
+
+    /// Forgets what was asked so far.
+    static void forget();
+
+  private:
+    mutable DecisionRecord record;
+  };
+} // namespace Squeal

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <squeal/bases/static_response.h>
+#include <squeal/contact/contact_operators.h>
+#include <squeal/sliding/contact_problem.h>
+
+#include <optional>
+
+namespace Squeal
+{
+  /**
+   * Motions of the disc that its mounts leave free and the reactions can balance,
+   * n × k, M-orthonormal; nothing if there are none. Those that leave the gaps as they
+   * are do not count: of them the drive takes the moment about the axis.
+   *
+   * Throws SolverError if friction (@p mu > 0) acts on another one.
+   */
+  std::optional<MultiVector> balanced_disc_motions(const Model             &model,
+                                                   const ContactOperators  &contact,
+                                                   const SecondOrderSystem &system,
+                                                   const StaticResponse    &response,
+                                                   double                   mu);
+
+  /**
+   * A disc that floats between two loaded backplates is in balance wherever it
+   * is along its axis, if the loads are: B y = 0 for a motion y of all. Then
+   * one free motion of the disc, numbered from @p n_plates, is held instead of
+   * balanced. Decided by the singular values of B with columns of unit norm, so that
+   * the units of the motions play no part.
+   *
+   * Throws SolverError if the loads on such a disc are not in balance.
+   */
+  void hold_undetermined_motion(ContactProblem &problem, int n_plates);
+} // namespace Squeal

@@ -1,0 +1,85 @@
+#include <squeal/base/decision.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// All decisions of the program; a function's own, so that it exists before the first of them is made.
+    std::vector<DecisionRecord *> &registry()
+    {
+      static std::vector<DecisionRecord *> all;
+      return all;
+    }
+
+    void clear(DecisionRecord &record)
+    {
+      record.below   = 0.;
+      record.above   = std::numeric_limits<double>::infinity();
+      record.n_below = record.n_above = 0;
+    }
+  } // namespace
+
+  double DecisionRecord::margin_below() const
+  {
+    return std::log10(threshold / below);
+  }
+
+  double DecisionRecord::margin_above() const
+  {
+    return std::log10(above / threshold);
+  }
+
+  Decision::Decision(const char *quantity, const double threshold)
+    : record{quantity, threshold, 0., 0., 0, 0}
+  {
+    clear(record);
+    registry().push_back(&record);
+  }
+
+  Decision::~Decision()
+  {
+    auto &all = registry();
+    all.erase(std::remove(all.begin(), all.end(), &record), all.end());
+  }
+
+  bool Decision::exceeded_by(const double value) const
+  {
+    const bool exceeds = value > record.threshold;
+    if (exceeds)
+      {
+        record.above = std::min(record.above, value);
+        ++record.n_above;
+      }
+    else
+      {
+        record.below = std::max(record.below, value);
+        ++record.n_below;
+      }
+    return exceeds;
+  }
+
+  double Decision::threshold() const
+  {
+    return record.threshold;
+  }
+
+  std::vector<DecisionRecord> Decision::records()
+  {
+    std::vector<DecisionRecord> result;
+    for (const DecisionRecord *record : registry())
+      if (record->n_below + record->n_above > 0)
+        result.push_back(*record);
+    std::sort(result.begin(), result.end(), [](const auto &x, const auto &y) { return x.quantity < y.quantity; });
+    return result;
+  }
+
+  void Decision::forget()
+  {
+    for (DecisionRecord *record : registry())
+      clear(*record);
+  }
+} // namespace Squeal
