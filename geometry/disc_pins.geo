@@ -99,7 +99,8 @@ For pin In {1 : n_pins}
   EndIf
 EndFor
 
-// Holes that overlap, because a pin overlaps two of the other side, move apart.
+// Holes that overlap, because a pin overlaps two of the other side, move apart,
+// and so do holes of pins on different sides with no room for elements between.
 least   = disc_inner_radius + 0.55 * pin_diameter;
 most    = disc_outer_radius - 0.55 * pin_diameter;
 crowded = 1;
@@ -112,7 +113,8 @@ For pass In {1 : 50}
           dx = hole_x~{pin} - hole_x~{other};
           dy = hole_y~{pin} - hole_y~{other};
           distance = Hypot(dx, dy);
-          If(distance < pin_diameter)
+          apart    = (pin <= n_top) == (other <= n_top) ? 1 : 1.05;
+          If(distance < apart * pin_diameter)
             crowded = 1;
             push = (1.1 * pin_diameter / distance - 1) / 2;
             For which In {0 : 1}

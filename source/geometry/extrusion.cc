@@ -10,8 +10,8 @@ namespace Squeal
     {
     public:
       /**
-       * @p heights ascend; the points go linearly from those of the lower end to
-       * those of the upper end.
+       * @p heights ascend; the points go from those of the lower end to
+       * those of the upper end, see points_between().
        */
       Stack(const Plan                      &plan,
             const std::vector<Plan::Point>  &lower,
@@ -33,13 +33,12 @@ namespace Squeal
             used[node] = true;
         for (unsigned int layer = 0; layer <= n_layers; ++layer)
           {
-            const double t = double(layer) / n_layers;
+            const std::vector<Plan::Point> points = points_between(plan, lower, upper, double(layer) / n_layers);
             for (std::size_t node = 0; node < used.size(); ++node)
               if (used[node])
                 {
                   nodes[layer][node] = mesh.points.size();
-                  mesh.points.push_back({{(1. - t) * lower[node][0] + t * upper[node][0],
-                                          (1. - t) * lower[node][1] + t * upper[node][1], heights[layer]}});
+                  mesh.points.push_back({{points[node][0], points[node][1], heights[layer]}});
                 }
           }
 

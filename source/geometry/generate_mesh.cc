@@ -145,15 +145,13 @@ namespace Squeal
     // ---------------------------------------------------------- unit of length
 
     /**
-     * Power of ten that is 1 for a disc of some decimetres. The plan that comes with the program
+     * Exponent of the power of ten that is 1 for a disc of some decimetres. The plan that comes with the program
      * is drawn and extruded in this unit: Gmsh's tolerances are lengths, so that
      * the same plan in another size would be meshed otherwise.
      */
-    int decimal_exponent(const GeometryParameters &parameters, const std::string &geometry)
+    int decimal_exponent(const double disc_outer_radius)
     {
-      return is_supplied(geometry) && fs::path(geometry).filename() == built_in_geometry ?
-               1 + static_cast<int>(std::floor(std::log10(parameters.disc_outer_radius))) :
-               0;
+      return 1 + static_cast<int>(std::floor(std::log10(disc_outer_radius)));
     }
 
     /// All lengths divided by a power of ten as a decimal number is, by moving the point; exact for up to 15 digits.
@@ -173,12 +171,25 @@ namespace Squeal
       return parameters;
     }
 
-    HexMesh extruded(const GmshMesh &gmsh, const GeometryParameters &parameters, const std::string &where)
+    HexMesh mesh_once(const GeometryParameters       &parameters,
+                      const std::string              &where,
+                      const std::vector<std::string> &additional_surfaces,
+                      MPI_Comm                        communicator)
     {
+      const GmshMesh gmsh = run_gmsh_once(parameters, where, communicator);
+      if (gmsh.dimension() == 3)
+        return make_hex_mesh(gmsh, additional_surfaces, where);
+      if (gmsh.dimension() != 2)
+        throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
+                        "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
       Plan plan = make_plan(gmsh, where);
       smooth(plan);
       return extrude(plan, parameters);
     }
+
+    // Of the supplied plan, where elements of the wanted size do not fit between the pins
+    constexpr int    max_attempts      = 5;
+    constexpr double smaller_next_time = 0.9;
   } // namespace
 
   HexMesh generate_mesh(const GeometryParameters       &given,
@@ -186,32 +197,21 @@ namespace Squeal
                         MPI_Comm                        communicator)
   {
     given.check();
-    const std::string        where      = given.path();
-    const int                exponent   = decimal_exponent(given, where);
-    const GeometryParameters parameters = in_unit(given, exponent);
-    const GmshMesh           gmsh       = run_gmsh_once(parameters, where, communicator);
-
-    // A solid as it is, a plan by extrusion
-    HexMesh mesh;
-    switch (gmsh.dimension())
+    const std::string  where       = given.path();
+    const bool         is_built_in = is_supplied(where) && fs::path(where).filename() == built_in_geometry;
+    const int          exponent    = is_built_in ? decimal_exponent(given.disc_outer_radius) : 0;
+    GeometryParameters parameters  = in_unit(given, exponent);
+    HexMesh            mesh        = mesh_once(parameters, where, additional_surfaces, communicator);
+    check_parts(mesh, additional_surfaces, where);
+    for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian; ++attempt)
       {
-        case 3:
-          mesh = make_hex_mesh(gmsh, additional_surfaces, where);
-          break;
-        case 2:
-          mesh = extruded(gmsh, parameters, where);
-          break;
-        default:
-          throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
-                          "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
+        parameters.element_size *= smaller_next_time;
+        mesh = mesh_once(parameters, where, additional_surfaces, communicator);
       }
     if (exponent != 0)
       for (HexMesh::Point &point : mesh.points)
         for (double &coordinate : point)
           coordinate *= std::pow(10., exponent);
-
-    // Check
-    check_parts(mesh, additional_surfaces, where);
     check_mesh(mesh);
     return mesh;
   }

@@ -56,7 +56,7 @@ namespace Squeal
     }
   } // namespace
 
-  MeshQuality check_mesh(const HexMesh &mesh)
+  MeshQuality mesh_quality(const HexMesh &mesh)
   {
     if (mesh.hexahedra.empty())
       throw MeshError("The mesh has no elements", "mesh", "check the geometry");
@@ -90,6 +90,12 @@ namespace Squeal
           quality.worst_edge_ratio = std::max(quality.worst_edge_ratio, longest / shortest);
       }
 
+    return quality;
+  }
+
+  MeshQuality check_mesh(const HexMesh &mesh)
+  {
+    const MeshQuality quality = mesh_quality(mesh);
     if (!(quality.worst_scaled_jacobian >= smallest_scaled_jacobian))
       {
         std::ostringstream what;

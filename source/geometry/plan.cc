@@ -298,7 +298,7 @@ namespace Squeal
             }
           std::sort(faces.begin(), faces.end());
           if (!is_disc)
-            plan.pins.push_back({group.name, side_of(group.name), faces, {{0., 0.}}});
+            plan.pins.push_back({group.name, side_of(group.name), faces, {{0., 0.}}, false});
         }
     if (!disc_found)
       throw MeshError("The plan has no physical surface 'disc'", where,
@@ -375,7 +375,7 @@ namespace Squeal
             displacement             = {{place->second[0] - centre[0], place->second[1] - centre[1]}};
             centres.erase(place);
           }
-        plan.pins.push_back({curve.name, side_of(curve.name), faces, displacement});
+        plan.pins.push_back({curve.name, side_of(curve.name), faces, displacement, true});
       }
 
     if (!centres.empty())

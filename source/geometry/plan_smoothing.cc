@@ -1,7 +1,9 @@
 #include <squeal/geometry/plan_smoothing.h>
+#include <squeal/geometry/plan_untangling.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace Squeal
 {
@@ -48,6 +50,21 @@ namespace Squeal
       for (const unsigned int face : pin.faces)
         faces.push_back(plan.faces[face]);
       return faces;
+    }
+
+    /// A pin with its nodes where they are now: it may turn about its centre.
+    TurningPart turning_part(const Plan::Pin &pin, const Plan &plan, const std::vector<Plan::Point> &points)
+    {
+      std::set<unsigned int> nodes, outline;
+      for (const Plan::Face &face : faces_of(pin, plan))
+        nodes.insert(face.begin(), face.end());
+      for (const Plan::Edge &edge : boundary_edges(faces_of(pin, plan)))
+        outline.insert(edge.begin(), edge.end());
+      TurningPart part{{nodes.begin(), nodes.end()}, {{0., 0.}}};
+      for (const unsigned int node : outline)
+        for (unsigned int d = 0; d < 2; ++d)
+          part.centre[d] += points[node][d] / outline.size();
+      return part;
     }
 
     void smooth(const std::vector<Plan::Face> &faces, const std::vector<bool> &fixed, std::vector<Plan::Point> &points)
@@ -189,6 +206,31 @@ namespace Squeal
           for (unsigned int d = 0; d < 2; ++d)
             points[node][d] += displacements[node][d] / displacement_steps;
         smooth(plan.faces, outline, points);
+      }
+
+    // A round pin may also roll along its neighbours; a pad has its place
+    std::vector<TurningPart> parts;
+    for (const Plan::Pin &pin : plan.pins)
+      if (pin.side == side && pin.is_round)
+        parts.push_back(turning_part(pin, plan, points));
+    untangle(plan.faces, outline, parts, points);
+    return points;
+  }
+
+  std::vector<Plan::Point> points_between(const Plan                     &plan,
+                                          const std::vector<Plan::Point> &lower,
+                                          const std::vector<Plan::Point> &upper,
+                                          const double                    t)
+  {
+    std::vector<Plan::Point> points(lower.size());
+    for (std::size_t node = 0; node < points.size(); ++node)
+      for (unsigned int d = 0; d < 2; ++d)
+        points[node][d] = (1. - t) * lower[node][d] + t * upper[node][d];
+    if (t > 0. && t < 1. && lower != upper)
+      {
+        std::vector<bool> boundary(points.size(), false);
+        fix_outline(plan.faces, boundary);
+        untangle(plan.faces, boundary, {}, points);
       }
     return points;
   }

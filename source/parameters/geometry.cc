@@ -195,7 +195,8 @@ namespace Squeal
                       Integer(1));
     prm.add_parameter("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", Integer(1));
     add_number_parameter(prm, "Element size", element_size,
-                         "Length of the elements of the disc, in its plane and away from the pins. Units: m.", Double(0.));
+                         "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
+                         "smaller ones where these do not fit between the pins. Units: m.", Double(0.));
     add_number_parameter(prm, "Pairing tolerance", pairing_tolerance,
                          "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
                          "Units: m.",

@@ -27,9 +27,15 @@ namespace Squeal
   /**
    * Scaled Jacobian: at each corner, the triple product of the three edges
    * that meet there, each divided by its length; the smallest of the eight.
+   * Throws MeshError for a mesh without elements.
+   */
+  MeshQuality mesh_quality(const HexMesh &mesh);
+
+  /**
+   * The quality of a mesh that can be computed on.
    *
    * Throws MeshError for an element below smallest_scaled_jacobian, saying
-   * where it is, and for a mesh without elements.
+   * where it is, and as mesh_quality() does.
    */
   MeshQuality check_mesh(const HexMesh &mesh);
 

@@ -22,7 +22,14 @@ namespace Squeal
   /**
    * Points of the plan as they are on one face of the disc: the pins of that
    * side at their places, the boundary of the annulus where it was, and the
-   * rest displaced evenly in between and smoothed.
+   * rest displaced evenly in between and smoothed. Where that leaves bad faces,
+   * round pins turn about their own centres as well.
    */
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
+
+  /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces turn over on the way.
+  std::vector<Plan::Point> points_between(const Plan                     &plan,
+                                          const std::vector<Plan::Point> &lower,
+                                          const std::vector<Plan::Point> &upper,
+                                          double                          t);
 } // namespace Squeal
