@@ -177,6 +177,25 @@ For pin In {1 : n_pins}
 EndFor
 
 s = news; Plane Surface(s) = {loop_1, loop_0, holes()};
+
+// Around pins whose edges are much shorter than the elements of the disc these
+// grow by two fifths of the distance; Gmsh by itself would fill the space between pins with short ones.
+edge = Pi * pin_diameter / (3 * k);
+If(edge < size / 4)
+  outlines() = {};
+  For pin In {1 : n_pins}
+    outlines() += pin_curves~{pin}();
+  EndFor
+  Field[1]            = Distance;
+  Field[1].CurvesList = {outlines()};
+  Field[1].NumPointsPerCurve = 10 * k;
+  Field[2]   = MathEval;
+  Field[2].F = Sprintf("Min(%g, %g + 0.4 * F1)", size, edge);
+  Background Field = 2;
+  Mesh.MeshSizeExtendFromBoundary = 0;
+  Mesh.MeshSizeFromPoints         = 0;
+EndIf
+
 Physical Surface("disc")    = {s};
 Physical Curve("disc_bore") = {ring_curves_0()};
 Physical Curve("disc_rim")  = {ring_curves_1()};
