@@ -27,7 +27,7 @@ namespace Squeal
   void DiscretizationParameters::check() const
   {
     if (!(maximum_frequency > 0.))
-      throw ParameterError("the band ends at " + std::to_string(maximum_frequency) + " Hz", "parameter Band/Maximum frequency",
+      throw ParameterError("the band ends at " + exact_text(maximum_frequency) + " Hz", "parameter Band/Maximum frequency",
                            "give a positive frequency");
   }
 

@@ -24,13 +24,12 @@ namespace Squeal
       return text.str();
     }
 
-    double parse_number(const std::string &text)
+    double number(const std::string &text)
     {
-      std::istringstream stream(text);
-      double             number;
-      if (!(stream >> number) || !stream.eof())
-        throw ParameterError("`" + text + "` is not a number", where, format);
-      return number;
+      const auto value = parse_number(text);
+      if (!value)
+        throw ParameterError(in_quotes(text) + " is not a number", where, format);
+      return *value;
     }
 
     std::vector<ModalDampingRatio> parse_ratios(const std::string &text)
@@ -42,8 +41,8 @@ namespace Squeal
             continue;
           const auto parts = dealii::Utilities::split_string_list(entry, ':');
           if (parts.size() != 2)
-            throw ParameterError("`" + entry + "` is not a frequency with its damping ratio", where, format);
-          ratios.push_back({parse_number(parts[0]), parse_number(parts[1])});
+            throw ParameterError(in_quotes(entry) + " is not a frequency with its damping ratio", where, format);
+          ratios.push_back({number(parts[0]), number(parts[1])});
         }
       return ratios;
     }

@@ -33,17 +33,16 @@ namespace Squeal
           const auto parts  = dealii::Utilities::split_string_list(entry, ':');
           const auto values = parts.size() == 2 ? dealii::Utilities::split_string_list(parts[1], ',') : std::vector<std::string>();
           if (values.size() != 3)
-            throw ParameterError("`" + entry + "` is not an elastic mount", "parameter Mounts/Elastic mounts",
+            throw ParameterError(in_quotes(entry) + " is not an elastic mount", "parameter Mounts/Elastic mounts",
                                  std::string("write ") + mount_format);
           std::vector<double> stiffness;
           for (const std::string &value : values)
             {
-              std::istringstream stream(value);
-              double             number;
-              if (!(stream >> number) || !stream.eof())
-                throw ParameterError("`" + value + "` is not a number", "parameter Mounts/Elastic mounts, surface " + parts[0],
+              const auto number = parse_number(value);
+              if (!number)
+                throw ParameterError(in_quotes(value) + " is not a number", "parameter Mounts/Elastic mounts, surface " + legible(parts[0]),
                                      std::string("write ") + mount_format);
-              stiffness.push_back(number);
+              stiffness.push_back(*number);
             }
           mounts.push_back({parts[0], stiffness[0], stiffness[1], stiffness[2]});
         }
@@ -71,13 +70,13 @@ namespace Squeal
     void check_material(const std::string &section, const Material &material)
     {
       if (!(material.young_modulus > 0.))
-        throw ParameterError("Young's modulus is " + std::to_string(material.young_modulus) + " Pa",
+        throw ParameterError("Young's modulus is " + exact_text(material.young_modulus) + " Pa",
                              "parameter " + section + "/Young modulus", "give a positive value");
       if (!(material.poisson_ratio > -1. && material.poisson_ratio < 0.4999))
-        throw ParameterError("Poisson's ratio is " + std::to_string(material.poisson_ratio), "parameter " + section + "/Poisson ratio",
+        throw ParameterError("Poisson's ratio is " + exact_text(material.poisson_ratio), "parameter " + section + "/Poisson ratio",
                              "give a value above -1 and below 0.4999 (displacement elements lock for incompressible materials)");
       if (!(material.density > 0.))
-        throw ParameterError("the density is " + std::to_string(material.density) + " kg/m^3", "parameter " + section + "/Density",
+        throw ParameterError("the density is " + exact_text(material.density) + " kg/m^3", "parameter " + section + "/Density",
                              "give a positive value");
       if (!(material.rayleigh_alpha >= 0.) || !std::isfinite(material.rayleigh_alpha))
         throw ParameterError("the damping in proportion to the mass is " + exact_text(material.rayleigh_alpha) + " 1/s",
@@ -114,12 +113,12 @@ namespace Squeal
     std::set<std::string> seen;
     for (const ElasticMount &mount : mounts)
       {
-        const std::string where = "parameter Mounts/Elastic mounts, surface " + mount.surface;
+        const std::string where = "parameter Mounts/Elastic mounts, surface " + legible(mount.surface);
         if (mount.surface.empty())
           throw ParameterError("a mount names no surface", where, std::string("write ") + mount_format);
         for (const double stiffness : {mount.radial, mount.tangential, mount.axial})
           if (!(stiffness >= 0.) || !std::isfinite(stiffness))
-            throw ParameterError("the stiffness " + std::to_string(stiffness) + " N/m^3 is not a finite value >= 0", where,
+            throw ParameterError("the stiffness " + exact_text(stiffness) + " N/m^3 is not a finite value >= 0", where,
                                  "give zero or a positive stiffness per area");
         if (!seen.insert(mount.surface).second)
           throw ParameterError("the surface is mounted twice", where, "give each surface once, with the sum of its stiffnesses");

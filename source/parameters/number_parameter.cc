@@ -2,18 +2,8 @@
 
 #include <deal.II/base/utilities.h>
 
-#include <array>
-#include <charconv>
-
 namespace Squeal
 {
-  std::string exact_text(const double value)
-  {
-    std::array<char, 32> text;
-    const auto           end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    return {text.data(), end};
-  }
-
   void add_number_parameter(dealii::ParameterHandler            &prm,
                             const std::string                   &name,
                             double                              &value,
@@ -21,7 +11,8 @@ namespace Squeal
                             const dealii::Patterns::PatternBase &pattern)
   {
     prm.declare_entry(name, exact_text(value), pattern, documentation);
-    prm.add_action(name, [&value](const std::string &text) { value = dealii::Utilities::string_to_double(text); });
+    // The pattern has refused what is not a number
+    prm.add_action(name, [&value](const std::string &text) { value = parse_number(text).value(); });
   }
 
   void add_number_parameter(dealii::ParameterHandler            &prm,
@@ -35,7 +26,9 @@ namespace Squeal
       list += (i > 0 ? ", " : "") + exact_text(values[i]);
     prm.declare_entry(name, list, pattern, documentation);
     prm.add_action(name, [&values](const std::string &text) {
-      values = dealii::Utilities::string_to_double(dealii::Utilities::split_string_list(text, ','));
+      values.clear();
+      for (const std::string &part : dealii::Utilities::split_string_list(text, ','))
+        values.push_back(parse_number(part).value());
     });
   }
 } // namespace Squeal

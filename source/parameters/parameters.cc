@@ -1,12 +1,14 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/catalogue.h>
 #include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/parameter_file.h>
 #include <squeal/parameters/parameters.h>
 
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <sstream>
 
@@ -14,55 +16,6 @@ namespace Squeal
 {
   namespace
   {
-    /// One `set` or `subsection` line of a parameter file.
-    struct Entry
-    {
-      std::string path; ///< "Section/Name"; a section ends in "/"
-      std::string where;
-    };
-
-    /// Collapses runs of blanks, as ParameterHandler does.
-    std::string normalize(const std::string &text)
-    {
-      std::istringstream stream(text);
-      std::string        word, result;
-      while (stream >> word)
-        result += (result.empty() ? "" : " ") + word;
-      return result;
-    }
-
-    /// Names that a parameter file sets or enters; values are left to ParameterHandler.
-    std::vector<Entry> scan_names(std::istream &stream, const std::string &file)
-    {
-      std::vector<Entry>       entries;
-      std::vector<std::string> sections;
-      const auto path = [&](const std::string &name) {
-        std::string result;
-        for (const std::string &section : sections)
-          result += section + "/";
-        return result + name;
-      };
-
-      std::string line;
-      for (unsigned int number = 1; std::getline(stream, line); ++number)
-        {
-          const std::string text  = normalize(line.substr(0, line.find('#')));
-          const std::string where = "file " + file + ", line " + std::to_string(number);
-          const std::string key   = text.substr(0, text.find(' '));
-          const std::string rest  = text.size() > key.size() ? text.substr(key.size() + 1) : "";
-          if (key == "subsection")
-            {
-              sections.push_back(rest);
-              entries.push_back({path(""), where});
-            }
-          else if (key == "end" && !sections.empty())
-            sections.pop_back();
-          else if (key == "set")
-            entries.push_back({path(normalize(rest.substr(0, rest.find('=')))), where});
-        }
-      return entries;
-    }
-
     /// Levenshtein distance without regard to case.
     unsigned int edit_distance(const std::string &a, const std::string &b)
     {
@@ -131,125 +84,156 @@ namespace Squeal
     }
 
     /// Refuses a name that was not declared.
-    void check_name(const Entry &entry, const std::vector<std::string> &known)
+    void check_name(const ParameterStatement &statement, const std::vector<std::string> &known)
     {
-      if (std::find(known.begin(), known.end(), entry.path) != known.end())
+      if (std::find(known.begin(), known.end(), statement.path) != known.end())
         return;
-      const bool   is_section = entry.path.back() == '/';
+      const bool   is_section = statement.is_section();
       std::string  nearest;
       unsigned int smallest = -1;
       for (const std::string &candidate : known)
         if ((candidate.back() == '/') == is_section)
-          if (const unsigned int distance = path_distance(entry.path, candidate); distance < smallest)
+          if (const unsigned int distance = path_distance(statement.path, candidate); distance < smallest)
             {
               smallest = distance;
               nearest  = candidate;
             }
-      throw ParameterError(std::string("unknown ") + (is_section ? "section `" : "parameter `") + entry.path + "`", entry.where,
+      throw ParameterError(std::string("unknown ") + (is_section ? "section " : "parameter ") + in_quotes(statement.path), statement.where,
                            "the nearest known name is `" + nearest + "`; squeal --print-parameters lists all");
     }
 
-    void add_parameters(dealii::ParameterHandler &prm, Parameters &parameters)
+    /// Paths of all parameters, and of the sections that they are in.
+    std::vector<std::string> known_names(const std::vector<CataloguedParameter> &declared)
     {
-      add_enum_parameter(prm, "Study", parameters.study, "The question that the run answers.");
-      parameters.geometry.add_parameters(prm);
-      parameters.materials.add_parameters(prm);
-      parameters.discretization.add_parameters(prm);
-      parameters.operation.add_parameters(prm);
-      parameters.sliding.add_parameters(prm);
-      parameters.damping.add_parameters(prm);
-      parameters.reduction.add_parameters(prm);
-      parameters.sweep.add_parameters(prm);
-      parameters.solvers.add_parameters(prm);
-      parameters.output.add_parameters(prm);
-    }
-
-    std::vector<std::string> known_names(const dealii::ParameterHandler &prm)
-    {
-      std::stringstream text;
-      prm.print_parameters(text, dealii::ParameterHandler::ShortPRM);
       std::vector<std::string> names;
-      for (const Entry &entry : scan_names(text, ""))
-        names.push_back(entry.path);
+      for (const CataloguedParameter &parameter : declared)
+        {
+          for (auto slash = parameter.path.find('/'); slash != std::string::npos; slash = parameter.path.find('/', slash + 1))
+            if (const std::string section = parameter.path.substr(0, slash + 1); std::find(names.begin(), names.end(), section) == names.end())
+              names.push_back(section);
+          names.push_back(parameter.path);
+        }
       return names;
     }
 
-    /// What deal.II says of a refused value, without its banner.
-    std::string short_message(const dealii::ExceptionBase &exception)
+    /// Stays in the section of a parameter as long as it lives.
+    class InSection
     {
-      std::ostringstream text;
-      exception.print_info(text);
-      return normalize(text.str());
+    public:
+      InSection(dealii::ParameterHandler &prm, const CataloguedParameter &parameter)
+        : parts(parameter.path_parts())
+        , prm(prm)
+      {
+        for (std::size_t i = 0; i + 1 < parts.size(); ++i)
+          prm.enter_subsection(parts[i]);
+      }
+
+      ~InSection()
+      {
+        for (std::size_t i = 0; i + 1 < parts.size(); ++i)
+          prm.leave_subsection();
+      }
+
+      InSection(const InSection &)            = delete;
+      InSection &operator=(const InSection &) = delete;
+
+      const std::string &name() const
+      {
+        return parts.back();
+      }
+
+    private:
+      const std::vector<std::string> parts;
+      dealii::ParameterHandler      &prm;
+    };
+
+    /// Sets a parameter to what a statement says.
+    void assign(dealii::ParameterHandler &prm, const CataloguedParameter &parameter, const ParameterStatement &statement)
+    {
+      const InSection section(prm, parameter);
+      try
+        {
+          prm.set(section.name(), statement.value);
+        }
+      catch (const ParameterError &error)
+        {
+          throw ParameterError(error.reason, statement.where + ", " + error.where, error.change);
+        }
+      catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
+        {
+          throw ParameterError(refusal(parameter, statement.value), statement.where,
+                               "give " + accepted_values(parameter) + "; squeal --print-parameters says what it is");
+        }
     }
 
-    void apply_override(dealii::ParameterHandler &prm, const std::vector<std::string> &known, const std::string &text)
+    /// Declares the parameters of a handler once more, with what they accept at the end of their documentation.
+    void document(const dealii::ParameterHandler &prm, dealii::ParameterHandler &documented)
+    {
+      for (const CataloguedParameter &parameter : catalogue(prm))
+        {
+          const std::string accepted = accepted_values(parameter);
+          const InSection   section(documented, parameter);
+          documented.declare_entry(section.name(), parameter.value, dealii::Patterns::Anything(),
+                                   parameter.documentation + (accepted.empty() ? "" : " Accepts " + accepted + "."));
+        }
+    }
+
+    /// An override "Section/Name=value".
+    ParameterStatement parse_override(const std::string &text)
     {
       const auto        equal = text.find('=');
-      const std::string where = "--set \"" + text + "\"";
+      const std::string where = "--set \"" + legible(text) + "\"";
       if (equal == std::string::npos)
         throw ParameterError("an override has no `=`", where, "write --set \"Section/Name=value\"");
-      const std::string path = normalize(text.substr(0, equal));
-      check_name({path, where}, known);
-      auto parts = dealii::Utilities::split_string_list(path, '/');
-      for (unsigned int i = 0; i + 1 < parts.size(); ++i)
-        prm.enter_subsection(parts[i]);
-      try
-        {
-          prm.set(parts.back(), dealii::Utilities::trim(text.substr(equal + 1)));
-        }
-      catch (const dealii::ExceptionBase &exception)
-        {
-          throw ParameterError(short_message(exception), where, "give a value of the kind that --print-parameters describes");
-        }
-      for (unsigned int i = 0; i + 1 < parts.size(); ++i)
-        prm.leave_subsection();
+      return {single_spaced(text.substr(0, equal)), dealii::Utilities::trim(text.substr(equal + 1)), where};
+    }
+
+    /// Geometry/File as the last statement about it says.
+    std::string geometry_file(const std::vector<ParameterStatement> &statements)
+    {
+      std::string result = GeometryParameters().file;
+      for (const ParameterStatement &statement : statements)
+        if (statement.path == "Geometry/File")
+          result = statement.value;
+      return result;
     }
   } // namespace
 
-  namespace
+  void Parameters::add_parameters(dealii::ParameterHandler &prm)
   {
-    /// Geometry/File as file and overrides give it, read ahead because the variables of a geometry are parameters, too.
-    std::string geometry_file(const std::string &file, const std::vector<std::string> &overrides)
-    {
-      GeometryParameters       geometry;
-      dealii::ParameterHandler prm;
-      geometry.add_parameters(prm);
-      try
-        {
-          prm.parse_input(file, "", /* skip_undefined */ true);
-        }
-      catch (const dealii::ExceptionBase &)
-        {} // what is wrong is said where all of the file is read
-      for (const std::string &text : overrides)
-        if (const auto equal = text.find('='); equal != std::string::npos && normalize(text.substr(0, equal)) == "Geometry/File")
-          geometry.file = dealii::Utilities::trim(text.substr(equal + 1));
-      return geometry.file;
-    }
-  } // namespace
+    add_enum_parameter(prm, "Study", study, "The question that the run answers.");
+    geometry.add_parameters(prm);
+    materials.add_parameters(prm);
+    discretization.add_parameters(prm);
+    operation.add_parameters(prm);
+    sliding.add_parameters(prm);
+    damping.add_parameters(prm);
+    reduction.add_parameters(prm);
+    sweep.add_parameters(prm);
+    solvers.add_parameters(prm);
+    output.add_parameters(prm);
+  }
 
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
   {
-    Parameters               parameters;
-    parameters.geometry.set_file(geometry_file(file, overrides), std::filesystem::path(file).parent_path().string());
-    dealii::ParameterHandler prm;
-    add_parameters(prm, parameters);
-    const std::vector<std::string> known = known_names(prm);
-
-    std::ifstream stream(file);
-    if (!stream)
-      throw FileError("the parameter file cannot be read", "file " + file, "check its name and permissions");
-    for (const Entry &entry : scan_names(stream, file))
-      check_name(entry, known);
-    try
-      {
-        prm.parse_input(file);
-      }
-    catch (const dealii::ExceptionBase &exception)
-      {
-        throw ParameterError(short_message(exception), "file " + file, "squeal --print-parameters lists every parameter with its kind");
-      }
+    std::vector<ParameterStatement> statements = read_parameter_file(file);
     for (const std::string &text : overrides)
-      apply_override(prm, known, text);
+      statements.push_back(parse_override(text));
+
+    // The variables of the geometry are parameters, too
+    Parameters parameters;
+    parameters.geometry.set_file(geometry_file(statements), std::filesystem::path(file).parent_path().string());
+    dealii::ParameterHandler prm;
+    parameters.add_parameters(prm);
+    const auto                     declared = catalogue(prm);
+    const std::vector<std::string> known    = known_names(declared);
+
+    for (const ParameterStatement &statement : statements)
+      check_name(statement, known);
+    for (const ParameterStatement &statement : statements)
+      for (const CataloguedParameter &parameter : declared)
+        if (parameter.path == statement.path)
+          assign(prm, parameter, statement);
 
     parameters.check();
     return parameters;
@@ -257,11 +241,18 @@ namespace Squeal
 
   void Parameters::print(std::ostream &stream, const bool with_documentation) const
   {
-    Parameters               copy = *this;
-    dealii::ParameterHandler prm;
-    add_parameters(prm, copy);
-    const auto style = with_documentation ? dealii::ParameterHandler::PRM : dealii::ParameterHandler::ShortPRM;
-    prm.print_parameters(stream, static_cast<dealii::ParameterHandler::OutputStyle>(style | dealii::ParameterHandler::KeepDeclarationOrder));
+    using dealii::ParameterHandler;
+    Parameters       copy = *this;
+    ParameterHandler prm;
+    copy.add_parameters(prm);
+    if (with_documentation)
+      {
+        ParameterHandler documented;
+        document(prm, documented);
+        documented.print_parameters(stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder));
+      }
+    else
+      prm.print_parameters(stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::ShortPRM | ParameterHandler::KeepDeclarationOrder));
   }
 
   bool Parameters::needs_steady_sliding() const

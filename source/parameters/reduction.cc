@@ -22,11 +22,10 @@ namespace Squeal
         {
           if (part.empty())
             continue;
-          std::istringstream stream(part);
-          double             number;
-          if (!(stream >> number) || !stream.eof() || !std::isfinite(number))
-            throw ParameterError("`" + part + "` is not a finite number", "parameter " + parameter, "write " + format);
-          numbers.push_back(number);
+          const auto number = parse_number(part);
+          if (!number)
+            throw ParameterError(in_quotes(part) + " is not a finite number", "parameter " + parameter, "write " + format);
+          numbers.push_back(*number);
         }
       return numbers;
     }
@@ -53,12 +52,12 @@ namespace Squeal
             {
               for (const double number : numbers)
                 if (number != std::floor(number) || number < 0. || number > 1e6)
-                  throw ParameterError("`" + part + "` has a number of modes that is not a count", "parameter Reduction/Component modes",
+                  throw ParameterError(in_quotes(part) + " has a number of modes that is not a count", "parameter Reduction/Component modes",
                                        std::string("write ") + truncation_format);
               result.push_back({0., static_cast<int>(numbers[0]), static_cast<int>(numbers[1]), static_cast<int>(numbers[2])});
             }
           else
-            throw ParameterError("`" + part + "` is neither a frequency nor three numbers of modes", "parameter Reduction/Component modes",
+            throw ParameterError(in_quotes(part) + " is neither a frequency nor three numbers of modes", "parameter Reduction/Component modes",
                                  std::string("write ") + truncation_format);
         }
       return result;

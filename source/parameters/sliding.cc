@@ -34,20 +34,19 @@ namespace Squeal
           const auto halves = dealii::Utilities::split_string_list(part, ':');
           const auto values = halves.size() == 2 ? dealii::Utilities::split_string_list(halves[1], ',') : std::vector<std::string>();
           if (halves.empty() || halves[0].empty() || n_numbers.count(values.size()) == 0)
-            throw ParameterError("`" + part + "` is not an entry of the list", std::string("parameter ") + parameter,
+            throw ParameterError(in_quotes(part) + " is not an entry of the list", std::string("parameter ") + parameter,
                                  std::string("write ") + format);
           PinNumbers entry{halves[0], {}};
           for (const std::string &value : values)
             {
-              std::istringstream stream(value);
-              double             number;
-              if (!(stream >> number) || !stream.eof() || !std::isfinite(number))
-                throw ParameterError("`" + value + "` is not a finite number", std::string("parameter ") + parameter + ", pin " + entry.pin,
+              const auto number = parse_number(value);
+              if (!number)
+                throw ParameterError(in_quotes(value) + " is not a finite number", std::string("parameter ") + parameter + ", pin " + legible(entry.pin),
                                      std::string("write ") + format);
-              entry.numbers.push_back(number);
+              entry.numbers.push_back(*number);
             }
           if (!seen.insert(entry.pin).second)
-            throw ParameterError("pin `" + entry.pin + "` is given twice", std::string("parameter ") + parameter, "give each pin once");
+            throw ParameterError("pin " + in_quotes(entry.pin) + " is given twice", std::string("parameter ") + parameter, "give each pin once");
           entries.push_back(entry);
         }
       return entries;

@@ -84,7 +84,7 @@ class Refusals(ProgramTest):
 
     def test_override(self):
         self.scene_refused(["no `=`"], "Operation/Friction coefficient")
-        self.scene_refused(["not match", "abc"], "Operation/Friction coefficient=abc")
+        self.scene_refused(["must be a number in 0 ... 10, not `abc`"], "Operation/Friction coefficient=abc")
 
     # -------------------------------------------------------------- parameters
 
@@ -107,15 +107,15 @@ class Refusals(ProgramTest):
         self.refused(["unknown section `Opration/`", "`Operation/`", "section.prm, line 1"], "section.prm")
 
     def test_values(self):
-        self.scene_refused(["-0.1"], "Operation/Friction coefficient=-0.1")
-        self.scene_refused(["3"], "Discretization/Degree=3")
+        self.scene_refused(["Operation/Friction coefficient must lie in 0 ... 10, not -0.1"], "Operation/Friction coefficient=-0.1")
+        self.scene_refused(["must lie in 1 ... 2, not 3"], "Discretization/Degree=3")
         self.scene_refused(["sideways"], "Operation/Rotation=sideways")
         self.scene_refused(["Band/Maximum frequency"], "Band/Maximum frequency=0")
         self.scene_refused(["Poisson"], "Disc material/Poisson ratio=0.5")
         self.write("value.prm", "subsection Operation\n  set Friction coefficient = much\nend\n")
-        self.refused(["much", "value.prm"], "value.prm")
+        self.refused(["`much`", "value.prm, line 2"], "value.prm")
         self.write("open.prm", "subsection Operation\n  set Friction coefficient = 0.3\n")
-        self.refused(["open.prm"], "open.prm")
+        self.refused(["`Operation` is not closed", "open.prm, line 1"], "open.prm")
 
     def test_operation(self):
         for dissipation in ("consistent", "published"):
@@ -127,8 +127,8 @@ class Refusals(ProgramTest):
         self.sliding_refused(["does not turn", "Operation/Rotation speed"], "Operation/Rotation speed=0")
         self.sliding_refused(["-1000", "Operation/Load per side"], "Operation/Load per side=-1000")
         self.sliding_refused(["load is zero", "Operation/Load per side"], "Operation/Load per side=0")
-        self.sliding_refused(["ahead", "equal load|steady sliding"], "Steady sliding/Contact state=ahead")
-        self.sliding_refused(["by hand", "load per side|displacement|load per pin"], "Steady sliding/Control=by hand")
+        self.sliding_refused(["ahead", "one of equal load, steady sliding"], "Steady sliding/Contact state=ahead")
+        self.sliding_refused(["by hand", "one of load per side, displacement, load per pin"], "Steady sliding/Control=by hand")
 
     def test_gaps(self):
         gaps = "Steady sliding/Gaps"

@@ -19,6 +19,8 @@ namespace Squeal
      * @param change what would make the run succeed
      */
     Error(const std::string &what, const std::string &where, const std::string &change);
+
+    const std::string reason, where, change; ///< the three parts of the message
   };
 
   /// An Error in the parameter file or on the command line.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <squeal/base/text.h>
+
 #include <deal.II/base/parameter_handler.h>
 
 #include <string>
@@ -7,9 +9,6 @@
 
 namespace Squeal
 {
-  /// The shortest text that reads back as exactly this number.
-  std::string exact_text(double value);
-
   /**
    * Declares a number and binds it to @p value. Unlike deal.II's add_parameter(),
    * which prints six digits, it is printed so that it reads back unchanged: the

@@ -30,14 +30,18 @@ namespace Squeal
     SolverParameters         solvers;
     OutputParameters         output;
 
+    /// Declares every parameter with its present value and binds it to its member.
+    void add_parameters(dealii::ParameterHandler &prm);
+
     /**
      * Reads a parameter file, then applies overrides of the form
      * "Section/Name=value", then checks every value and combination.
-     * Throws ParameterError; an unknown name is answered with the nearest known one.
+     * Throws FileError, or ParameterError; an unknown name is answered with the
+     * nearest known one, a refused value with what the parameter accepts.
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 
-    /// Every parameter with its value and documentation, as a parameter file.
+    /// Every parameter with its value, and with its documentation and what it accepts, as a parameter file.
     void print(std::ostream &stream, bool with_documentation) const;
 
     /// Whether the study solves for the steady sliding state.

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace Squeal
+{
+  /// The shortest text that reads back as exactly this number; zero has no sign.
+  std::string exact_text(double value);
+
+  /// A number for a sentence: at least @p n_digits significant digits, all digits before the point, no exponent.
+  std::string decimal_text(double value, int n_digits = 4);
+
+  /// The finite number that a text is, blanks around it apart; nothing if it is anything else. Zero has no sign.
+  std::optional<double> parse_number(const std::string &text);
+
+  /// The words of a text with one blank between them.
+  std::string single_spaced(const std::string &text);
+
+  /// What a user wrote, in a form that fits a message: control characters as `?`, and only the beginning of a long text.
+  std::string legible(const std::string &text);
+
+  /// The same between back-quotes.
+  std::string in_quotes(const std::string &text);
+} // namespace Squeal

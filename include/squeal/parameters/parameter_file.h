@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// What one line of a parameter file says: a section is entered or a parameter set.
+  struct ParameterStatement
+  {
+    std::string path;  ///< "Section/Name"; that of a section ends in "/"
+    std::string value; ///< without blanks around it; empty for a section
+    std::string where; ///< file and line, for messages
+
+    bool is_section() const;
+  };
+
+  /**
+   * Statements of a parameter file in deal.II's format, in their order: `subsection NAME`, `end`, `set NAME = VALUE`,
+   * `include FILE`, comments after `#`, lines continued by a backslash. An included file is looked for beside the one
+   * that includes it, then in the current directory. Text is UTF-8, with or without a byte order mark.
+   *
+   * Throws FileError where a file cannot be read, ParameterError where it is not such a text or includes itself.
+   */
+  std::vector<ParameterStatement> read_parameter_file(const std::string &file);
+} // namespace Squeal

@@ -1,0 +1,67 @@
+#include <squeal/base/text.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Characters of a longer text that a message shows.
+    constexpr std::size_t largest_length = 80;
+  } // namespace
+
+  std::string exact_text(const double value)
+  {
+    std::array<char, 32> text;
+    // Adding zero takes the sign of a negative one
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value + 0.).ptr;
+    return {text.data(), end};
+  }
+
+  std::string decimal_text(const double value, const int n_digits)
+  {
+    const int          n_before = value == 0. ? 1 : static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;
+    std::ostringstream text;
+    text << std::fixed << std::setprecision(std::max(0, n_digits - n_before)) << value + 0.;
+    return text.str();
+  }
+
+  std::optional<double> parse_number(const std::string &text)
+  {
+    std::istringstream stream(text);
+    double             number;
+    if (!(stream >> number) || !std::isfinite(number) || !(stream >> std::ws).eof())
+      return {};
+    return number + 0.;
+  }
+
+  std::string single_spaced(const std::string &text)
+  {
+    std::istringstream stream(text);
+    std::string        word, result;
+    while (stream >> word)
+      result += (result.empty() ? "" : " ") + word;
+    return result;
+  }
+
+  std::string legible(const std::string &text)
+  {
+    std::size_t length = std::min(text.size(), largest_length);
+    // Not in the middle of a character of several bytes
+    while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
+      --length;
+    std::string result = text.substr(0, length);
+    std::replace_if(result.begin(), result.end(), [](const unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+    return length == text.size() ? result : result + "... (" + std::to_string(text.size()) + " characters)";
+  }
+
+  std::string in_quotes(const std::string &text)
+  {
+    return "`" + legible(text) + "`";
+  }
+} // namespace Squeal

@@ -1,0 +1,173 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/parameter_file.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    namespace fs = std::filesystem;
+
+    constexpr const char *blanks = " \t\r\n\v\f";
+
+    std::string trim(const std::string &text)
+    {
+      const auto first = text.find_first_not_of(blanks);
+      return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+    }
+
+    std::string place(const std::string &file, const unsigned int line)
+    {
+      return "file " + legible(file) + ", line " + std::to_string(line);
+    }
+
+    bool starts_with(const std::string &text, const char *start)
+    {
+      return text.rfind(start, 0) == 0;
+    }
+
+    /// The text of a file without its byte order mark; @p where names it in messages.
+    std::string read_text(const std::string &file, const std::string &where)
+    {
+      std::error_code ignored;
+      if (fs::is_directory(file, ignored))
+        throw FileError("the parameter file is a directory", where, "name a file in it");
+      std::ifstream stream(file, std::ios::binary);
+      if (!stream)
+        throw FileError("the parameter file cannot be read", where, "check its name and permissions");
+      std::string text{std::istreambuf_iterator<char>(stream), {}};
+      if (stream.bad())
+        throw FileError("the parameter file cannot be read to its end", where, "check the disk that it is on");
+
+      if (starts_with(text, "\xFF\xFE") || starts_with(text, "\xFE\xFF"))
+        throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
+      if (const auto zero = text.find('\0'); zero != std::string::npos)
+        throw ParameterError("the parameter file is no text: it holds a zero byte", "file " + legible(file) + ", line " +
+                               std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
+                             "give a text file in UTF-8");
+      constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
+      return starts_with(text, byte_order_mark) ? text.substr(3) : text;
+    }
+
+    /// Reads a file and those that it includes.
+    class Reader
+    {
+    public:
+      std::vector<ParameterStatement> statements;
+
+      /// @p where names the file, or the line that includes it.
+      void read(const std::string &file, const std::string &where)
+      {
+        refuse_cycle(file, where);
+        open_files.push_back(file);
+        const std::size_t outer_depth = sections.size();
+
+        std::istringstream stream(read_text(file, where));
+        std::string        line, whole;
+        unsigned int       number = 0, first = 0;
+        while (std::getline(stream, line))
+          {
+            ++number;
+            line = trim(line);
+            if (whole.empty())
+              first = number;
+            const bool goes_on = !line.empty() && line.back() == '\\';
+            whole += goes_on ? line.substr(0, line.size() - 1) : line;
+            if (goes_on)
+              continue;
+            read_line(whole, file, first, outer_depth);
+            whole.clear();
+          }
+        read_line(whole, file, first, outer_depth);
+        if (sections.size() > outer_depth)
+          throw ParameterError("section " + in_quotes(sections.back().name) + " is not closed", sections.back().where, "add a line `end`");
+        open_files.pop_back();
+      }
+
+    private:
+      struct Section
+      {
+        std::string name, where;
+      };
+
+      /// Throws ParameterError if the file is among those that are being read.
+      void refuse_cycle(const std::string &file, const std::string &where) const
+      {
+        std::error_code ignored;
+        const auto is_same = [&](const std::string &other) { return fs::equivalent(file, other, ignored); };
+        const auto begin   = std::find_if(open_files.begin(), open_files.end(), is_same);
+        if (begin == open_files.end())
+          return;
+        std::string chain;
+        for (auto name = begin; name != open_files.end(); ++name)
+          chain += legible(*name) + " -> ";
+        throw ParameterError("a parameter file includes itself: " + chain + legible(*begin), where, "remove this include");
+      }
+
+      std::string path(const std::string &name) const
+      {
+        std::string result;
+        for (const Section &section : sections)
+          result += section.name + "/";
+        return result + name;
+      }
+
+      void read_line(const std::string &line, const std::string &file, const unsigned int number, const std::size_t outer_depth)
+      {
+        const std::string where = place(file, number);
+        const std::string text  = trim(line.substr(0, line.find('#')));
+        const std::string key   = text.substr(0, text.find_first_of(blanks));
+        const std::string rest  = trim(text.substr(key.size()));
+        if (key.empty())
+          return;
+        if (key == "subsection" || key == "SUBSECTION")
+          {
+            sections.push_back({single_spaced(rest), where});
+            statements.push_back({path(""), "", where});
+          }
+        else if ((key == "end" || key == "END") && rest.empty())
+          {
+            if (sections.size() == outer_depth)
+              throw ParameterError("`end` closes no section", where, "remove it, or add the `subsection` that it belongs to");
+            sections.pop_back();
+          }
+        else if (key == "set" || key == "SET")
+          {
+            const auto equal = rest.find('=');
+            if (equal == std::string::npos)
+              throw ParameterError(in_quotes(text) + " has no `=`", where, "write set NAME = VALUE");
+            statements.push_back({path(single_spaced(rest.substr(0, equal))), trim(rest.substr(equal + 1)), where});
+          }
+        else if ((key == "include" || key == "INCLUDE") && !rest.empty())
+          {
+            std::error_code ignored;
+            const fs::path  beside = fs::path(file).parent_path() / rest;
+            read(fs::exists(beside, ignored) ? beside.string() : rest, where + ", which includes " + in_quotes(rest));
+          }
+        else
+          throw ParameterError(in_quotes(text) + " is no line of a parameter file", where,
+                               "write `subsection NAME`, `end`, `set NAME = VALUE`, `include FILE`, or a comment after `#`");
+      }
+
+      std::vector<std::string> open_files; ///< from the outermost to the one that is read
+      std::vector<Section>     sections;
+    };
+  } // namespace
+
+  bool ParameterStatement::is_section() const
+  {
+    return !path.empty() && path.back() == '/';
+  }
+
+  std::vector<ParameterStatement> read_parameter_file(const std::string &file)
+  {
+    Reader reader;
+    reader.read(file, "file " + legible(file));
+    return std::move(reader.statements);
+  }
+} // namespace Squeal

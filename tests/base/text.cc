@@ -1,0 +1,45 @@
+#include <squeal/base/text.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace Squeal;
+
+TEST(Text, ExactNumbersReadBack)
+{
+  for (const double value : {0.1, 1. / 3., 1e-300, -7850., 0.31550001, 5000.})
+    EXPECT_EQ(std::stod(exact_text(value)), value);
+  EXPECT_EQ(exact_text(-0.), "0");
+  EXPECT_EQ(exact_text(0.0463), "0.0463");
+}
+
+TEST(Text, DecimalNumbersKeepTheirDigits)
+{
+  EXPECT_EQ(decimal_text(3569.05), "3569");
+  EXPECT_EQ(decimal_text(12345.6), "12346");
+  EXPECT_EQ(decimal_text(354.26), "354.3");
+  EXPECT_EQ(decimal_text(6.54321), "6.543");
+  EXPECT_EQ(decimal_text(0.0067704, 3), "0.00677");
+  EXPECT_EQ(decimal_text(-54000.3), "-54000");
+  EXPECT_EQ(decimal_text(0.), "0.000");
+  EXPECT_EQ(decimal_text(-0., 1), "0");
+}
+
+TEST(Text, NumbersAreParsedAsAWhole)
+{
+  EXPECT_EQ(parse_number(" 1.5e3 "), 1500.);
+  EXPECT_FALSE(std::signbit(parse_number("-0").value()));
+  for (const char *text : {"", " ", "1 %", "0,4", "nan", "inf", "1e999", "three", "0x10", "--1"})
+    EXPECT_FALSE(parse_number(text)) << text;
+}
+
+TEST(Text, LongAndInvisibleTextsAreMadeLegible)
+{
+  EXPECT_EQ(in_quotes("short"), "`short`");
+  EXPECT_EQ(legible(std::string("a\0b\n\033[1m", 8)), "a?b??[1m");
+  EXPECT_EQ(legible(std::string(81, 'x')), std::string(80, 'x') + "... (81 characters)");
+  // Not through the two bytes of a letter
+  EXPECT_EQ(legible(std::string(79, 'x') + "\u00b5m"), std::string(79, 'x') + "... (82 characters)");
+  EXPECT_EQ(single_spaced(" a \t b\n"), "a b");
+}

@@ -1,0 +1,136 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/parameter_file.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace Squeal;
+
+namespace
+{
+  namespace fs = std::filesystem;
+
+  /// A folder for parameter files that is removed at the end.
+  class ParameterFile : public testing::Test
+  {
+  protected:
+    void SetUp() override
+    {
+      fs::create_directories(folder / "below");
+    }
+    void TearDown() override
+    {
+      fs::remove_all(folder);
+    }
+
+    std::string write(const std::string &name, const std::string &text) const
+    {
+      std::ofstream(folder / name, std::ios::binary) << text;
+      return (folder / name).string();
+    }
+
+    /// "path=value" of every statement.
+    static std::vector<std::string> statements(const std::string &file)
+    {
+      std::vector<std::string> result;
+      for (const ParameterStatement &statement : read_parameter_file(file))
+        result.push_back(statement.path + (statement.is_section() ? "" : "=" + statement.value));
+      return result;
+    }
+
+    static std::string refusal(const std::string &file)
+    {
+      try
+        {
+          read_parameter_file(file);
+        }
+      catch (const Error &error)
+        {
+          return error.what();
+        }
+      return "accepted";
+    }
+
+    static void expect(const std::string &message, const std::string &words)
+    {
+      EXPECT_NE(message.find(words), std::string::npos) << message;
+    }
+
+    const fs::path folder = fs::temp_directory_path() / ("squeal_parameter_file_" + std::to_string(getpid()));
+  };
+
+  using Statements = std::vector<std::string>;
+} // namespace
+
+
+
+TEST_F(ParameterFile, StatementsComeInTheirOrder)
+{
+  const std::string text = "# comment\nset Study = sweep # why\nsubsection  A  B\n\tset  c   d =  1, \\\n  2\nend\nSUBSECTION E\nSET f =\nEND\n";
+  EXPECT_EQ(statements(write("a.prm", text)), (Statements{"Study=sweep", "A B/", "A B/c d=1, 2", "E/", "E/f="}));
+  EXPECT_EQ(statements(write("empty.prm", "")), Statements());
+  EXPECT_EQ(statements(write("no_end_of_line.prm", "set a = b=c")), Statements{"a=b=c"});
+  const auto read = read_parameter_file((folder / "a.prm").string());
+  EXPECT_NE(read[2].where.find("a.prm, line 4"), std::string::npos) << read[2].where;
+}
+
+
+
+TEST_F(ParameterFile, ByteOrderMarksAndLineEndsOfOtherSystemsAreRead)
+{
+  EXPECT_EQ(statements(write("a.prm", "\xEF\xBB\xBFset a = 1\r\nset b = 2\r\n")), (Statements{"a=1", "b=2"}));
+}
+
+
+
+TEST_F(ParameterFile, IncludesAreFollowed)
+{
+  write("below/inner.prm", "subsection C\nset d = 2\nend\n");
+  write("below/outer.prm", "include inner.prm\n"); // beside the file that includes it
+  EXPECT_EQ(statements(write("a.prm", "subsection B\ninclude below/outer.prm\nset e = 3\nend\n")),
+            (Statements{"B/", "B/C/", "B/C/d=2", "B/e=3"}));
+  // Twice is no cycle
+  EXPECT_EQ(statements(write("twice.prm", "include below/inner.prm\ninclude below/inner.prm\n")).size(), 4u);
+  const std::string missing = refusal(write("missing.prm", "\ninclude nothing.prm\n"));
+  expect(missing, "cannot be read");
+  expect(missing, "missing.prm, line 2, which includes `nothing.prm`");
+  write("below/open.prm", "subsection A\n");
+  expect(refusal(write("b.prm", "include below/open.prm\nend\n")), "section `A` is not closed");
+  write("below/end.prm", "end\n");
+  expect(refusal(write("b.prm", "subsection A\ninclude below/end.prm\n")), "`end` closes no section");
+}
+
+
+
+TEST_F(ParameterFile, FilesThatIncludeThemselvesAreNamed)
+{
+  const std::string self = refusal(write("self.prm", "include self.prm\n"));
+  expect(self, "a parameter file includes itself: ");
+  expect(self, "self.prm, line 1");
+  const std::string a = write("a.prm", "include b.prm\n"), b = write("b.prm", "\ninclude c.prm\n"), c = write("c.prm", "include ./b.prm\n");
+  // Only b and c turn in a circle
+  expect(refusal(a), "includes itself: " + b + " -> " + c + " -> " + b);
+  expect(refusal(a), "c.prm, line 1");
+}
+
+
+
+TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)
+{
+  expect(refusal(write("a.prm", std::string("\xFF\xFEs\0e\0t\0", 8))), "encoded as UTF-16");
+  expect(refusal(write("a.prm", std::string("\xFE\xFF\0s\0e\0t", 8))), "encoded as UTF-16");
+  const std::string zero = refusal(write("a.prm", std::string("set a = 1\nset b\0 = 2\n", 21)));
+  expect(zero, "zero byte");
+  expect(zero, "line 2");
+  expect(refusal(folder.string()), "is a directory");
+  expect(refusal((folder / "none.prm").string()), "cannot be read");
+  expect(refusal(write("a.prm", "end\n")), "`end` closes no section");
+  expect(refusal(write("a.prm", "subsection A\n\nset b = 1\n")), "a.prm, line 1");
+  expect(refusal(write("a.prm", "set b\n")), "`set b` has no `=`");
+  expect(refusal(write("a.prm", "friction = 3\n")), "`friction = 3` is no line of a parameter file");
+  expect(refusal(write("a.prm", "subsection A\nend of it\n")), "`end of it` is no line");
+}
