@@ -14,6 +14,11 @@ namespace Squeal
     return circular_frequency / (2. * M_PI);
   }
 
+  double band_radius(const double largest_circular_frequency)
+  {
+    return std::hypot(1., largest_rate_of_band) * largest_circular_frequency;
+  }
+
   ModalQuantities modal_quantities(const std::complex<double> &lambda)
   {
     const double R = lambda.real(), omega = lambda.imag();

@@ -1,9 +1,13 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_count_estimate.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
+#include <string>
 
 namespace Squeal
 {
@@ -79,6 +83,22 @@ namespace Squeal
         }
       const double height = highest - lowest;
       return {height, content / height, lateral / height};
+    }
+
+    /// Of the edges of the elements of a body [m].
+    double longest_edge(const HexMesh &mesh, const unsigned int volume)
+    {
+      double longest = 0.;
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        if (hexahedron.volume == volume)
+          for (const auto &corners : face_corners)
+            for (unsigned int i = 0; i < 4; ++i)
+              {
+                const Point edge =
+                  difference(mesh.points[hexahedron.nodes[corners[i]]], mesh.points[hexahedron.nodes[corners[(i + 1) % 4]]]);
+                longest = std::max(longest, std::hypot(edge[0], edge[1], edge[2]));
+              }
+      return longest;
     }
 
     // ------------------------------------------------------------------ waves
@@ -169,5 +189,28 @@ namespace Squeal
           estimate.pins += pin_modes(body, WaveSpeeds(materials.pin), largest_circular_frequency);
       }
     return estimate;
+  }
+
+  void check_wave_resolution(const HexMesh            &mesh,
+                             const MaterialParameters &materials,
+                             const unsigned int        degree,
+                             const double              largest_circular_frequency)
+  {
+    for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
+      {
+        const std::string &name      = mesh.volume_names[volume];
+        const bool         is_disc   = name == PhysicalNames::disc;
+        const double       frequency = hertz(largest_circular_frequency);
+        const double       wave      = WaveSpeeds(is_disc ? materials.disc : materials.pin).shear / frequency;
+        const double       edge      = longest_edge(mesh, volume);
+        if (wave * degree >= edge)
+          continue;
+        std::ostringstream what, change;
+        what << "shear waves of " << frequency << " Hz are " << wave << " m long in " << name << ", whose elements measure up to " << edge
+             << " m: the mesh does not resolve the modes of the band";
+        change << "lower it below " << wave * degree / edge * frequency << " Hz, choose smaller elements, or correct "
+               << (is_disc ? "Disc" : "Pin") << " material/Young modulus and Density";
+        throw ParameterError(what.str(), "parameter Band/Maximum frequency", change.str());
+      }
   }
 } // namespace Squeal

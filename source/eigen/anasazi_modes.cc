@@ -78,8 +78,9 @@ namespace Squeal
     using Operator = Epetra_Operator;
     using Problem  = Anasazi::BasicEigenproblem<double, Vectors, Operator>;
 
-    const int n          = A.mass().NumGlobalRows();
-    const int block_size = std::min(request.block_size, n);
+    // The basis and one more block must be linearly independent.
+    const int n          = A.n_free();
+    const int block_size = std::max(1, std::min(request.block_size, n / 4));
 
     Teuchos::RCP<Vectors> start = Teuchos::rcp(new Vectors(random_vectors(A.mass().DomainMap(), block_size, request.seed)));
     A.project(*start);
@@ -97,7 +98,7 @@ namespace Squeal
     // time that a restart would lose.
     const int n_blocks =
       std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)),
-               (n - 1) / block_size);
+               n / block_size - 1);
 
     Teuchos::ParameterList parameters;
     parameters.set("Verbosity", static_cast<int>(Anasazi::Errors));
@@ -110,7 +111,7 @@ namespace Squeal
     // not converged is left to another start against the modes found.
     parameters.set("Maximum Restarts", 0);
     // Blocks between two looks at convergence, each a dense Schur form of all blocks so far.
-    parameters.set("Step Size", 4);
+    parameters.set("Step Size", std::max(4, n_blocks / 16));
     parameters.set("Convergence Tolerance", request.tolerance);
     parameters.set("Relative Convergence Tolerance", true);
     parameters.set("Orthogonalization", "DGKS");

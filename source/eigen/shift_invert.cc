@@ -37,4 +37,11 @@ namespace Squeal
   {
     return M;
   }
+
+
+
+  int ShiftInvert::n_free() const
+  {
+    return M.NumGlobalRows() - (deflated != nullptr ? deflated->NumVectors() : 0);
+  }
 } // namespace Squeal

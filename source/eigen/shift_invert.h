@@ -31,6 +31,9 @@ namespace Squeal
 
     const SparseMatrix &mass() const;
 
+    /// Dimension of the complement.
+    int n_free() const;
+
   private:
     const LinearOperator &inverse;
     const SparseMatrix   &M;

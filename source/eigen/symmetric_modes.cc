@@ -3,6 +3,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
+#include <squeal/eigen/uncoupled_parts.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <Epetra_Comm.h>
@@ -281,6 +282,46 @@ namespace Squeal
       bool                           lifted = false;
       std::unique_ptr<Factorization> factorization;
     };
+    /// The modes of all uncoupled parts in one order.
+    SymmetricModes
+    modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
+    {
+      const std::vector<Epetra_Map> maps = uncoupled_parts(K);
+      std::vector<SymmetricModes>   parts;
+      SymmetricModes                all;
+      for (const Epetra_Map &map : maps)
+        {
+          const auto part_K = part(K, map), part_M = part(M, map);
+          parts.push_back(Solver(*part_K, *part_M, limit, options).modes());
+          all.n_rigid_body += parts.back().n_rigid_body;
+          all.n_counted += parts.back().n_counted;
+        }
+      if (all.n_counted == 0)
+        return all;
+
+      struct Place
+      {
+        std::size_t part;
+        int         mode;
+      };
+      std::vector<Place> order;
+      for (std::size_t p = 0; p < parts.size(); ++p)
+        for (std::size_t j = 0; j < parts[p].eigenvalues.size(); ++j)
+          order.push_back({p, static_cast<int>(j)});
+      std::stable_sort(order.begin(), order.end(), [&](const Place &a, const Place &b) {
+        return parts[a.part].eigenvalues[a.mode] < parts[b.part].eigenvalues[b.mode];
+      });
+      all.vectors = std::make_shared<MultiVector>(K.DomainMap(), static_cast<int>(order.size()));
+      for (std::size_t column = 0; column < order.size(); ++column)
+        {
+          const SymmetricModes &modes = parts[order[column].part];
+          const int             mode  = order[column].mode;
+          all.eigenvalues.push_back(modes.eigenvalues[mode]);
+          all.residuals.push_back(modes.residuals[mode]);
+          insert_part(view(*modes.vectors, mode, 1), static_cast<int>(column), *all.vectors);
+        }
+      return all;
+    }
   } // namespace
 
 
@@ -292,6 +333,6 @@ namespace Squeal
       throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²",
                         options.what,
                         "give a positive end of the band");
-    return Solver(K, M, largest_eigenvalue, options).modes();
+    return options.by_parts ? modes_by_parts(K, M, largest_eigenvalue, options) : Solver(K, M, largest_eigenvalue, options).modes();
   }
 } // namespace Squeal

@@ -36,6 +36,10 @@ namespace Squeal
     prm.enter_subsection("Real modes");
     add_enum_parameter(prm, "Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
     add_number_parameter(prm, "Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", Double(1e-14, 1e-4));
+    prm.add_parameter("Maximum number of modes", maximum_modes,
+                      "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
+                      "gigabytes, twice as many up to eight times the time. Units: none.",
+                      Integer(1));
     prm.leave_subsection();
 
     prm.enter_subsection("Complex modes");

@@ -1,13 +1,16 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/catalogue.h>
 #include <squeal/parameters/enum_parameter.h>
+#include <squeal/parameters/number_parameter.h>
 #include <squeal/parameters/parameter_file.h>
 #include <squeal/parameters/parameters.h>
 
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <iomanip>
 #include <filesystem>
 #include <numeric>
 #include <sstream>
@@ -16,6 +19,17 @@ namespace Squeal
 {
   namespace
   {
+    /// Distance of -1/β from zero over the radius of the band from which the search for eigenvalues does not meet them [-].
+    constexpr double clear_of_accumulation = 1.2;
+
+    /// Three digits.
+    std::string short_text(const double value)
+    {
+      std::ostringstream text;
+      text << std::setprecision(3) << value;
+      return text.str();
+    }
+
     /// Levenshtein distance without regard to case.
     unsigned int edit_distance(const std::string &a, const std::string &b)
     {
@@ -295,6 +309,21 @@ namespace Squeal
                            "set it to load per side, or Sweep/Map parameter = none");
   }
 
+  void Parameters::check_damping_in_band() const
+  {
+    // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β the faster they are: the finer the mesh, the
+    // more eigenvalues lie there. The list of eigenvalues must end before.
+    const double radius = clear_of_accumulation * band_radius(circular_frequency(discretization.maximum_frequency));
+    for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
+      if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
+        throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) + " s, gathers the real eigenvalues of all "
+                             "overdamped waves at -1/beta = " + exact_text(-1. / beta) + " 1/s, within reach of the band",
+                             std::string("parameter ") + section + "/Rayleigh beta",
+                             "give less than " + short_text(1. / radius) + " s, let the band end below " +
+                               short_text(hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius))) +
+                               " Hz, or give Damping/Modal damping ratio instead");
+  }
+
   void Parameters::check() const
   {
     geometry.check();
@@ -305,6 +334,7 @@ namespace Squeal
     reduction.check();
     sweep.check();
     check_map();
+    check_damping_in_band();
     solvers.check();
   }
 } // namespace Squeal

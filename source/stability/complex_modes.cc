@@ -86,11 +86,6 @@ namespace Squeal
     }
   } // namespace
 
-  double band_radius(const double largest_circular_frequency)
-  {
-    return std::hypot(1., largest_rate_of_band) * largest_circular_frequency;
-  }
-
   MultiVector force_residuals(const CoupledSystem                     &system,
                               const double                             mu,
                               const std::vector<std::complex<double>> &lambda,

@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/matrix_operator.h>

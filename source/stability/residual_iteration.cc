@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/static_modes.h>
 #include <squeal/stability/residual_iteration.h>

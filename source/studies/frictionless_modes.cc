@@ -13,6 +13,21 @@ namespace Squeal
   {
     /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
     constexpr double label_band = 1.2;
+
+    /// Refuses a band with more modes than allowed before any mode is computed: counting them takes one factorisation.
+    void check_number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
+    {
+      run.progress.begin("Mode count");
+      const int n = count_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass,
+                                largest_circular_frequency * largest_circular_frequency, "real modes of the coupled system");
+      const unsigned int allowed   = run.parameters.solvers.maximum_modes;
+      const double       frequency = hertz(largest_circular_frequency);
+      if (n > static_cast<int>(allowed))
+        throw ParameterError(text(n, " modes lie below ", frequency, " Hz, more than the ", allowed, " allowed"),
+                             "parameter Real modes/Maximum number of modes",
+                             "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; time grows up to its cube");
+      run.progress.finish(text(n, " below ", frequency, " Hz by inertia"));
+    }
   } // namespace
 
   std::size_t n_in_band(const std::vector<double> &eigenvalues, const double largest_eigenvalue)
@@ -69,16 +84,16 @@ namespace Squeal
     result.shift      = stabilizing_shift(*scene.model, coupled, omega_max);
 
     // -------------------------------------------------------- component modes
+    check_number_of_modes(coupled, (1. + margin) * omega_max, run);
+
     const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);
     const auto   components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
       SymmetricModesOptions component_options = options;
       component_options.what                  = name;
       run.progress.update(name);
       component_options.shift = component == Component::disc ? disc_shift * disc_shift : 0.;
-      // Pins are alike: every mode of one comes once for each of them, bending modes twice, and a block finds the members
-      // of such a cluster together.
-      if (component == Component::pins)
-        component_options.block_size = std::max<int>(8, 2 * scene.n_pins());
+      // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
+      component_options.by_parts = component == Component::pins;
       return component_modes(*scene.model, linearisation.interface, scene.system, component, boundary, band * band * limit, component_options);
     };
     run.progress.begin("Component modes");

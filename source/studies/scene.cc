@@ -1,5 +1,6 @@
 #include <squeal/assembly/elasticity.h>
 #include <squeal/base/conventions.h>
+#include <squeal/bases/mode_count_estimate.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/linear_algebra/sparse.h>
@@ -15,13 +16,35 @@ namespace Squeal
     return mesh.volume_names.size() - 1;
   }
 
+  namespace
+  {
+    /**
+     * Poisson's ratio from which trilinear elements lock: bending frequencies of pins on the default mesh are 1 % higher beside
+     * those of quadratic elements than at 0.25, at 0.499 it is 2.7 %.
+     */
+    constexpr double locking_poisson_ratio = 0.47;
+
+    void warn_of_locking(Run &run)
+    {
+      const MaterialParameters &materials = run.parameters.materials;
+      for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
+        if (run.parameters.discretization.degree == 1 && material.poisson_ratio >= locking_poisson_ratio)
+          run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
+                                 locking_poisson_ratio, " on bending frequencies are more than 1 % too high, growth rates off by a third "
+                                 "and more; set Discretization/Degree = 2"));
+    }
+  } // namespace
+
   Scene mesh_scene(Run &run)
   {
     const Parameters &parameters = run.parameters;
     Scene             scene;
+    warn_of_locking(run);
     run.progress.begin("Mesh");
     scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces(), run.communicator);
     const MeshQuality quality = check_mesh(scene.mesh);
+    check_wave_resolution(scene.mesh, parameters.materials, parameters.discretization.degree,
+                          circular_frequency(parameters.discretization.maximum_frequency));
     run.count("elements", scene.mesh.hexahedra.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ",

@@ -1,6 +1,7 @@
 #include "scenes.h"
 
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/geometry/generate_mesh.h>
@@ -81,4 +82,18 @@ TEST(ModeCountEstimate, GrowsWithTheCubeOfTheFrequencyInTheEnd)
   const HexMesh mesh = four_pins();
   const double  n    = expected_number_of_modes(mesh, mounted(), 1e8).coupled();
   EXPECT_NEAR(expected_number_of_modes(mesh, mounted(), 2e8).coupled() / n, 8., 0.1);
+}
+
+TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
+{
+  const HexMesh      mesh = four_pins();
+  MaterialParameters soft_pins = mounted();
+  soft_pins.pin.young_modulus *= 1e-3;
+  EXPECT_NO_THROW(check_wave_resolution(mesh, mounted(), 1, circular_frequency(12000.)));
+  EXPECT_THROW(check_wave_resolution(mesh, soft_pins, 1, circular_frequency(5000.)), ParameterError);
+  EXPECT_NO_THROW(check_wave_resolution(mesh, soft_pins, 1, circular_frequency(500.)));
+  // Nodes of quadratic elements are twice as dense
+  const double omega = circular_frequency(1000.);
+  EXPECT_THROW(check_wave_resolution(mesh, soft_pins, 1, 1.5 * omega), ParameterError);
+  EXPECT_NO_THROW(check_wave_resolution(mesh, soft_pins, 2, 1.5 * omega));
 }

@@ -226,3 +226,49 @@ TEST(SymmetricModes, CountAgreesWithDenseEigenvalues)
       EXPECT_EQ(count_modes(*body.stiffness, *body.mass, limit, "test"), j + 1);
     }
 }
+
+
+
+TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
+{
+  // Seven equal chains of 60 masses, whose entries alternate: every eigenvalue comes seven times.
+  constexpr int n_chains = 7, length = 60;
+  const auto    map      = rows(n_chains * length, distribution());
+  const auto    K        = sparse(map, map, [](const int i) {
+    Row row = {{i, 2.}};
+    for (const int j : {i - n_chains, i + n_chains})
+      if (j >= 0 && j < n_chains * length)
+        row[j] = -1.;
+    return row;
+  });
+  const auto M = Testing::diagonal(map, [](int) { return 1.; });
+
+  const double         limit = 0.05;
+  const SymmetricModes whole = symmetric_modes(*K, *M, limit, options);
+  options.by_parts           = true;
+  const SymmetricModes parts = symmetric_modes(*K, *M, limit, options);
+  check_modes(*K, *M, limit, parts);
+  ASSERT_EQ(parts.eigenvalues.size(), whole.eigenvalues.size());
+  EXPECT_EQ(parts.eigenvalues.size() % n_chains, 0u);
+  for (std::size_t j = 0; j < parts.eigenvalues.size(); ++j)
+    {
+      EXPECT_NEAR(parts.eigenvalues[j] / whole.eigenvalues[j], 1., 1e-11);
+      const double omega = 2. * std::sin(0.5 * M_PI * (j / n_chains + 1.) / (length + 1.));
+      EXPECT_NEAR(parts.eigenvalues[j] / (omega * omega), 1., 1e-11);
+    }
+}
+
+
+
+// The basis must leave room for one more block.
+TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
+{
+  constexpr int n   = 420;
+  const auto    map = rows(n, distribution());
+  const auto    K   = Testing::diagonal(map, [](const int i) { return 1. + i / 12; });
+  const auto    M   = Testing::diagonal(map, [](int) { return 1.; });
+  options.block_size         = 24;
+  const SymmetricModes modes = symmetric_modes(*K, *M, 7.5, options);
+  check_modes(*K, *M, 7.5, modes);
+  EXPECT_EQ(modes.eigenvalues.size(), 84u);
+}

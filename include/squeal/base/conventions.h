@@ -19,6 +19,18 @@ namespace Squeal
   /// Quantities of a complex eigenvalue @p lambda [rad/s], of which Im λ ≥ 0.
   ModalQuantities modal_quantities(const std::complex<double> &lambda);
 
+  /// Rates |Re λ| up to this part of the band's end belong to the band [-].
+  inline constexpr double largest_rate_of_band = 0.1;
+
+  /**
+   * Radius ρ [1/s] of a band that ends at ω_max [rad/s]: of its eigenvalues are listed all with |λ| ≤ ρ,
+   *
+   *   ρ = ω_max √(1 + 0.1²),
+   *
+   * among them all with 0 < Im λ ≤ ω_max and |Re λ| ≤ 0.1 ω_max. What grows or decays faster depends on the mesh.
+   */
+  double band_radius(double largest_circular_frequency);
+
   /// Frequencies below this part of the band's end count as zero: those of a body that can move freely [-].
   inline constexpr double zero_frequency = 1e-4;
 

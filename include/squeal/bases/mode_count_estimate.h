@@ -30,4 +30,13 @@ namespace Squeal
    */
   ModeCountEstimate
   expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, double largest_circular_frequency);
+
+  /**
+   * Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear
+   * wave of @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
+   */
+  void check_wave_resolution(const HexMesh            &mesh,
+                             const MaterialParameters &materials,
+                             unsigned int              degree,
+                             double                    largest_circular_frequency);
 } // namespace Squeal

@@ -32,6 +32,9 @@ namespace Squeal
     /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
     const LinearOperator *inverse = nullptr;
 
+    /// K and M fall into many uncoupled parts, such as pins, each of which is solved alone; without inverse.
+    bool by_parts = false;
+
     FactorizationLibrary library = FactorizationLibrary::automatic;
 
     /// Seed of the random start vectors; results do not depend on it but for rounding.

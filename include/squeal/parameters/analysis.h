@@ -73,6 +73,7 @@ namespace Squeal
   {
     RealSolver           real_solver         = RealSolver::anasazi;
     double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
+    unsigned int         maximum_modes       = 500;   ///< in the band
     ComplexSolver        complex_solver      = ComplexSolver::krylov;
     ShiftInverse         shift_inverse       = ShiftInverse::updated_cholesky;
     double               complex_tolerance   = 1e-9; ///< on the residual ‖Q(λ)φ‖ / ‖Kφ‖ [-]

@@ -53,5 +53,6 @@ namespace Squeal
   private:
     void check_contact_state() const;
     void check_map() const;
+    void check_damping_in_band() const;
   };
 } // namespace Squeal

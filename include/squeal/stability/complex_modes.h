@@ -10,21 +10,9 @@
 
 namespace Squeal
 {
-  /// Rates |Re λ| up to this part of the band's end belong to the band [-].
-  inline constexpr double largest_rate_of_band = 0.1;
-
-  /**
-   * Radius ρ of a band that ends at ω_max [rad/s]: of its eigenvalues are listed all with |λ| ≤ ρ,
-   *
-   *   ρ = ω_max √(1 + 0.1²),
-   *
-   * among them all with 0 < Im λ ≤ ω_max and |Re λ| ≤ 0.1 ω_max. What grows or decays faster depends on the mesh.
-   */
-  double band_radius(double largest_circular_frequency);
-
   /**
    * Eigenvalues of the coupled system with friction in a band, however they were found: the complex modes, 0 < Im λ ≤ the
-   * band's end and |λ| ≤ its radius, ascending in frequency, with coupled displacements φ_c, φᴴ M_c φ = 1; and the real
+   * band's end and |λ| ≤ its radius (band_radius()), ascending in frequency, with coupled displacements φ_c, φᴴ M_c φ = 1; and the real
    * eigenvalues up to the same radius.
    */
   struct ComplexModes

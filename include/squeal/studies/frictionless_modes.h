@@ -23,8 +23,9 @@ namespace Squeal
   };
 
   /**
-   * Component modes, the factorisation, and the real coupled modes up to
-   * (1 + @p margin) times the end of the band, as steps of the run.
+   * The number of real coupled modes by inertia, component modes, the factorisation, and the real coupled modes up to
+   * (1 + @p margin) times the end of the band, as steps of the run. Throws ParameterError if
+   * there are more modes than the parameters allow.
    */
   FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, double margin = 0.);
 

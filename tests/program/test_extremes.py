@@ -1,0 +1,169 @@
+"""Parameters far from the default: the spectrum is right and complete, or the run ends early and says why.
+
+What is found is held against SciPy's dense eigensolver on the exported matrices.
+"""
+
+import os
+import re
+import sys
+import unittest
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from program import SOURCE, ProgramTest, eigenvalues, read_table, real_frequencies
+
+try:
+    import numpy as np
+    import scipy.linalg
+except ImportError:
+    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+import exported_matrices
+
+BAND = 2 * np.pi * 5000
+RADIUS = 1.01**0.5 * BAND
+FRICTION = "Operation/Friction coefficient"
+MATRICES = "Output/Write matrices=true"
+RESIDUAL_ITERATION = "Complex modes/Solver=residual iteration"
+
+# A pin on each side, a disc of one layer
+SMALL = [
+    *(f"Geometry/{side} pin {what}" for side in ("Top", "Bottom") for what in ("radii=0.2275", "angles=0")),
+    "Geometry/Element size=0.05",
+]
+
+
+def dense_eigenvalues(folder, friction_coefficient):
+    """All lambda of an undamped run; of lambda and -lambda the one with Im lambda >= 0, and both real ones."""
+    problem = exported_matrices.couple(exported_matrices.read_matrices(folder), friction_coefficient)
+    squares = -scipy.linalg.eigvals(np.linalg.solve(problem.mass.toarray(), problem.stiffness.toarray()))
+    roots = np.sqrt(squares.astype(complex))
+    roots = np.where(roots.imag < 0, -roots, roots)
+    is_real = abs(roots.imag) <= 1e-7 * abs(roots)
+    real = roots.real[is_real]
+    return roots[~is_real], np.sort(np.concatenate([real, -real]))
+
+
+def in_radius(roots):
+    return [root for root in roots if 0 < root.imag <= BAND and abs(root) <= RADIUS]
+
+
+def real_values(folder):
+    path = folder / "real_eigenvalues.csv"
+    return sorted(float(row["growth rate [1/s]"]) for row in read_table(path)) if path.exists() else []
+
+
+class Extremes(ProgramTest):
+    """In the scene of program.py, unless said otherwise."""
+
+    def succeed(self, output, *overrides, file="scene.prm"):
+        settings = [word for override in overrides for word in ("--set", override)]
+        process = self.call(file, "--output", output, *settings)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return self.folder / output, process.stdout
+
+    def refused(self, mentions, *overrides, dry=False):
+        settings = [word for override in overrides for word in ("--set", override)]
+        process = self.call("scene.prm", "--output", "refused", *settings, *(["--dry-run"] if dry else []))
+        self.assertEqual(process.returncode, 1, process.stdout)
+        self.assertFalse((self.folder / "refused").exists())
+        for word in mentions:
+            self.assertIn(word, process.stderr)
+
+    def assert_spectrum(self, folder, friction_coefficient):
+        """The tables hold every eigenvalue inside the radius and no other."""
+        oscillating, real = dense_eigenvalues(folder, friction_coefficient)
+        self.assert_same_eigenvalues(eigenvalues(folder), in_radius(oscillating), tolerance=1e-6)
+        self.assert_same_eigenvalues(real_values(folder), [value for value in real if abs(value) <= RADIUS], tolerance=1e-6)
+        return oscillating, real
+
+    # ------------------------------------------------------------ real eigenvalues
+
+    def test_large_friction(self):
+        """Static divergence is listed, counted and named; what leaves the radius is left out by both solvers."""
+        n_real = set()
+        for friction_coefficient in (3, 10):
+            folder, screen = self.succeed("friction", *SMALL, f"{FRICTION}={friction_coefficient}", MATRICES)
+            self.assert_spectrum(folder, friction_coefficient)
+            growing = [value for value in real_values(folder) if value > 0]
+            n_real.add(len(growing))
+            self.assertEqual("static divergence" in screen, bool(growing))
+            if growing:
+                found = re.search(r"static divergence: (\d+) real eigenvalues? above zero at mu = \d+, the largest growth rate (\S+) 1/s", screen)
+                self.assertEqual(int(found[1]), len(growing))
+                self.assertAlmostEqual(float(found[2]) / max(growing), 1, delta=1e-3)
+                self.assertIn('"growing real eigenvalues": ' + str(len(growing)), (folder / "run.json").read_text(encoding="utf-8"))
+            for led_by in re.findall(r"led by .* divergence rate of (\S+) %", screen):
+                self.assertLessEqual(float(led_by), 100)
+            other, _ = self.succeed("iterated", *SMALL, f"{FRICTION}={friction_coefficient}", RESIDUAL_ITERATION)
+            self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(folder), tolerance=1e-6)
+            self.assert_same_eigenvalues(real_values(other), real_values(folder), tolerance=1e-6)
+        self.assertNotEqual(n_real, {0})
+
+    # ------------------------------------------------------------ soft mounts
+
+    def test_soft_mounts(self):
+        for stiffness in ("1e3", "1e6", "1e8"):
+            with self.subTest(stiffness):
+                mounts = f"Mounts/Elastic mounts=disc_bore: {stiffness}, {stiffness}, {stiffness}"
+                folder, _ = self.succeed("soft", *SMALL, mounts, MATRICES)
+                oscillating, _ = dense_eigenvalues(folder, 0.4)
+                slowest = 1e-4 * BAND
+                self.assert_same_eigenvalues([value for value in eigenvalues(folder) if abs(value) > slowest],
+                                             [root for root in in_radius(oscillating) if abs(root) > slowest], tolerance=1e-6)
+                other, _ = self.succeed("iterated", *SMALL, mounts, RESIDUAL_ITERATION)
+                self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(folder), tolerance=1e-6)
+
+    def test_stiff_disc(self):
+        folder, _ = self.succeed("stiff", *SMALL, "Disc material/Young modulus=210e15", MATRICES)
+        oscillating, _ = dense_eigenvalues(folder, 0.4)
+        self.assert_same_eigenvalues(eigenvalues(folder), in_radius(oscillating), tolerance=1e-5)
+
+    # ------------------------------------------------------------ wide bands
+
+    def test_small_pins_in_a_wide_band(self):
+        """The block of the solver is large beside the pins' dofs."""
+        folder, screen = self.succeed("wide", "Band/Maximum frequency=10000")
+        found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted", screen).groups())
+        self.assertEqual(found, counted)
+        self.assertEqual(found, len(real_frequencies(folder)))
+
+    def test_band_beyond_the_mesh(self):
+        resolved = ["the mesh does not resolve", "Band/Maximum frequency", "lower it below"]
+        for override in ("Band/Maximum frequency=100000", "Disc material/Young modulus=210e6", "Pin material/Young modulus=1900",
+                         "Pin material/Density=3.07e9"):
+            with self.subTest(override):
+                self.refused([*resolved, "disc" if "100000" in override or "Disc" in override else "pin_top_1"], override)
+        self.refused(resolved, "Pin material/Young modulus=1900", dry=True)
+
+    def test_too_many_modes(self):
+        n = len(real_frequencies(self.run_scene("plain")))
+        cap = "Real modes/Maximum number of modes"
+        self.refused([f"{n} modes lie below 5000 Hz, more than the {n - 1} allowed", "Band/Maximum frequency", cap], f"{cap}={n - 1}")
+        self.succeed("allowed", f"{cap}={n}")
+
+    # ------------------------------------------------------------ damping, locking
+
+    def test_overdamped_waves(self):
+        for material in ("Disc", "Pin"):
+            self.refused([f"{material} material/Rayleigh beta", "-1/beta = -10000 1/s", "give less than 2.64e-05 s", "Modal damping ratio"],
+                         f"{material} material/Rayleigh beta=1e-4")
+        folder, _ = self.succeed("damped", *SMALL, "Disc material/Rayleigh beta=2.6e-5", "Pin material/Rayleigh beta=2.6e-5", MATRICES)
+        problem = exported_matrices.couple(exported_matrices.read_matrices(folder), 0.4)
+        n = problem.size
+        inverse = np.linalg.inv(problem.mass.toarray())
+        companion = np.block([[np.zeros((n, n)), np.eye(n)], [-inverse @ problem.stiffness.toarray(), -inverse @ problem.damping.toarray()]])
+        expected = in_radius(scipy.linalg.eigvals(companion))
+        self.assert_same_eigenvalues(eigenvalues(folder), [root for root in expected if root.imag > 1e-7 * abs(root)], tolerance=1e-6)
+
+    def test_locking(self):
+        note = "note: trilinear elements lock at Pin material/Poisson ratio = 0.49"
+        _, screen = self.succeed("locked", *SMALL, "Pin material/Poisson ratio=0.49")
+        self.assertIn(note, screen)
+        self.assertIn("Discretization/Degree = 2", screen)
+        self.assertNotIn("note: trilinear", self.succeed("plain", *SMALL, "Pin material/Poisson ratio=0.46")[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
