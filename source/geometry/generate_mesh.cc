@@ -6,6 +6,7 @@
 #include <squeal/geometry/mesher.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
+#include <squeal/geometry/problem_size.h>
 
 #include <deal.II/base/mpi.h>
 
@@ -171,6 +172,10 @@ namespace Squeal
       return parameters;
     }
 
+    // The least that a mesh is for; what more it takes is known later
+    constexpr unsigned int least_degree = 1;
+    constexpr double       no_modes     = 0.;
+
     HexMesh mesh_once(const GeometryParameters       &parameters,
                       const std::string              &where,
                       const std::vector<std::string> &additional_surfaces,
@@ -183,6 +188,7 @@ namespace Squeal
         throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
                         "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
       Plan plan = make_plan(gmsh, where);
+      check_memory(expected_size(plan, parameters), least_degree, no_modes, where);
       smooth(plan);
       return extrude(plan, parameters);
     }
@@ -201,8 +207,11 @@ namespace Squeal
     const bool         is_built_in = is_supplied(where) && fs::path(where).filename() == built_in_geometry;
     const int          exponent    = is_built_in ? decimal_exponent(given.disc_outer_radius) : 0;
     GeometryParameters parameters  = in_unit(given, exponent);
+    if (is_built_in)
+      check_memory(expected_size(parameters), least_degree, no_modes, where);
     HexMesh            mesh        = mesh_once(parameters, where, additional_surfaces, communicator);
     check_parts(mesh, additional_surfaces, where);
+    check_bodies(mesh, where);
     for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian; ++attempt)
       {
         parameters.element_size *= smaller_next_time;

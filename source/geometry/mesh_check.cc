@@ -197,7 +197,7 @@ namespace Squeal
                             name == PhysicalNames::pin_side;
         if ((of_disc && !on_disc) || (of_pin && on_disc))
           throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'",
-                          where, "put disc_... on the disc and pin_... on pins");
+                          where, "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
       }
   }
 } // namespace Squeal

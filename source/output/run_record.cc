@@ -55,6 +55,7 @@ namespace Squeal
       tree["counts"][name] = count;
     for (const auto &[name, value] : record.quantities)
       tree["quantities"][name] = value;
+    tree["warnings"] = record.warnings;
     tree["wall time [s]"] = progress.elapsed();
     for (const StepRecord &step : progress.steps())
       tree["steps"].push_back(

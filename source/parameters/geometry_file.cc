@@ -215,4 +215,23 @@ namespace Squeal
       }
     return {};
   }
+
+  GeometryCopy copy_of(const std::string &geometry)
+  {
+    const fs::path original(geometry), folder("geometry");
+    if (is_supplied(geometry))
+      return {{}, original.filename().string()};
+    const std::vector<std::string> files =
+      is_script(geometry) ? GeometryScript(geometry).files() : std::vector<std::string>{geometry};
+    GeometryCopy copy{{}, (folder / original.filename()).string()};
+    for (const std::string &file : files)
+      {
+        const fs::path relative = fs::path(file).lexically_relative(original.parent_path());
+        if (*relative.begin() == "..")
+          copy.name = geometry;
+        else
+          copy.files.push_back({file, (folder / relative).string()});
+      }
+    return copy;
+  }
 } // namespace Squeal

@@ -2,6 +2,7 @@
 #include <squeal/studies/run.h>
 
 #include <cmath>
+#include <fstream>
 #include <ostream>
 
 namespace Squeal
@@ -30,7 +31,7 @@ namespace Squeal
     , screen(screen)
     , is_dry(options.dry_run)
     , is_root(rank(communicator) == 0)
-    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}}
+    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}}
   {
     if (!is_dry)
       results = std::make_unique<ResultFolder>(options.output, is_root);
@@ -51,6 +52,18 @@ namespace Squeal
     record.quantities.emplace_back(name, value);
   }
 
+  void Run::keep_geometry()
+  {
+    for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)
+      results->write(file.to, [&](std::ostream &stream) { stream << std::ifstream(file.from, std::ios::binary).rdbuf(); });
+  }
+
+  void Run::warn(const std::string &text)
+  {
+    progress.note("    warning: " + text);
+    record.warnings.push_back(text);
+  }
+
   void Run::write_table(const std::string &name, const Table &table) const
   {
     screen << "\n  " << name << ".csv\n\n";
@@ -60,7 +73,9 @@ namespace Squeal
 
   void Run::finish()
   {
-    results->write("parameters.prm", [&](std::ostream &stream) { parameters.print(stream, false); });
+    Parameters repeated    = parameters;
+    repeated.geometry.file = copy_of(parameters.geometry.path()).name;
+    results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
     results->commit();
     progress.note(text("  results in ", results->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));

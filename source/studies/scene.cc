@@ -5,6 +5,7 @@
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/linear_algebra/sparse.h>
 #include <squeal/studies/scene.h>
+#include <squeal/studies/scene_summary.h>
 
 #include <algorithm>
 #include <numeric>
@@ -49,6 +50,9 @@ namespace Squeal
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ",
                              quality.worst_scaled_jacobian));
+    summarise_scene(scene.mesh, run);
+    if (!run.is_dry)
+      run.keep_geometry();
 
     run.progress.begin("Contact");
     scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.degree, run.communicator);

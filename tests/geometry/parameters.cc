@@ -58,8 +58,8 @@ TEST(GeometryParameters, EveryTextSaysUnits)
     ++n_documented;
   for (std::size_t at = 0; (at = text.str().find("Units: ", at)) != std::string::npos; ++at)
     ++n_units;
-  EXPECT_EQ(n_documented, 15u);
-  EXPECT_EQ(n_units, 15u);
+  EXPECT_EQ(n_documented, 18u);
+  EXPECT_EQ(n_units, 18u);
 }
 
 TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)

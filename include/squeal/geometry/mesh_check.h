@@ -49,4 +49,11 @@ namespace Squeal
   void check_parts(const HexMesh                  &mesh,
                    const std::vector<std::string> &additional_surfaces,
                    const std::string              &where);
+
+  /**
+   * Throws MeshError, naming @p where, for a body in several pieces, a pin that
+   * touches nothing, and a pin whose clamp and contact are exchanged. Needs
+   * what check_parts() makes sure of.
+   */
+  void check_bodies(const HexMesh &mesh, const std::string &where);
 } // namespace Squeal

@@ -17,6 +17,7 @@ namespace Squeal
     int                                          blas_threads;
     std::vector<std::pair<std::string, long>>    counts;      ///< elements, dofs, contact nodes, modes, ...
     std::vector<std::pair<std::string, double>>  quantities;  ///< worst element quality, ...
+    std::vector<std::string>                     warnings;    ///< doubts about the input
   };
 
   /// Versions, revision, machine, counts, and time and peak memory of each step, as JSON.

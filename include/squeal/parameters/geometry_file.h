@@ -59,4 +59,22 @@ namespace Squeal
     std::vector<Part>        parts;
     std::vector<std::string> merged; ///< files other than scripts
   };
+
+  /// A geometry with all that it includes, to be kept beside results.
+  struct GeometryCopy
+  {
+    struct File
+    {
+      std::string from, to; ///< path now; name in the copy's folder
+    };
+
+    std::vector<File> files; ///< none of a geometry that comes with the program
+    std::string       name;  ///< with which the copy, or where there is none the geometry itself, is found again
+  };
+
+  /**
+   * What to copy of a geometry, and where to. A file that is included from outside the geometry's own
+   * folder would not be found from the copy; then @p name is the geometry itself.
+   */
+  GeometryCopy copy_of(const std::string &geometry);
 } // namespace Squeal

@@ -47,6 +47,12 @@ namespace Squeal
     void count(const std::string &name, long value);
     void measure(const std::string &name, double value);
 
+    /// Keeps a copy of a geometry of the user's own, so that the results repeat themselves.
+    void keep_geometry();
+
+    /// Prints a doubt about the input and keeps it for the run record.
+    void warn(const std::string &text);
+
     /// Writes NAME.csv and shows the table.
     void write_table(const std::string &name, const Table &table) const;
 

@@ -1,0 +1,105 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/geometry/mesh_check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Disjoint sets of nodes.
+    class Sets
+    {
+    public:
+      explicit Sets(const std::size_t size)
+        : parent(size)
+      {
+        std::iota(parent.begin(), parent.end(), 0u);
+      }
+
+      unsigned int root(unsigned int node)
+      {
+        while (parent[node] != node)
+          node = parent[node] = parent[parent[node]];
+        return node;
+      }
+
+      void join(const unsigned int a, const unsigned int b)
+      {
+        parent[root(a)] = root(b);
+      }
+
+    private:
+      std::vector<unsigned int> parent;
+    };
+
+    void check_connected(const HexMesh &mesh, const std::string &where)
+    {
+      Sets sets(mesh.points.size());
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        for (const unsigned int node : hexahedron.nodes)
+          sets.join(node, hexahedron.nodes[0]);
+      std::vector<std::map<unsigned int, std::size_t>> pieces(mesh.volume_names.size()); // elements, by root
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        ++pieces[hexahedron.volume][sets.root(hexahedron.nodes[0])];
+      for (std::size_t volume = 0; volume < pieces.size(); ++volume)
+        if (pieces[volume].size() > 1)
+          {
+            std::string sizes;
+            for (const auto &[root, size] : pieces[volume])
+              sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
+            throw MeshError("Volume '" + mesh.volume_names[volume] + "' is in " + std::to_string(pieces[volume].size()) +
+                              " pieces that share no node, of " + sizes + " elements",
+                            where, "join them (Coherence, BooleanUnion or common curves), or give every pin a physical volume of its own");
+          }
+    }
+
+    /// Nodes of a named surface, by the volume they belong to.
+    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh &mesh, const std::vector<unsigned int> &volume_of_node, const char *name)
+    {
+      std::vector<std::set<unsigned int>> result(mesh.volume_names.size());
+      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+        if (mesh.surface_names[quadrilateral.surface] == name)
+          for (const unsigned int node : quadrilateral.nodes)
+            result[volume_of_node[node]].insert(node);
+      return result;
+    }
+
+    double distance(const HexMesh &mesh, const std::set<unsigned int> &some, const std::set<unsigned int> &others)
+    {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const unsigned int a : some)
+        for (const unsigned int b : others)
+          nearest = std::min(nearest, std::hypot(mesh.points[a][0] - mesh.points[b][0], mesh.points[a][1] - mesh.points[b][1],
+                                                 mesh.points[a][2] - mesh.points[b][2]));
+      return nearest;
+    }
+  } // namespace
+
+  void check_bodies(const HexMesh &mesh, const std::string &where)
+  {
+    check_connected(mesh, where);
+
+    std::vector<unsigned int> volume_of_node(mesh.points.size(), 0);
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const unsigned int node : hexahedron.nodes)
+        volume_of_node[node] = hexahedron.volume;
+    const std::set<unsigned int> disc     = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
+    const auto                   contacts = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
+    const auto                   clamps   = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
+    for (std::size_t pin = 1; pin < mesh.volume_names.size(); ++pin)
+      {
+        const std::string &name = mesh.volume_names[pin];
+        if (contacts[pin].empty())
+          throw MeshError("'" + name + "' has no face on 'pin_contact', so it touches nothing", where,
+                          "put its face on the disc into the physical surface 'pin_contact', or leave the volume out");
+        if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
+          throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it", where,
+                          "exchange the names 'pin_clamp' and 'pin_contact' there");
+      }
+  }
+} // namespace Squeal

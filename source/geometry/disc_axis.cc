@@ -1,0 +1,193 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/geometry/disc_axis.h>
+#include <squeal/geometry/outer_faces.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/tensor.h>
+
+#include <cmath>
+#include <sstream>
+#include <vector>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Vector = dealii::Tensor<1, 3>;
+
+    constexpr double pi = 3.14159265358979323846;
+
+    // A face fits an axis if rotation moves it along its normal by less than this [radius].
+    constexpr double fitting_motion = 5e-4;
+
+    // Lateral faces: normals further from the axis than 60°.
+    constexpr double largest_lateral_cosine = 0.5;
+
+    // Motion beyond which a face hardly counts: from large to fitting_motion, lest the first fit decide
+    constexpr double first_scale = 0.1, scale_decrease = 0.8;
+    constexpr int    n_weightings = 40;
+
+    // What is_misplaced() does not mind
+    constexpr double negligible_angle  = 0.1 * pi / 180.;
+    constexpr double negligible_offset = 1e-3; ///< [radius]
+    constexpr double clearly_rounder   = 0.1;  ///< share of the lateral area
+
+    struct Face
+    {
+      Vector place, normal; ///< from the centre of the disc [radius]; unit normal
+      double area;
+    };
+
+    struct Surface
+    {
+      std::vector<Face> faces;
+      Vector            centre; ///< [m]
+      double            radius; ///< unit of length [m]
+    };
+
+    /// A rotation about an axis: velocity a × x + v.
+    struct Motion
+    {
+      Vector a, v;
+
+      double normal_velocity(const Face &face) const
+      {
+        return face.normal * (cross_product_3d(a, face.place) + v);
+      }
+    };
+
+    Surface disc_surface(const HexMesh &mesh)
+    {
+      Surface                   surface;
+      std::vector<FaceGeometry> geometry;
+      double                    area = 0.;
+      for (const OuterFace &face : outer_faces(mesh))
+        if (mesh.volume_names[face.volume] == PhysicalNames::disc)
+          {
+            geometry.push_back(face_geometry(mesh, face.nodes));
+            const FaceGeometry &last = geometry.back();
+            const double        size = std::hypot(last.area_normal[0], last.area_normal[1], last.area_normal[2]);
+            for (unsigned int d = 0; d < 3; ++d)
+              surface.centre[d] += size * last.centre[d];
+            area += size;
+          }
+      surface.centre /= area;
+      surface.radius = std::sqrt(area / (2. * pi));
+      for (const FaceGeometry &face : geometry)
+        {
+          const Vector normal({face.area_normal[0], face.area_normal[1], face.area_normal[2]});
+          const Vector place({face.centre[0], face.centre[1], face.centre[2]});
+          if (normal.norm() > 0.)
+            surface.faces.push_back({(place - surface.centre) / surface.radius, normal / normal.norm(), normal.norm() / area});
+        }
+      return surface;
+    }
+
+    /// The motion with |a| = 1 of least weighted normal velocity.
+    Motion least_motion(const Surface &surface, const std::vector<double> &weights)
+    {
+      // Quadratic form of (a, v), with n·(a × x) = a·(x × n); v eliminated
+      dealii::SymmetricTensor<2, 3> aa, vv;
+      dealii::Tensor<2, 3>          av;
+      for (std::size_t i = 0; i < weights.size(); ++i)
+        {
+          const Face  &face = surface.faces[i];
+          const double w    = weights[i] * face.area;
+          const Vector q    = cross_product_3d(face.place, face.normal);
+          aa += w * symmetrize(outer_product(q, q));
+          vv += w * symmetrize(outer_product(face.normal, face.normal));
+          av += w * outer_product(q, face.normal);
+        }
+      constexpr double              regularisation = 1e-12; // of a surface that may slide along a direction
+      const auto                    inverse = dealii::Tensor<2, 3>(invert(vv + regularisation * dealii::unit_symmetric_tensor<3>()));
+      const dealii::SymmetricTensor<2, 3> S = symmetrize(dealii::Tensor<2, 3>(aa) - av * inverse * transpose(av));
+      const Vector                        a = eigenvectors(S, dealii::SymmetricTensorEigenvectorMethod::jacobi)[2].second;
+      return {a, -(inverse * (transpose(av) * a))};
+    }
+
+    /// Share of the lateral area that a motion leaves where it is.
+    double fitting_share(const Surface &surface, const Motion &motion)
+    {
+      double lateral = 0., fitting = 0.;
+      for (const Face &face : surface.faces)
+        if (std::abs(face.normal * motion.a) < largest_lateral_cosine)
+          {
+            lateral += face.area;
+            fitting += std::abs(motion.normal_velocity(face)) < fitting_motion ? face.area : 0.;
+          }
+      return lateral > 0. ? fitting / lateral : 0.;
+    }
+
+    std::string print(const std::array<double, 3> &vector, const double negligible)
+    {
+      std::ostringstream text;
+      text.precision(4);
+      for (unsigned int d = 0; d < 3; ++d)
+        text << (d > 0 ? ", " : "(") << (std::abs(vector[d]) < negligible ? 0. : vector[d]);
+      text << ")";
+      return text.str();
+    }
+  } // namespace
+
+  bool DiscAxis::is_misplaced(const double disc_radius) const
+  {
+    return (angle > negligible_angle || offset > negligible_offset * disc_radius) && round > round_about_z + clearly_rounder;
+  }
+
+  DiscAxis find_disc_axis(const HexMesh &mesh)
+  {
+    const Surface       surface = disc_surface(mesh);
+    std::vector<double> weights(surface.faces.size(), 1.);
+    Motion              motion = least_motion(surface, weights);
+    double              scale  = first_scale;
+    for (int i = 0; i < n_weightings; ++i)
+      {
+        for (std::size_t f = 0; f < weights.size(); ++f)
+          weights[f] = 1. / (1. + std::pow(motion.normal_velocity(surface.faces[f]) / scale, 2));
+        motion = least_motion(surface, weights);
+        scale  = std::max(fitting_motion, scale_decrease * scale);
+      }
+
+    // The point of the axis next to the centre of the disc; a sense that reads well
+    const Vector to_axis = surface.radius * cross_product_3d(motion.a, motion.v);
+    const Vector centre  = surface.centre + to_axis;
+    unsigned int largest = 2;
+    for (const unsigned int d : {0, 1})
+      if (std::abs(motion.a[d]) > std::abs(motion.a[largest]) + 1e-6)
+        largest = d;
+    const double sense = motion.a[largest] < 0. ? -1. : 1.;
+
+    const Vector z({0., 0., 1.});
+    DiscAxis     axis;
+    for (unsigned int d = 0; d < 3; ++d)
+      {
+        axis.direction[d] = sense * motion.a[d];
+        axis.centre[d]    = centre[d];
+      }
+    axis.angle         = std::atan2(cross_product_3d(z, motion.a).norm(), std::abs(z * motion.a));
+    axis.offset        = std::hypot(centre[0], centre[1]);
+    axis.round         = fitting_share(surface, motion);
+    axis.round_about_z = fitting_share(surface, {z, cross_product_3d(z, surface.centre) / surface.radius});
+    return axis;
+  }
+
+  double disc_radius(const HexMesh &mesh)
+  {
+    double radius = 0.;
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      if (mesh.volume_names[hexahedron.volume] == PhysicalNames::disc)
+        for (const unsigned int node : hexahedron.nodes)
+          radius = std::max(radius, std::hypot(mesh.points[node][0], mesh.points[node][1]));
+    return radius;
+  }
+
+  void check_disc_axis(const DiscAxis &axis, const HexMesh &mesh, const std::string &where)
+  {
+    const double radius = disc_radius(mesh);
+    if (axis.is_misplaced(radius))
+      throw MeshError("The disc turns about the z axis, but it is round about the axis through " + print(axis.centre, 1e-6 * radius) +
+                        " m in direction " + print(axis.direction, 1e-6),
+                      where,
+                      "move and turn all volumes so that the axis of the disc is the z axis, e.g. by Translate and Rotate in the geometry");
+  }
+} // namespace Squeal

@@ -1,0 +1,175 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/memory_limit.h>
+#include <squeal/bases/mode_count_estimate.h>
+#include <squeal/geometry/disc_axis.h>
+#include <squeal/geometry/outer_faces.h>
+#include <squeal/geometry/problem_size.h>
+#include <squeal/studies/scene_summary.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    // Bodies and materials of machines, from a desk toy to a turbine and from rubber to beryllium
+    struct Range
+    {
+      double least, greatest;
+
+      bool contains(const double value) const
+      {
+        return value >= least && value <= greatest;
+      }
+    };
+    constexpr Range disc_radii       = {5e-3, 5.};     ///< [m]
+    constexpr Range heights          = {1e-5, 1.};     ///< [m]
+    constexpr Range densities        = {50., 25000.};  ///< [kg/m³]
+    constexpr Range bar_speeds       = {20., 20000.};  ///< [m/s]
+    constexpr Range disc_masses      = {1e-3, 2e4};    ///< [kg]
+
+    constexpr double least_round = 0.5;  ///< share of the lateral area of a round disc [-]
+    constexpr double most_modes  = 500.; ///< that a user is likely to mean [-]
+    constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
+
+    bool are_alike(const BodySummary &a, const BodySummary &b)
+    {
+      const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
+      return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume);
+    }
+
+    std::string range_text(const Range &range, const char *unit)
+    {
+      return text(range.least, " to ", range.greatest, " ", unit);
+    }
+
+    std::string describe(const BodySummary &body, const bool is_disc)
+    {
+      const std::string waves = text("bar waves ", body.bar_speed, " m/s");
+      if (is_disc)
+        return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ", body.volume,
+                    " m^3, ", body.mass, " kg; ", waves);
+      const std::string names = body.names.size() == 1 ? body.names[0] : text(body.names.size(), " pins like ", body.names[0]);
+      return text("    ", names, ": ", body.height, " m high, ", body.contact_area, " m^2 on the disc, ", body.volume, " m^3, ", body.mass,
+                  " kg", body.names.size() == 1 ? "; " : " each; ", waves);
+    }
+  } // namespace
+
+  std::vector<BodySummary> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
+  {
+    // Each body by itself
+    constexpr double         infinity = std::numeric_limits<double>::infinity();
+    std::vector<BodySummary> bodies;
+    std::vector<Range>       z(mesh.volume_names.size(), {infinity, -infinity});
+    for (const std::string &name : mesh.volume_names)
+      {
+        const Material &material = name == PhysicalNames::disc ? materials.disc : materials.pin;
+        bodies.push_back({{name}, infinity, 0., 0., 0., 0., 0., std::sqrt(material.young_modulus / material.density)});
+      }
+    std::vector<unsigned int> volume_of_node(mesh.points.size(), 0);
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const unsigned int node : hexahedron.nodes)
+        volume_of_node[node] = hexahedron.volume;
+    for (std::size_t node = 0; node < mesh.points.size(); ++node)
+      {
+        BodySummary  &body   = bodies[volume_of_node[node]];
+        Range        &extent = z[volume_of_node[node]];
+        const double  radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
+        body.inner_radius    = std::min(body.inner_radius, radius);
+        body.outer_radius    = std::max(body.outer_radius, radius);
+        extent.least         = std::min(extent.least, mesh.points[node][2]);
+        extent.greatest      = std::max(extent.greatest, mesh.points[node][2]);
+      }
+    for (const OuterFace &face : outer_faces(mesh))
+      {
+        const FaceGeometry geometry = face_geometry(mesh, face.nodes);
+        for (unsigned int d = 0; d < 3; ++d)
+          bodies[face.volume].volume += geometry.centre[d] * geometry.area_normal[d] / 3.; // divergence theorem
+      }
+    for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
+      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
+        {
+          const auto n = face_geometry(mesh, face.nodes).area_normal;
+          bodies[volume_of_node[face.nodes[0]]].contact_area += std::hypot(n[0], n[1], n[2]);
+        }
+
+    // Pins that are alike
+    std::vector<BodySummary> result;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        bodies[b].height = z[b].greatest - z[b].least;
+        bodies[b].mass   = bodies[b].volume * (b == 0 ? materials.disc : materials.pin).density;
+        const auto same  = std::find_if(result.begin(), result.end(),
+                                       [&](const BodySummary &other) { return &other != &result[0] && are_alike(other, bodies[b]); });
+        if (b > 0 && same != result.end())
+          same->names.push_back(bodies[b].names[0]);
+        else
+          result.push_back(bodies[b]);
+      }
+    return result;
+  }
+
+  std::vector<std::string> implausible(const std::vector<BodySummary> &bodies, const MaterialParameters &materials)
+  {
+    std::vector<std::string> result;
+    const BodySummary       &disc = bodies[0];
+    if (!disc_radii.contains(disc.outer_radius))
+      result.push_back(text("the disc has an outer radius of ", disc.outer_radius, " m; lengths are in metres"));
+    for (const BodySummary &body : bodies)
+      if (!heights.contains(body.height))
+        result.push_back(text(body.names[0], " extends ", body.height, " m along z; lengths are in metres"));
+    if (!disc_masses.contains(disc.mass))
+      result.push_back(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
+    for (const auto &[material, section] : {std::make_pair(&materials.disc, "Disc material"), std::make_pair(&materials.pin, "Pin material")})
+      {
+        if (!densities.contains(material->density))
+          result.push_back(text(section, "/Density is ", material->density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
+        if (const double speed = std::sqrt(material->young_modulus / material->density); !bar_speeds.contains(speed))
+          result.push_back(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
+                                "; moduli are in Pa, densities in kg/m^3"));
+      }
+    return result;
+  }
+
+  void summarise_scene(const HexMesh &mesh, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    const double      band       = parameters.discretization.maximum_frequency;
+
+    // Bodies
+    const std::vector<BodySummary> bodies = summarise_bodies(mesh, parameters.materials);
+    double                         pins   = 0.;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        run.progress.note(describe(bodies[b], b == 0));
+        pins += b == 0 ? 0. : bodies[b].names.size() * bodies[b].mass;
+      }
+    run.measure("disc outer radius [m]", bodies[0].outer_radius);
+    run.measure("disc thickness [m]", bodies[0].height);
+    run.measure("disc mass [kg]", bodies[0].mass);
+    run.measure("pins mass [kg]", pins);
+
+    // Modes and memory
+    const unsigned int degree  = parameters.discretization.degree;
+    const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band)).coupled();
+    const ProblemSize  size    = expected_size(mesh, degree);
+    const double       bytes   = size.memory(degree, std::min(n_modes, most_modes));
+    run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9, " GB of memory; ",
+                           available_memory() / 1e9, " GB are available"));
+    run.measure("expected modes [-]", n_modes);
+    run.measure("expected memory [byte]", bytes);
+
+    // Doubts
+    const DiscAxis axis = find_disc_axis(mesh);
+    check_disc_axis(axis, mesh, parameters.geometry.path());
+    if (axis.round_about_z < least_round)
+      run.warn(text("the disc is not round about the z axis, about which it turns: ", std::round(100. * axis.round_about_z),
+                    " % of its lateral area is"));
+    for (const std::string &doubt : implausible(bodies, parameters.materials))
+      run.warn(doubt);
+    if (n_modes > most_modes)
+      run.warn(text("some ", n_modes, " modes are expected, which takes long: lower Band/Maximum frequency, or check units"));
+    check_memory(size, degree, std::min(n_modes, most_modes), parameters.geometry.path());
+  }
+} // namespace Squeal

@@ -1,0 +1,140 @@
+#include "scenes.h"
+
+#include <squeal/geometry/mesh_check.h>
+#include <squeal/geometry/plan_untangling.h>
+#include <squeal/geometry/problem_size.h>
+
+using namespace Scenes;
+
+namespace
+{
+  const double pi = std::acos(-1.);
+
+  /// Two pins of each row, those above turned against those below.
+  GeometryParameters askew(const double spread, const unsigned int nodes_per_pin_face, const double element_size)
+  {
+    GeometryParameters parameters;
+    parameters.top                = {{0.1970, 0.1970, 0.2585, 0.2585}, {0., spread, 0., spread}};
+    parameters.bottom             = {{0.1970, 0.1970, 0.2585, 0.2585}, {0., 18.4, 0., 18.4}};
+    parameters.nodes_per_pin_face = nodes_per_pin_face;
+    parameters.element_size       = element_size;
+    parameters.pin_layers         = 1;
+    return parameters;
+  }
+} // namespace
+
+TEST(Layouts, PinsThatOverlapAskewAreMeshed)
+{
+  for (const double spread : {24., 30., 33.})
+    for (const unsigned int nodes : {7, 19})
+      for (const double size : {0.012, 0.02, 0.03})
+        {
+          SCOPED_TRACE(std::to_string(spread) + " degrees, " + std::to_string(nodes) + " nodes, " + std::to_string(size) + " m");
+          const GeometryParameters parameters = askew(spread, nodes, size);
+          const HexMesh            mesh       = generate_mesh(parameters);
+          EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, smallest_scaled_jacobian);
+
+          // Every pin is a regular polygon at its place
+          const unsigned int k = nodes == 7 ? 1 : 2;
+          EXPECT_NEAR(volume(mesh, "pin_"), 8. * 3. * k * std::pow(parameters.pin_diameter / 2., 2) * std::sin(pi / (3. * k)) * parameters.pin_height,
+                      1e-10);
+          for (const double angle : {0., spread})
+            {
+              unsigned int on_circle = 0;
+              for (const unsigned int node : nodes_on(mesh, "pin_contact"))
+                on_circle += mesh.points[node][2] > 0. &&
+                             std::abs(std::hypot(mesh.points[node][0] - 0.1970 * std::cos(angle * pi / 180.),
+                                                 mesh.points[node][1] - 0.1970 * std::sin(angle * pi / 180.)) -
+                                      parameters.pin_diameter / 2.) < 1e-9;
+              EXPECT_EQ(on_circle, 6 * k);
+            }
+        }
+}
+
+TEST(Layouts, InvertedFacesAreTurnedOver)
+{
+  // A grid of 4 x 4 faces whose inner nodes are mirrored
+  std::vector<Plan::Point> points;
+  std::vector<bool>        fixed;
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i)
+      {
+        const bool inside = i > 0 && i < 4 && j > 0 && j < 4;
+        points.push_back({{inside ? 4. - i : double(i), double(j)}});
+        fixed.push_back(!inside);
+      }
+  std::vector<Plan::Face> faces;
+  for (unsigned int j = 0; j < 4; ++j)
+    for (unsigned int i = 0; i < 4; ++i)
+      faces.push_back({{5 * j + i, 5 * j + i + 1, 5 * j + i + 6, 5 * j + i + 5}});
+  untangle(faces, fixed, {}, points);
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i)
+      {
+        EXPECT_NEAR(points[5 * j + i][0], i, 0.1);
+        EXPECT_NEAR(points[5 * j + i][1], j, 0.1);
+      }
+
+  // Faces that nothing can help, and faces that need no help, stay
+  std::vector<Plan::Point> flat = {{{0., 0.}}, {{1., 0.}}, {{2., 0.}}, {{3., 0.}}};
+  const auto               before = flat, good = points;
+  untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);
+  EXPECT_EQ(flat, before);
+  untangle(faces, fixed, {}, points);
+  EXPECT_EQ(points, good);
+}
+
+TEST(Layouts, ScaledParametersGiveTheScaledMesh)
+{
+  const HexMesh mesh = generate_mesh(one_pin());
+  for (const int exponent : {-6, -3, 3, 6})
+    {
+      const auto scaled = [exponent](const std::string &value) { return std::stod(value + "e" + std::to_string(exponent)); };
+      GeometryParameters parameters = one_pin();
+      parameters.disc_inner_radius  = scaled("0.1505");
+      parameters.disc_outer_radius  = scaled("0.3155");
+      parameters.disc_thickness     = scaled("0.0463");
+      parameters.pin_diameter       = scaled("0.0520");
+      parameters.pin_height         = scaled("0.0318");
+      parameters.element_size       = scaled("0.02");
+      parameters.pairing_tolerance  = scaled("0.000001");
+      parameters.top.radii          = {scaled("0.23")};
+      const HexMesh other           = generate_mesh(parameters);
+      ASSERT_EQ(other.points.size(), mesh.points.size());
+      for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        for (unsigned int d = 0; d < 3; ++d)
+          EXPECT_NEAR(other.points[i][d] / std::pow(10., exponent), mesh.points[i][d], 1e-15);
+    }
+}
+
+TEST(Layouts, ElementsGrowBetweenThinPins)
+{
+  GeometryParameters parameters;
+  parameters.pin_diameter = 0.001;
+  EXPECT_LT(generate_mesh(parameters).hexahedra.size(), 30000u);
+}
+
+TEST(ProblemSizes, AreKnownBeforeTheMesh)
+{
+  for (const double size : {0.0115, 0.02})
+    {
+      GeometryParameters parameters;
+      parameters.element_size    = size;
+      const HexMesh     mesh     = generate_mesh(parameters);
+      const ProblemSize expected = expected_size(parameters), found = expected_size(mesh, 1);
+      EXPECT_NEAR(expected.hexahedra / found.hexahedra, 1., 0.4);
+      EXPECT_NEAR(expected.dofs / found.dofs, 1., 0.4);
+      EXPECT_EQ(expected.contact_nodes, found.contact_nodes);
+      EXPECT_EQ(found.dofs, 3. * mesh.points.size());
+    }
+}
+
+TEST(ProblemSizes, WhatDoesNotFitIsRefusedBeforehand)
+{
+  GeometryParameters parameters;
+  parameters.disc_layers = 1000000;
+  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available", "Geometry/Disc layers"});
+  parameters.file = "disc_pad.geo";
+  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available"});
+  EXPECT_NO_THROW(check_memory({1e4, 3e4, 200.}, 1, 100., "here"));
+}
