@@ -8,6 +8,10 @@ from the exported matrices and solved by SciPy (ARPACK on the companion form) an
 (two-level orthogonal Arnoldi, MUMPS). Each eigenvalue of the table is held against the nearest one found, one to
 one. The exit status is 1 when a difference exceeds the tolerance, a count differs or the matrices are not what
 they should be.
+
+Where a body can move freely the stiffness is singular, and the eigenvalues are sought about a real shift that is
+chosen here. Where the table estimates the errors of its eigenvalues, as that of the residual iteration does, they may
+differ by three times the largest estimate.
 """
 
 import argparse
@@ -28,10 +32,19 @@ import exported_matrices
 import slepc_toar
 
 STRUCTURE_TOLERANCE = 1e-10
+# Largest relative difference of eigenvalues that the table says nothing about the accuracy of
+TOLERANCE = 1e-8
+# The largest of the errors that a run estimates may be that much too small
+ESTIMATE_SAFETY = 3.0
+# Of a stiffness that is singular but for rounding
+SINGULAR_CONDITION = 1e12
 
 
 def read_modes(path):
-    """Labels and eigenvalues of a table with the columns `frequency [Hz]` and `growth rate [1/s]`."""
+    """Labels, eigenvalues and, where there are any, estimated errors of a table of modes.
+
+    The columns are `frequency [Hz]`, `growth rate [1/s]` and `estimated error of lambda [-]`.
+    """
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
     columns = {name.split("[")[0].strip(): index for index, name in enumerate(rows[0])}
@@ -42,7 +55,30 @@ def read_modes(path):
     labels = [row[label].strip() if label is not None else "" for row in rows[1:]]
     eigenvalues = [complex(float(row[columns["growth rate"]]), 2 * math.pi * float(row[columns["frequency"]]))
                    for row in rows[1:]]
-    return labels, np.array(eigenvalues, dtype=complex)
+    error = columns.get("estimated error of lambda")
+    errors = [float(row[error]) for row in rows[1:]] if error is not None else []
+    return labels, np.array(eigenvalues, dtype=complex), errors
+
+
+def choose_shift(problem, band):
+    """Zero [1/s], or a twentieth of the band where the stiffness is singular."""
+    n = problem.size
+    try:
+        factor = scipy.sparse.linalg.splu(problem.stiffness.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
+                                          options={"SymmetricMode": True})
+    except RuntimeError:  # exactly singular
+        return 0.05 * 2 * math.pi * band
+    inverse = scipy.sparse.linalg.LinearOperator((n, n), matvec=factor.solve, rmatvec=lambda x: factor.solve(x, trans="T"), dtype=float)
+    condition = scipy.sparse.linalg.norm(problem.stiffness, 1) * scipy.sparse.linalg.onenormest(inverse)
+    return 0.0 if condition < SINGULAR_CONDITION else 0.05 * 2 * math.pi * band
+
+
+def choose_tolerance(errors):
+    """Largest relative difference that is accepted, and where it comes from."""
+    estimate = ESTIMATE_SAFETY * max(errors, default=0.0)
+    if estimate > TOLERANCE:
+        return estimate, f"{ESTIMATE_SAFETY:g} times the largest error that the table estimates"
+    return TOLERANCE, "that of converged eigenvalues"
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
@@ -114,14 +150,14 @@ def main():
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
     parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
-    parser.add_argument("--shift", type=float, default=0.0,
-                        help="real shift in 1/s, other than zero where a body can move freely (default: %(default)s)")
-    parser.add_argument("--tolerance", type=float, default=1e-8, help="largest relative difference (default: %(default)s)")
+    parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen where a body can move freely)")
+    parser.add_argument("--tolerance", type=float,
+                        help=f"largest relative difference (default: {TOLERANCE:g}, or what the table's own estimates allow)")
     arguments = parser.parse_args()
 
     friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
     band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
-    labels, eigenvalues = read_modes(arguments.directory / arguments.modes)
+    labels, eigenvalues, errors = read_modes(arguments.directory / arguments.modes)
     listed = exported_matrices.in_band(eigenvalues, band)
     labels, eigenvalues = [label for label, keep in zip(labels, listed) if keep], eigenvalues[listed]
     file = pathlib.Path(arguments.directory) / "parameters.prm"
@@ -139,6 +175,13 @@ def main():
         print(f"  {description:<28} {error:8.1e}" + ("  <- should vanish" if fails else ""))
 
     problem = exported_matrices.couple(matrices, friction_coefficient)
+    shift = arguments.shift
+    if shift is None:
+        shift = choose_shift(problem, band)
+        if shift != 0:
+            print(f"  a body can move freely: eigenvalues are sought about the shift {shift:.0f} 1/s")
+    tolerance, source = (arguments.tolerance, "as given") if arguments.tolerance is not None else choose_tolerance(errors)
+    print(f"  tolerance {tolerance:.1e}, {source}")
     solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
     if arguments.solver in ("slepc", "both"):
         if slepc_toar.available():
@@ -149,8 +192,8 @@ def main():
             print("SLEPc is not installed; SciPy alone is asked.")
 
     for name, solve in solvers.items():
-        found, vectors = solve(problem, band, max(len(eigenvalues), 1), arguments.shift)
-        right = compare(name, labels, eigenvalues, found, arguments.tolerance) and right
+        found, vectors = solve(problem, band, max(len(eigenvalues), 1), shift)
+        right = compare(name, labels, eigenvalues, found, tolerance) and right
         print(f"{name}: largest backward error {problem.backward_errors(found, vectors).max(initial=0):.1e}")
     sys.exit(0 if right else 1)
 

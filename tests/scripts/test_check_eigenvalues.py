@@ -61,6 +61,32 @@ class CheckEigenvalues(unittest.TestCase):
         self.assertIn("too much", result.stdout)
         self.assertEqual(check(self.run_directory, "--tolerance", "1e-5").returncode, 0)
 
+    def test_allows_for_the_errors_that_the_table_estimates(self):
+        def add_estimates(text, error):
+            lines = text.splitlines()
+            cells = lines[3].split(",")
+            cells[2] = repr(float(cells[2]) * (1 + 1e-6))
+            lines[3] = ",".join(cells)
+            return "\n".join([lines[0] + ",estimated error of lambda [-]"] + [f"{line},{error}" for line in lines[1:]]) + "\n"
+
+        original = (self.run_directory / "complex_modes.csv").read_text(encoding="utf-8")
+        for error, status in {"5e-7": 0, "1e-7": 1, "1e-12": 1}.items():
+            with self.subTest(error):
+                self.edit("complex_modes.csv", lambda _, error=error: add_estimates(original, error))
+                result = check(self.run_directory)
+                self.assertEqual(result.returncode, status, result.stdout)
+                if error == "5e-7":
+                    self.assertIn("tolerance 1.5e-06, 3 times the largest error", result.stdout)
+
+    def test_chooses_a_shift_where_a_body_is_free(self):
+        free = pathlib.Path(self.temporary.name) / "free"
+        two_blocks.write_run(free, is_free=True)
+        self.addCleanup(shutil.rmtree, free)
+        result = check(free)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertIn("can move freely", result.stdout)
+        self.assertNotIn("can move freely", check(self.run_directory).stdout)
+
     def test_refuses_a_table_that_misses_a_mode(self):
         self.edit("complex_modes.csv", lambda text: "".join(text.splitlines(keepends=True)[:-1]))
         result = check(self.run_directory)

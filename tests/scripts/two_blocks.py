@@ -59,8 +59,11 @@ def box(cells, edge, material):
     return stiffness, mass, coordinates
 
 
-def write_run(directory, friction_coefficient=0.4, plate=(5, 4, 1), block=(2, 2, 2), edge=0.01, band=20000.0):
-    """Writes matrices/*.mtx and parameters.prm, and complex_modes.csv from a dense solution when that is small."""
+def write_run(directory, friction_coefficient=0.4, plate=(5, 4, 1), block=(2, 2, 2), edge=0.01, band=20000.0, is_free=False):
+    """Writes matrices/*.mtx and parameters.prm, and complex_modes.csv from a dense solution when that is small.
+
+    The plate of a free run has no springs: it can move in its plane, and turn in it.
+    """
     K_d, M_d, x_d = box(plate, edge, (210e9, 0.3, 7850.0))
     K_p, M_p, x_p = box(block, edge, (1.9e9, 0.25, 3070.0))
     offset = edge * np.array([(plate[0] - block[0]) // 2, (plate[1] - block[1]) // 2 + 1, plate[2]])
@@ -71,7 +74,8 @@ def write_run(directory, friction_coefficient=0.4, plate=(5, 4, 1), block=(2, 2,
     springs = np.zeros(K_d.shape[0])
     for direction, value in enumerate((2.0e6, 2.2e6, 5.0e6)):
         springs[3 * foot + direction] = value * (1 + 0.1 * x_d[foot, 0] / (edge * plate[0]))
-    K_d = K_d + sparse.diags(springs)
+    if not is_free:
+        K_d = K_d + sparse.diags(springs)
     top = np.flatnonzero(x_p[:, 2] > x_p[:, 2].max() - edge / 2)
     free = np.setdiff1d(np.arange(K_p.shape[0]), (3 * top[:, None] + np.arange(3)).ravel())
     new_number = np.full(K_p.shape[0], -1)
@@ -124,12 +128,16 @@ def dense_eigenvalues(M, C_b, K, P_n, P_t, T_c, friction_coefficient, band):
     M, C_b, K, P_n, P_t, T_c = (matrix.toarray() for matrix in (M, C_b, K, P_n, P_t, T_c))
     friction = np.eye(K.shape[0]) - friction_coefficient / 2 * P_t.T @ P_n
     M_c, C_c, K_c = T_c.T @ friction @ M @ T_c, T_c.T @ C_b @ T_c, T_c.T @ friction @ K @ T_c
-    n, scale = K_c.shape[0], math.pi * band
-    flexibility = -np.linalg.solve(K_c, np.hstack([scale * C_c, scale**2 * M_c]))
-    reciprocals = np.linalg.eigvals(np.vstack([flexibility, np.eye(n, 2 * n)]))
-    eigenvalues = scale / reciprocals[reciprocals != 0]
+    # About a shift, with which a free plate has no singular matrix
+    n, scale, shift = K_c.shape[0], math.pi * band, -0.02 * math.pi * band
+    D_c = C_c + shift * M_c
+    Q = K_c + shift * D_c
+    state = np.vstack([np.hstack([-scale * np.linalg.solve(Q, D_c), -scale**2 * np.linalg.solve(Q, M_c)]), np.zeros((n, 2 * n))])
+    state[n:] = np.hstack([np.eye(n), np.zeros((n, n))]) + shift / scale * state[:n]
+    reciprocals = np.linalg.eigvals(state)
+    eigenvalues = shift + scale / reciprocals[reciprocals != 0]
     frequencies = eigenvalues.imag / (2 * math.pi)
-    listed = eigenvalues[(frequencies > 1e-6) & (frequencies <= band)]
+    listed = eigenvalues[(frequencies > 1e-5 * band) & (frequencies <= band)]
     return listed[np.argsort(listed.imag)]
 
 
