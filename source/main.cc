@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/dissipation_study.h>
+#include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/reduction_study.h>
 #include <squeal/studies/stability_study.h>
 #include <squeal/studies/sweep_study.h>
@@ -115,6 +116,8 @@ Decides whether a disc rubbed by friction pins squeals.
     options.dry_run = line.dry_run;
     progress.note("squeal " + std::string(version) + ", " + line.parameter_file);
     Run run(parameters, options, MPI_COMM_WORLD, progress, screen);
+    if (const std::string note = unused_parameters_note(parameters); !note.empty())
+      progress.note(note);
     switch (parameters.study)
       {
         case Study::stability:

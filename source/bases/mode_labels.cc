@@ -387,7 +387,7 @@ namespace Squeal
     return pin ? name : std::string();
   }
 
-  void mark_doublets(std::vector<std::string> &labels)
+  void mark_doublets(std::vector<std::string> &labels, const std::vector<double> &growth_rates)
   {
     std::map<std::string, std::vector<std::size_t>> places;
     for (std::size_t i = 0; i < labels.size(); ++i)
@@ -395,8 +395,9 @@ namespace Squeal
     for (const auto &[label, where] : places)
       if (where.size() == 2 && label != no_label)
         {
-          labels[where[0]] += " -";
-          labels[where[1]] += " +";
+          const bool first_grows_more = !growth_rates.empty() && growth_rates[where[0]] > growth_rates[where[1]];
+          labels[where[first_grows_more ? 1 : 0]] += " -";
+          labels[where[first_grows_more ? 0 : 1]] += " +";
         }
   }
 } // namespace Squeal

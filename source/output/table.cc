@@ -26,7 +26,8 @@ namespace Squeal
       else if (const auto *count = std::get_if<long>(&cell))
         text << *count;
       else if (const auto *number = std::get_if<double>(&cell))
-        text << std::setprecision(significant_digits) << *number;
+        // Adding zero takes the sign of a negative one
+        text << std::setprecision(significant_digits) << *number + 0.;
       return text.str();
     }
 

@@ -274,21 +274,34 @@ namespace Squeal
     return sliding.state == ContactState::steady_sliding || study == Study::dissipation;
   }
 
+  bool Parameters::has_contact_damping() const
+  {
+    // The study of dissipation turns it on whatever the operation says
+    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study == Study::dissipation;
+  }
+
+  bool Parameters::has_friction() const
+  {
+    return study != Study::reduction || reduction.problem == ReductionProblem::friction;
+  }
+
+  bool Parameters::uses_load_per_side() const
+  {
+    if (study == Study::dissipation)
+      return true;
+    return needs_steady_sliding() ? sliding.control == BackplateControl::load_per_side : has_contact_damping();
+  }
+
   void Parameters::check_contact_state() const
   {
     const bool is_steady = needs_steady_sliding();
     if (is_steady)
       sliding.check_steady();
-    // The study of dissipation turns it on whatever the operation says
-    const bool has_contact_damping =
-      operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study == Study::dissipation;
-    const bool uses_load = (!is_steady && has_contact_damping) || study == Study::dissipation ||
-                           (is_steady && sliding.control == BackplateControl::load_per_side);
-    if (uses_load && !(operation.load_per_side > 0.))
+    if (uses_load_per_side() && !(operation.load_per_side > 0.))
       throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero", "parameter Operation/Load per side",
                            "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
                            "Steady sliding/Contact state = equal load");
-    if ((is_steady || has_contact_damping) && !(operation.rotation_speed > 0.))
+    if ((is_steady || has_contact_damping()) && !(operation.rotation_speed > 0.))
       throw ParameterError("the disc does not turn: nothing slides steadily, and contact damping has no sliding speed",
                            "parameter Operation/Rotation speed",
                            "give a positive speed; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "

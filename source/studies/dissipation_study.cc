@@ -38,9 +38,11 @@ namespace Squeal
     }
 
     /// Families in the order of their lowest frequencies; in those of pin modes the members by divergence rate.
-    Table mode_table(std::vector<Reading> all, const std::vector<std::string> &families)
+    Table mode_table(std::vector<Reading> all, const std::vector<std::string> &families, const bool beside_paper)
     {
-      std::vector<Column> columns = {{"label", ""}, {"paper with C_b", "%", 3}};
+      std::vector<Column> columns = {{"label", ""}};
+      if (beside_paper)
+        columns.push_back({"paper with C_b", "%", 3});
       for (const Reading &reading : all)
         columns.push_back({reading.name, "%", 3});
       Table table(columns);
@@ -55,10 +57,13 @@ namespace Squeal
           for (std::size_t member = 0; member < n; ++member)
             {
               const std::string label = n == 2 ? name + (member == 0 ? " -" : " +") : name;
-              const auto        paper = paper_divergence_damped(label);
               std::vector<Cell> cells;
               cells.emplace_back(label);
-              cells.push_back(paper ? Cell(*paper) : Cell());
+              if (beside_paper)
+                {
+                  const auto paper = paper_divergence_damped(label);
+                  cells.push_back(paper ? Cell(*paper) : Cell());
+                }
               for (Reading &reading : all)
                 cells.push_back(member < reading.rates[name].size() ? Cell(reading.rates[name][member]) : Cell());
               table.add_row(std::move(cells));
@@ -68,9 +73,11 @@ namespace Squeal
     }
 
     /// The pin modes that the paper lists as damped: all T1, and of F1 the half that bends radially.
-    Table range_table(std::vector<Reading> all)
+    Table range_table(std::vector<Reading> all, const bool beside_paper)
     {
-      std::vector<Column> columns = {{"damped pin modes", ""}, {"paper with C_b", "%", 2}};
+      std::vector<Column> columns = {{"damped pin modes", ""}};
+      if (beside_paper)
+        columns.push_back({"paper with C_b", "%", 2});
       for (const Reading &reading : all)
         columns.push_back({reading.name, "%", 2});
       Table table(columns);
@@ -79,7 +86,8 @@ namespace Squeal
           {
             std::vector<Cell> cells;
             cells.emplace_back(std::string(range.label) + (lowest ? " most damped" : " least damped"));
-            cells.emplace_back(lowest ? range.lowest : range.highest);
+            if (beside_paper)
+              cells.emplace_back(lowest ? range.lowest : range.highest);
             for (Reading &reading : all)
               {
                 auto &rates = reading.rates[range.label];
@@ -127,15 +135,19 @@ namespace Squeal
         for (std::size_t j = 0; j < friction.labels.size(); ++j)
           {
             const std::string name = family(friction.labels[j]);
-            reading.rates[name].push_back(100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
+            // Of a doublet first the one marked `-`
+            std::vector<double> &rates    = reading.rates[name];
+            const bool           is_first = friction.labels[j] == name + " -";
+            rates.insert(is_first ? rates.begin() : rates.end(), 100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
             if (std::find(families.begin(), families.end(), name) == families.end())
               families.push_back(name);
           }
       }
 
     write_sliding_tables(scene, state, parameters.operation, run);
-    run.write_table("dissipation", mode_table(all, families));
-    run.write_table("dissipation_ranges", range_table(all));
+    const bool beside_paper = is_paper_scene(parameters) && is_paper_operation(parameters);
+    run.write_table("dissipation", mode_table(all, families, beside_paper));
+    run.write_table("dissipation_ranges", range_table(all, beside_paper));
     run.screen << '\n';
     run.finish();
   }

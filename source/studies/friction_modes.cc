@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/stability/krylov_modes.h>
 #include <squeal/stability/residual_iteration.h>
 #include <squeal/studies/friction_modes.h>
@@ -35,6 +36,15 @@ namespace Squeal
       std::vector<bool> result;
       for (const auto &lambda : modes.lambda)
         result.push_back(modal_quantities(lambda).divergence_rate > uncertainty);
+      return result;
+    }
+
+    /// Growth rates of the unstable modes [1/s]; zero for the others.
+    std::vector<double> growth_rates(const FrictionModes &friction)
+    {
+      std::vector<double> result;
+      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
+        result.push_back(friction.unstable[j] ? friction.modes.lambda[j].real() : 0.);
       return result;
     }
   } // namespace
@@ -82,8 +92,8 @@ namespace Squeal
 
     result.unstable   = unstable_modes(modes);
     result.identities = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
-    result.labels     = labels_of(result.identities);
-    run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", mu,
+    result.labels     = labels_of(result.identities, 0, growth_rates(result));
+    run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
                              modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
                              modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ", modes.summary));
     return result;
@@ -110,10 +120,10 @@ namespace Squeal
               }
           }
       const std::size_t n = friction.n_unstable();
-      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", mu);
+      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", exact_text(mu));
       if (leading < lambda.size())
-        result += text(", led by ", friction.labels[leading], " at ", modal_quantities(lambda[leading]).frequency,
-                       " Hz with a divergence rate of ", 100. * highest, " %");
+        result += text(", led by ", friction.labels[leading], " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
+                       " Hz with a divergence rate of ", decimal_text(100. * highest), " %");
       if (n_weak > 0)
         result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");
       if (n_monotonic > 0)
@@ -126,12 +136,12 @@ namespace Squeal
   {
     std::vector<std::string> lines;
     if (const std::size_t n = friction.n_growing_real(); n > 0)
-      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ", mu,
-                           ", the largest growth rate ", friction.modes.real_values.back(), " 1/s"));
+      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ", exact_text(mu),
+                           ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
       lines.push_back(squeal(friction, mu));
     if (lines.empty())
-      lines.push_back(text("  stable: no unstable mode below ", maximum_frequency, " Hz at mu = ", mu));
+      lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz at mu = ", exact_text(mu)));
     return lines;
   }
 

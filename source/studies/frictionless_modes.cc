@@ -35,13 +35,14 @@ namespace Squeal
     return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
-  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, const int n_rigid_body)
+  std::vector<std::string>
+  labels_of(const std::vector<ModeIdentity> &identities, const int n_rigid_body, const std::vector<double> &growth_rates)
   {
     std::vector<std::string> labels;
     for (const ModeIdentity &identity : identities)
       labels.push_back(identity.label);
     std::fill(labels.begin(), labels.begin() + n_rigid_body, "RB");
-    mark_doublets(labels);
+    mark_doublets(labels, growth_rates);
     return labels;
   }
 

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/mode_tables.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -64,6 +65,28 @@ namespace Squeal
           cells.emplace_back(modes.estimated_errors[j]);
         table.add_row(std::move(cells));
       }
+    return table;
+  }
+
+  Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
+  {
+    struct Growing
+    {
+      std::size_t     mode;
+      ModalQuantities quantities;
+    };
+    std::vector<Growing> growing;
+    for (std::size_t j = 0; j < friction.unstable.size(); ++j)
+      if (friction.unstable[j])
+        growing.push_back({j, modal_quantities(friction.modes.lambda[j])});
+    std::stable_sort(growing.begin(), growing.end(),
+                     [](const Growing &a, const Growing &b) { return a.quantities.divergence_rate > b.quantities.divergence_rate; });
+    growing.resize(std::min(growing.size(), n_largest));
+
+    Table table({{"unstable mode", ""}, {"frequency", "Hz", 1}, {"growth rate", "1/s", 2}, {"divergence rate", "%", 4}, {"share", "-", 3}});
+    for (const Growing &mode : growing)
+      table.add_row({friction.labels[mode.mode], mode.quantities.frequency, mode.quantities.growth_rate,
+                     100. * mode.quantities.divergence_rate, friction.identities[mode.mode].share});
     return table;
   }
 

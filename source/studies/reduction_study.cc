@@ -643,7 +643,7 @@ namespace Squeal
     run.write_table("reduction_bases", basis_table(candidates, coupled.map().NumGlobalElements(), full_seconds));
     run.write_table("reduction_errors", error_table(candidates, groups));
     run.write_table("reduction_estimates", estimate_table(candidates, unstable));
-    run.folder().write("reduction_modes.csv", [&](std::ostream &stream) { mode_table(candidates, labels, groups).write_csv(stream); });
+    run.store_table("reduction_modes", mode_table(candidates, labels, groups));
     const bool errors_are_drawn = write_plot("reduction_errors", error_plot(candidates, groups, order), run.folder());
     const bool is_drawn =
       write_plot("reduction_cost",

@@ -64,11 +64,17 @@ namespace Squeal
     record.warnings.push_back(text);
   }
 
-  void Run::write_table(const std::string &name, const Table &table) const
+  void Run::store_table(const std::string &name, const Table &table)
+  {
+    results->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+    tables.push_back(name + ".csv");
+  }
+
+  void Run::write_table(const std::string &name, const Table &table)
   {
     screen << "\n  " << name << ".csv\n\n";
     table.print(screen);
-    results->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+    store_table(name, table);
   }
 
   void Run::finish()
@@ -78,6 +84,10 @@ namespace Squeal
     results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
     results->commit();
+    std::string names;
+    for (const std::string &name : tables)
+      names += (names.empty() ? "" : ", ") + name;
+    progress.note("  tables: " + names);
     progress.note(text("  results in ", results->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
   }
 } // namespace Squeal

@@ -21,14 +21,13 @@ namespace Squeal
   {
     const std::vector<PinContact> pins =
       pin_contacts(*scene.model, scene.interface, state.reactions, state.gaps, state.approach, operation);
-    run.write_table("sliding_pins", pin_table(pins));
-    run.write_table("sliding_certificate", sliding_table(state, pins));
+    run.store_table("sliding_pins", pin_table(pins));
+    run.store_table("sliding_certificate", sliding_table(state, pins));
 
     std::string open;
     for (const PinContact &pin : pins)
       if (pin.n_open > 0)
         open += text(open.empty() ? "" : ", ", pin.pin, pin.n_open == pin.n_nodes ? " (all)" : text(" (", pin.n_open, " of ", pin.n_nodes, ")"));
-    run.screen << '\n';
     run.progress.note("  steady sliding: " + (open.empty() ? "all contact nodes are closed" : "open contact nodes of " + open));
     run.progress.note("  steady sliding: " + uniqueness_note(state.uniqueness));
   }

@@ -19,6 +19,9 @@ namespace Squeal
 {
   namespace
   {
+    /// Unstable modes that the screen shows.
+    constexpr std::size_t n_shown_modes = 20;
+
     // ------------------------------------------------------------------ fields
 
     /// File name of a mode: its place in the table and its label.
@@ -109,9 +112,14 @@ namespace Squeal
 
     // ------------------------------------------------------------ beside the paper
 
-    TableOneResults beside_paper(const FrictionlessModes &frictionless, const FrictionModes &friction)
+    TableOneResults beside_paper(const FrictionlessModes &frictionless, const FrictionModes &friction, const bool with_complex)
     {
-      TableOneResults results{{}, {}, frictionless.labels, {}, friction.labels, friction.modes.lambda};
+      TableOneResults results{{}, {}, frictionless.labels, {}, {}, {}};
+      if (with_complex)
+        {
+          results.complex_labels = friction.labels;
+          results.lambda         = friction.modes.lambda;
+        }
       for (const ComponentModes *set : {&frictionless.disc, &frictionless.pins_sliding})
         {
           std::vector<std::string> labels = set->labels;
@@ -125,6 +133,38 @@ namespace Squeal
       for (const double eigenvalue : frictionless.real.eigenvalues)
         results.coupled_frequencies.push_back(hertz(std::sqrt(eigenvalue)));
       return results;
+    }
+
+    void write_table_one(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+    {
+      const Parameters &parameters = run.parameters;
+      Agreement         agreement;
+      run.store_table("table1", table_one(beside_paper(frictionless, friction, is_paper_operation(parameters)),
+                                          parameters.operation.radial_dissipation, agreement));
+      run.progress.note(text("  beside the paper's Table 1: component frequencies ", 100. * agreement.component, " % rms (",
+                             agreement.n_component, "), coupled ", 100. * agreement.coupled, " % rms (", agreement.n_coupled, ")"));
+    }
+
+    // ----------------------------------------------------------------- the answer
+
+    /// Verdict and unstable modes, which is what most users want to know.
+    void report(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+    {
+      const Parameters &parameters = run.parameters;
+      run.screen << '\n';
+      for (const std::string &line :
+           verdict(friction, parameters.operation.friction_coefficient, parameters.discretization.maximum_frequency))
+        run.progress.note(line);
+      if (friction.n_unstable() > 0)
+        {
+          run.screen << '\n';
+          unstable_table(friction, n_shown_modes).print(run.screen);
+          if (friction.n_unstable() > n_shown_modes)
+            run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
+        }
+      run.screen << '\n';
+      if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
+        run.progress.note(note);
     }
   } // namespace
 
@@ -156,20 +196,16 @@ namespace Squeal
       run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
 
     // ----------------------------------------------------------------- results
+    report(frictionless, friction, run);
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
-    Agreement agreement;
-    run.write_table("component_modes", component_table(frictionless, omega_max * omega_max));
-    run.write_table("real_modes", real_table(frictionless));
-    run.write_table("complex_modes", complex_table(friction.modes, friction.labels, friction.identities));
+    run.store_table("complex_modes", complex_table(friction.modes, friction.labels, friction.identities));
+    run.store_table("real_modes", real_table(frictionless));
+    run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     if (!friction.modes.real_values.empty())
-      run.write_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
-    run.write_table("table1", table_one(beside_paper(frictionless, friction), operation.radial_dissipation, agreement));
-    run.screen << '\n';
-    run.progress.note(text("  beside the paper's Table 1: component frequencies ", 100. * agreement.component, " % rms (",
-                           agreement.n_component, "), coupled ", 100. * agreement.coupled, " % rms (", agreement.n_coupled, ")"));
-    if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
-      run.progress.note(note);
+      run.store_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
+    if (is_paper_scene(parameters))
+      write_table_one(frictionless, friction, run);
 
     if (parameters.output.fields != FieldSelection::none)
       {
@@ -182,8 +218,6 @@ namespace Squeal
       write_matrices(scene, linearisation, run);
     if (run.is_root)
       write_msh(scene.mesh, run.folder().path("mesh.msh"));
-    for (const std::string &line : verdict(friction, operation.friction_coefficient, parameters.discretization.maximum_frequency))
-      run.progress.note(line);
     run.finish();
   }
 } // namespace Squeal

@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/stability/branches.h>
@@ -170,6 +171,17 @@ namespace Squeal
         if (is_in_band(point.lambda[j], largest_frequency) &&
             (result < 0 || modal_quantities(point.lambda[j]).divergence_rate > modal_quantities(point.lambda[result]).divergence_rate))
           result = static_cast<int>(j);
+      return result;
+    }
+
+    /// Of every branch [1/s]; zero for one that never grows.
+    std::vector<double> largest_growth_rates(const StabilityChart &chart)
+    {
+      std::vector<double> result(chart.branches.size(), 0.);
+      for (std::size_t i = 0; i < chart.points.size(); ++i)
+        for (std::size_t b = 0; b < chart.branches.size(); ++b)
+          if (const int j = chart.branches[b].modes[i]; j >= 0 && chart.points[i].verdicts[j] == Verdict::unstable)
+            result[b] = std::max(result[b], chart.points[i].lambda[j].real());
       return result;
     }
 
@@ -451,23 +463,26 @@ namespace Squeal
         return {model->reduced().basis() * real_part(X), model->reduced().basis() * imaginary_part(X)};
       }
 
-      /// Names of branches after the modes with which they begin.
+      /// Names of branches after the modes with which they begin; of a doublet the one that grows most over the chart is `+`.
       std::vector<std::string> labels(const StabilityChart &chart) const
       {
-        std::vector<std::string> result(chart.branches.size());
+        const std::vector<double> growth = largest_growth_rates(chart);
+        std::vector<std::string>  result(chart.branches.size());
         for (std::size_t i = 0; i < chart.points.size(); ++i)
           {
-            std::vector<int> modes, branches;
+            std::vector<int>    modes, branches;
+            std::vector<double> growth_here;
             for (std::size_t b = 0; b < chart.branches.size(); ++b)
               if (const int j = chart.branches[b].modes[i]; j >= 0 && result[b].empty())
                 {
                   modes.push_back(j);
                   branches.push_back(static_cast<int>(b));
+                  growth_here.push_back(growth[b]);
                 }
             if (modes.empty())
               continue;
             const auto [re, im] = shapes(chart.points[i], modes);
-            const auto names    = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im));
+            const auto names    = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im), 0, growth_here);
             for (std::size_t k = 0; k < modes.size(); ++k)
               result[branches[k]] = names[k];
           }
@@ -737,7 +752,7 @@ namespace Squeal
                                          " friction coefficients; of the others nothing was proved");
       return text("  squeal from mu = ", first, " on (", first_label, ")",
                   strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
-                  "; most at mu = ", worst, ": ", label, " at ", frequency, " Hz with ", 100. * largest, " %");
+                  "; most at mu = ", worst, ": ", label, " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");
     }
   } // namespace
 
@@ -775,15 +790,15 @@ namespace Squeal
         }
 
     // ------------------------------------------------------------------ results
+    if (const auto main = results.charts.find(0); main != results.charts.end())
+      run.progress.note("\n" + verdict(main->second, lines[0].friction_coefficients.size(), omega_max));
     std::vector<ChartLine> drawn;
     for (const auto &[l, stretches] : results.charts)
       for (std::size_t s = 0; s < stretches.size(); ++s)
         {
           const ChartLine  &line   = stretches[s];
           const std::string suffix = (lines[l].kind == Line::Kind::main ? "" : "_without_dissipation") + (s > 0 ? text("_", s + 1) : "");
-          const auto write_quietly = [&](const std::string &name, const Table &table) {
-            run.folder().write(name + suffix + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
-          };
+          const auto write_quietly = [&](const std::string &name, const Table &table) { run.store_table(name + suffix, table); };
           write_quietly("branches", branch_table(line.chart, line.labels, omega_max));
           write_quietly("counts", count_table(line.chart));
           run.write_table("thresholds" + suffix, threshold_table(line.chart, line.labels));
@@ -796,12 +811,11 @@ namespace Squeal
       run.write_table("argument_counts", argument_table(results.counts));
     if (regimes.size() > 1)
       {
-        run.folder().write("contact_sets.csv",
-                           [&](std::ostream &stream) { contact_table(lines, regimes, scene.interface.size()).write_csv(stream); });
+        run.store_table("contact_sets", contact_table(lines, regimes, scene.interface.size()));
         run.progress.note(text("  note: ", regimes.size(), " contact sets, see contact_sets.csv; branches end where the set changes"));
       }
     if (!results.map.empty())
-      run.folder().write("map.csv", [&](std::ostream &stream) { map_table(results, parameters.sweep.map_parameter).write_csv(stream); });
+      run.store_table("map", map_table(results, parameters.sweep.map_parameter));
 
     // The paper's figures: without dissipation first, in black
     bool is_drawn = true;
@@ -829,8 +843,6 @@ namespace Squeal
       }
     if (!is_drawn && run.is_root)
       run.progress.note("  note: gnuplot is not installed or failed; `gnuplot NAME.gp` in plots/ draws the pictures");
-    if (const auto main = results.charts.find(0); main != results.charts.end())
-      run.progress.note(verdict(main->second, lines[0].friction_coefficients.size(), omega_max));
     run.finish();
     if (run.is_root)
       std::filesystem::remove_all(checkpoint.folder);

@@ -40,6 +40,13 @@ namespace Squeal
   /// Family and order of a pin mode's label, without the sign of a doublet: `F1`; empty for any other label.
   std::string pin_family(const std::string &label);
 
-  /// Suffix ` -` and ` +`, in order of appearance, to labels that occur exactly twice; none to no_label.
-  void mark_doublets(std::vector<std::string> &labels);
+  /**
+   * Suffixes ` -` and ` +` to labels that occur exactly twice; none to no_label.
+   * ` +` gets the mode that grows, or grows more; where neither grows, the one of
+   * the higher frequency. That is the rule for every table of every study.
+   *
+   * @param labels       of modes in the order of their frequencies
+   * @param growth_rates of each mode, zero for one that does not grow [any unit]; empty: none grows
+   */
+  void mark_doublets(std::vector<std::string> &labels, const std::vector<double> &growth_rates = {});
 } // namespace Squeal

@@ -47,6 +47,15 @@ namespace Squeal
     /// Whether the study solves for the steady sliding state.
     bool needs_steady_sliding() const;
 
+    /// Whether the contact damps the modes of some run of the study: radial dissipation, or friction that depends on the speed.
+    bool has_contact_damping() const;
+
+    /// Whether the study solves for modes with friction; else the friction coefficient only acts on the steady sliding state.
+    bool has_friction() const;
+
+    /// Whether Operation/Load per side presses on anything.
+    bool uses_load_per_side() const;
+
     /// Throws ParameterError where values or their combination make no sense.
     void check() const;
 

@@ -39,8 +39,9 @@ namespace Squeal
                                              const MultiVector       &real_part,
                                              const MultiVector       *imaginary_part);
 
-  /// Labels with the marks of doublets; the first @p n_rigid_body are `RB`.
-  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities, int n_rigid_body = 0);
+  /// Labels with the marks of doublets, see mark_doublets(); the first @p n_rigid_body are `RB`.
+  std::vector<std::string>
+  labels_of(const std::vector<ModeIdentity> &identities, int n_rigid_body = 0, const std::vector<double> &growth_rates = {});
 
   /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);

@@ -4,6 +4,7 @@
 #include <squeal/output/table.h>
 #include <squeal/sliding/steady_sliding.h>
 #include <squeal/stability/complex_modes.h>
+#include <squeal/studies/friction_modes.h>
 #include <squeal/studies/frictionless_modes.h>
 
 #include <string>
@@ -19,6 +20,12 @@ namespace Squeal
 
   /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, and estimates where there are any.
   Table complex_table(const ComplexModes &modes, const std::vector<std::string> &labels, const std::vector<ModeIdentity> &identities);
+
+  /**
+   * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most
+   * @p n_largest rows.
+   */
+  Table unstable_table(const FrictionModes &friction, std::size_t n_largest);
 
   /// Real eigenvalues, fastest growth first: growth rate, kind.
   Table real_eigenvalue_table(const std::vector<double> &values);

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/output/table.h>
-#include <squeal/parameters/operation.h>
+#include <squeal/parameters/parameters.h>
 
 #include <array>
 #include <complex>
@@ -21,6 +21,15 @@ namespace Squeal
     std::vector<std::string>          complex_labels;
     std::vector<std::complex<double>> lambda; ///< [rad/s]
   };
+
+  /**
+   * Whether the parameters describe the scene of the paper's Table 1: shape of disc and pins, materials, mounts and contact
+   * as by default. The mesh and the operation may differ.
+   */
+  bool is_paper_scene(const Parameters &parameters);
+
+  /// Whether friction, load and speed are those of the complex modes in Table 1, and nothing but the contact damps them.
+  bool is_paper_operation(const Parameters &parameters);
 
   /// Root mean square of the relative differences of frequencies [-], and of how many.
   struct Agreement
@@ -44,7 +53,8 @@ namespace Squeal
   /**
    * The paper's Table 1 (D. Brizard, O. Chiello, J.-J. Sinou, X. Lorang, J.
    * Sound Vib. 330 (2011) 703) beside the modes of a run. The complex columns
-   * are those without or with radial dissipation as the run has it. Its
+   * are those without or with radial dissipation as the run has it; without complex
+   * modes in @p results they stay empty. Its
    * component frequency of F1, printed 3353 Hz, is read 3553 Hz.
    */
   Table table_one(const TableOneResults &results, RadialDissipation dissipation, Agreement &agreement);

@@ -53,8 +53,11 @@ namespace Squeal
     /// Prints a doubt about the input and keeps it for the run record.
     void warn(const std::string &text);
 
+    /// Writes NAME.csv.
+    void store_table(const std::string &name, const Table &table);
+
     /// Writes NAME.csv and shows the table.
-    void write_table(const std::string &name, const Table &table) const;
+    void write_table(const std::string &name, const Table &table);
 
     /// Writes the parameters as used and the run record, and gives the folder its name.
     void finish();
@@ -62,6 +65,7 @@ namespace Squeal
   private:
     RunRecord                     record;
     std::unique_ptr<ResultFolder> results;
+    std::vector<std::string>      tables; ///< files, in the order in which they were written
   };
 
   /// One text from several parts; numbers with four digits.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <squeal/parameters/parameters.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// A parameter that a run does not use, and why.
+  struct UnusedParameter
+  {
+    std::string path; ///< "Section/Name"
+    std::string why;
+  };
+
+  /**
+   * Parameters that differ from their defaults and yet change nothing in the results of the run, in the order of their
+   * declaration. Throws MeshError if there is no geometry of the name that the parameters give.
+   */
+  std::vector<UnusedParameter> unused_parameters(const Parameters &parameters);
+
+  /// The same in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
+  std::string unused_parameters_note(const Parameters &parameters);
+
+  /// Paths of all parameters, and sections with "/" at the end, that some run does not use.
+  std::vector<std::string> conditional_parameters();
+} // namespace Squeal
