@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/linear_algebra/replicate.h>
@@ -16,6 +17,8 @@ namespace Squeal
     constexpr double largest_orthonormality_defect = 1e-10;
     /// M-norm of a rigid-body motion outside of given modes below which they contain it.
     constexpr double contained = 1e-6;
+
+    const Decision connected("singular value of the gaps of component vectors / tolerance of their rank", 1.);
 
     std::string where(const BasisKind kind)
     {
@@ -169,7 +172,9 @@ namespace Squeal
 
       const double largest = values.front();
       const int    n_r0    = T_r0.NumVectors();
-      connection.rank      = std::count_if(values.begin(), values.end(), [&](const double value) { return value > tolerance * largest; });
+      connection.rank      = std::count_if(values.begin(), values.end(), [&](const double value) {
+        return connected.exceeded_by(value / largest / tolerance);
+      });
       if (connection.rank == n_r0)
         throw SolverError("no combination of its " + std::to_string(n_r0) + " vectors keeps the contact closed", where(kind),
                           "take more component modes");

@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/contact/contact_interface.h>
 
@@ -15,8 +16,7 @@ namespace Squeal
 
   namespace
   {
-    /// Direction cosines below this are rounding errors of a plane face.
-    constexpr double negligible_cosine = 1e-12;
+    const Decision inclined("direction cosine of the normal of a contact node", 1e-12);
 
     /// Nodes closer to the axis have no sliding direction but that of rounding errors [m].
     constexpr double smallest_axis_distance = 1e-9;
@@ -85,7 +85,7 @@ namespace Squeal
     {
       normal /= normal.norm();
       for (unsigned int k = 0; k < 3; ++k)
-        if (std::abs(normal[k]) < negligible_cosine)
+        if (!inclined.exceeded_by(std::abs(normal[k])))
           normal[k] = 0.;
       normal /= normal.norm();
 

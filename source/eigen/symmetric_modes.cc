@@ -1,6 +1,7 @@
 #include "shift_invert.h"
 
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
@@ -19,6 +20,7 @@ namespace Squeal
   {
     /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
     constexpr double rigid_body_threshold = zero_frequency * zero_frequency;
+    const Decision   elastic("eigenvalue of the symmetric problem / largest wanted one", rigid_body_threshold);
 
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_vain_starts = 4;
@@ -273,7 +275,7 @@ namespace Squeal
 
       bool is_rigid(const double value) const
       {
-        return value < rigid_body_threshold * count.limit;
+        return !elastic.exceeded_by(value / count.limit);
       }
 
       const SparseMatrix            &K, &M;

@@ -1,5 +1,6 @@
 #include "libraries.h"
 
+#include <squeal/base/decision.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <algorithm>
@@ -9,6 +10,8 @@ namespace Squeal
 {
   namespace
   {
+    const Decision definite("smallest pivot / diagonal entry of a Cholesky factor", relative_pivot_tolerance);
+
     class CholmodFactorization : public Factorization
     {
     public:
@@ -121,7 +124,7 @@ namespace Squeal
           throw_not_positive_definite("CHOLMOD", what);
         if (success == 0 || common.status < CHOLMOD_OK)
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the factorisation", what);
-        if (!(smallest_relative_pivot(diagonal) > relative_pivot_tolerance))
+        if (!definite.exceeded_by(smallest_relative_pivot(diagonal)))
           throw_not_positive_definite("CHOLMOD", what);
       }
 

@@ -1,5 +1,6 @@
 #include "blas.h"
 
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/dense_matrix.h>
 
@@ -14,6 +15,9 @@ namespace Squeal
 {
   namespace
   {
+    /// A matrix that is singular leaves 10⁻¹⁷ to 10⁻¹⁵.
+    const Decision regular("reciprocal condition number of a dense matrix", 1e-14);
+
     /// LAPACK wants leading dimensions of at least one, also for empty matrices.
     template <typename Number>
     int leading_dimension(const DenseMatrixOf<Number> &A)
@@ -267,8 +271,7 @@ namespace Squeal
         std::vector<lapack_int> iwork(n);
         LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, factors.column(), n, norm, &rcond, work.data(), iwork.data());
       }
-    // Written so that a NaN counts as singular, too.
-    if (info != 0 || !(rcond > 1e-16) || !std::isfinite(norm))
+    if (info != 0 || !regular.exceeded_by(rcond) || !std::isfinite(norm))
       throw SolverError("a dense matrix of size " + std::to_string(n) +
                           " is singular to working precision",
                         what,

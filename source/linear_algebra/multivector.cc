@@ -1,5 +1,6 @@
 #include "blas.h"
 
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/multivector.h>
 
@@ -254,6 +255,8 @@ namespace Squeal
 
   namespace
   {
+    const Decision independent("norm of a direction among unit vectors / tolerance of their rank", 1.);
+
     /// Whether directions are looked for among the columns as they are or scaled to unit norm.
     enum class Scaling
     {
@@ -335,6 +338,11 @@ namespace Squeal
 
           const double threshold = std::max(resolved * values.back(), smallest);
           int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
+          // Directions between wait for the next pass
+          if (scaling == Scaling::unit_norm)
+            for (const double value : values)
+              if (value <= smallest || value >= threshold)
+                independent.exceeded_by(std::sqrt(std::max(value, 0.) / smallest));
           if (!(values.back() > smallest) || n_rest == k)
             break;
 

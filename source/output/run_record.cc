@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/base/version.h>
 #include <squeal/output/run_record.h>
 
@@ -60,6 +61,16 @@ namespace Squeal
     for (const StepRecord &step : progress.steps())
       tree["steps"].push_back(
         {{"name", step.name}, {"wall time [s]", step.seconds}, {"CPU time [s]", step.cpu_seconds}, {"peak memory so far [byte]", step.peak_memory}, {"result", step.summary}});
+    // Infinite where no value lay on a side: JSON has null for it
+    for (const DecisionRecord &decision : Decision::records())
+      tree["decisions"].push_back({{"quantity", decision.quantity},
+                                   {"threshold", decision.threshold},
+                                   {"nearest below", decision.below},
+                                   {"nearest above", decision.above},
+                                   {"orders of magnitude below", decision.margin_below()},
+                                   {"orders of magnitude above", decision.margin_above()},
+                                   {"times below", decision.n_below},
+                                   {"times above", decision.n_above}});
     stream << tree.dump(2) << '\n';
   }
 } // namespace Squeal

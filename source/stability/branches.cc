@@ -1,4 +1,6 @@
 #include <squeal/base/assignment.h>
+#include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/stability/branches.h>
 #include <squeal/stability/mode_links.h>
@@ -16,10 +18,9 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Divergence rates below this are rounding errors of a neutral mode [-].
-    constexpr double negligible_divergence = 1e-8;
-    /// The same where only rounding errors of λ of a multiple mode count [-].
-    constexpr double least_divergence = 1e-11;
+    const Decision divergent("divergence rate of a mode of a chart", negligible_divergence);
+    /// The same where only rounding errors of λ of a multiple mode count.
+    const Decision just_divergent("divergence rate of a mode among others of nearly the same lambda", 1e-11);
     /// An estimated error may be that much too small.
     constexpr double safety = 3.;
     /// Weight of closeness of λ beside overlaps of vectors.
@@ -37,13 +38,13 @@ namespace Squeal
 
     bool is_neutral(const Complex &lambda)
     {
-      return std::abs(lambda.real()) <= negligible_divergence * lambda.imag();
+      return !divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag());
     }
 
-    /// −1: decays, 0: neutral, 1: grows, by more than @p negligible per radian.
-    int growth_class(const Complex &lambda, const double negligible = negligible_divergence)
+    /// −1: decays, 0: neutral, 1: grows, by as much per radian as @p counts.
+    int growth_class(const Complex &lambda, const Decision &counts = divergent)
     {
-      return std::abs(lambda.real()) <= negligible * lambda.imag() ? 0 : lambda.real() > 0. ? 1 : -1;
+      return !counts.exceeded_by(std::abs(lambda.real()) / lambda.imag()) ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
     Complex square_difference(const Complex &x, const Complex &y)
@@ -252,7 +253,7 @@ namespace Squeal
         add_overlaps(carried.left, points[k + 1].left);
         // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
         const auto grow_alike = [](const Complex &x, const Complex &y) {
-          return growth_class(x, least_divergence) == growth_class(y, least_divergence);
+          return growth_class(x, just_divergent) == growth_class(y, just_divergent);
         };
         const double weight = block.resolved ? closeness_weight : 1.;
         return best_assignment(n, n, [&](const int i, const int j) {
@@ -816,9 +817,9 @@ namespace Squeal
         for (const Search &search : searches)
           {
             const auto [threshold, left] = zero(search);
-            const double share = uncertainty(search, threshold), total = left + share;
+            const double total = left + uncertainty(search, threshold);
             if (search.kind == Search::growth || search.kind == Search::coalescence)
-              result.thresholds.push_back({threshold, total, share, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
+              result.thresholds.push_back({threshold, total, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
                                            search.kind == Search::growth ? ThresholdMechanism::zero_growth : ThresholdMechanism::coalescence,
                                            search.branch, search.partner, lambda_at(search, threshold)});
             else
@@ -868,7 +869,7 @@ namespace Squeal
 
   bool is_growing(const Complex &lambda)
   {
-    return lambda.real() > negligible_divergence * lambda.imag();
+    return lambda.real() > 0. && divergent.exceeded_by(lambda.real() / lambda.imag());
   }
 
   StabilityChart stability_chart(const std::vector<double> &grid, const EvaluateChart &evaluate, const ChartOptions &options)

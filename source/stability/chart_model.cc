@@ -108,8 +108,8 @@ namespace Squeal
         modes.contact_damping      = set.point.damping;
         for (const int j : set.modes)
           modes.lambda.push_back(set.chart->lambda[j]);
-        modes.right = padded(selected_columns(set.chart->right, set.modes), model.size());
-        modes.left  = padded(selected_columns(set.chart->left, set.modes), model.size());
+        modes.right = padded(orthonormal_in_clusters(selected_columns(set.chart->right, set.modes), modes.lambda), model.size());
+        modes.left  = padded(orthonormal_in_clusters(selected_columns(set.chart->left, set.modes), modes.lambda), model.size());
         std::vector<int> all(set.modes.size());
         std::iota(all.begin(), all.end(), 0);
         const CoupledSystem here = with_contact_damping(system, set.point.damping);
@@ -136,7 +136,7 @@ namespace Squeal
     DenseMatrix         Y;
     for (const ChartPoint &chart : charts)
       for (const ComplexDenseMatrix *X : {&chart.right, &chart.left})
-        append_scaled(Y, *X, chart.lambda);
+        append_scaled(Y, orthonormal_in_clusters(*X, chart.lambda), chart.lambda);
     const DenseMatrix R = gram(T, M * real_modes);
     Y                   = add(Y, multiply(R, multiply(R, Y, true)), -1.);
 

@@ -1,4 +1,5 @@
 #include <squeal/base/assignment.h>
+#include <squeal/base/decision.h>
 #include <squeal/stability/mode_links.h>
 
 #include <algorithm>
@@ -24,8 +25,8 @@ namespace Squeal
     constexpr double dependent = 1e-13;
     /// The same of vectors so close to a coalescence that rounding decides on the rest.
     constexpr double defective = 1e-7;
-    /// |Im δ²| / |δ²| of a real δ².
-    constexpr double real_discriminant = 1e-6;
+    const Decision complex_discriminant("Im / modulus of the square of a difference of two eigenvalues", 1e-6);
+    const Decision distinguishable("difference of two eigenvalues / their modulus", indistinguishable);
 
     /// xᴴ y. Products of std::complex look for infinities first, which costs several times as much.
     Complex product(const Complex *x, const Complex *y, const int n)
@@ -388,7 +389,7 @@ namespace Squeal
     std::iota(cluster.begin(), cluster.end(), 0);
     for (std::size_t i = 0; i < lambda.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
-        if (cluster[i] != cluster[j] && std::abs(lambda[i] - lambda[j]) <= indistinguishable * std::abs(lambda[i]))
+        if (cluster[i] != cluster[j] && !distinguishable.exceeded_by(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i])))
           join(cluster, cluster[i], cluster[j]);
     return cluster;
   }
@@ -432,6 +433,19 @@ namespace Squeal
     return basis;
   }
 
+  ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<Complex> &lambda)
+  {
+    ComplexDenseMatrix result = vectors;
+    for (const std::vector<int> &members : members_of(mode_clusters(lambda)))
+      if (members.size() > 1)
+        {
+          const ComplexDenseMatrix Q = orthonormal_basis(selected_columns(vectors, members)).Q;
+          for (std::size_t j = 0; j < members.size(); ++j)
+            std::copy_n(Q.column(static_cast<int>(j)), Q.n_rows(), result.column(members[j]));
+        }
+    return result;
+  }
+
   Transformation transformation(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
   {
     const OrthonormalBasis basis = orthonormal_basis(first);
@@ -456,7 +470,7 @@ namespace Squeal
   int pair_sign(const Complex &lambda_1, const Complex &lambda_2)
   {
     const Complex square = (lambda_1 - lambda_2) * (lambda_1 - lambda_2);
-    if (std::abs(square.imag()) > real_discriminant * std::abs(square))
+    if (complex_discriminant.exceeded_by(std::abs(square.imag()) / std::abs(square)))
       return 0;
     return square.real() > 0. ? 1 : -1;
   }

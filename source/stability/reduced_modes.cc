@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/stability/reduced_modes.h>
 
@@ -14,14 +15,14 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Im λ below this part of the largest frequency counts as zero: a multiple real λ splits into pairs by rounding.
-    constexpr double real_fraction = 1e-7;
+    /// A defective double zero splits into ± √(rounding).
+    const Decision nonzero("|lambda| of a reduced mode / end of the band", zero_frequency);
+    /// A multiple real λ splits into pairs by rounding.
+    const Decision oscillating("Im lambda of a reduced mode / end of the band", 1e-7);
     /// Estimates of ill-conditioned eigenvalues are not claimed.
     constexpr double largest_condition = 1e3;
     /// An estimated error may be that much too small.
     constexpr double safety = 3.;
-    /// Divergence rates below this are rounding errors of a neutral mode [-].
-    constexpr double negligible_divergence = 1e-8;
 
     MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
     {
@@ -41,7 +42,7 @@ namespace Squeal
 
     bool is_real(const Complex lambda, const double largest_frequency)
     {
-      return std::abs(lambda.imag()) <= real_fraction * largest_frequency;
+      return !oscillating.exceeded_by(std::abs(lambda.imag()) / largest_frequency);
     }
 
     /**
@@ -51,10 +52,9 @@ namespace Squeal
     void separate_real(ReducedModes &modes, const double largest_frequency)
     {
       // What holds for an oscillating value holds for its conjugate, too
-      const double     limit = zero_frequency * largest_frequency;
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        if (const Complex l = modes.lambda[j]; std::abs(l) <= limit)
+        if (const Complex l = modes.lambda[j]; !nonzero.exceeded_by(std::abs(l) / largest_frequency))
           modes.n_zeros += 2;
         else if (is_real(l, largest_frequency))
           modes.real_values.insert(modes.real_values.end(), 2, l.real());
@@ -64,7 +64,7 @@ namespace Squeal
         modes = selected(modes, others);
 
       auto      &values = modes.real_values;
-      const auto end    = std::remove_if(values.begin(), values.end(), [limit](const double l) { return std::abs(l) <= limit; });
+      const auto end    = std::remove_if(values.begin(), values.end(), [&](const double l) { return !nonzero.exceeded_by(std::abs(l) / largest_frequency); });
       modes.n_zeros += static_cast<int>(values.end() - end);
       values.erase(end, values.end());
       std::sort(values.begin(), values.end());
@@ -208,10 +208,10 @@ namespace Squeal
 
     DenseMatrix               vectors = modes.stiffness;
     const std::vector<double> squares = symmetric_eigenvalues(vectors, modes.mass);
-    const double              limit   = band_limit(largest_frequency, end), zero = zero_frequency * largest_frequency;
+    const double              limit   = band_limit(largest_frequency, end);
     std::vector<int>          kept;
     for (std::size_t j = 0; j < squares.size(); ++j)
-      if (squares[j] <= zero * zero)
+      if (!nonzero.exceeded_by(std::sqrt(std::max(squares[j], 0.)) / largest_frequency))
         modes.n_zeros += 2;
       else if (squares[j] <= limit * limit)
         {

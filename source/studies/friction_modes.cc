@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/stability/krylov_modes.h>
@@ -11,8 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Divergence rates below this are rounding errors of a neutral mode of the Krylov solver [-].
-    constexpr double negligible_divergence = 1e-8;
+    const Decision growing("divergence rate of a complex mode / its uncertainty", 1.);
 
     /// Divergence rates that the least structural damping outweighs [-].
     constexpr double weak_divergence = 1e-4;
@@ -35,7 +35,7 @@ namespace Squeal
         uncertainty = std::max(uncertainty, estimate_safety * error);
       std::vector<bool> result;
       for (const auto &lambda : modes.lambda)
-        result.push_back(modal_quantities(lambda).divergence_rate > uncertainty);
+        result.push_back(growing.exceeded_by(modal_quantities(lambda).divergence_rate / uncertainty));
       return result;
     }
 

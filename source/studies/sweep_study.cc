@@ -27,10 +27,6 @@ namespace Squeal
   {
     /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
     constexpr double band_margin = 0.05;
-    /// Thresholds less certain, as far as modes answer for it, than this times the tolerance of the search get vectors of
-    /// their own, in so many rounds.
-    constexpr double threshold_safety         = 10.;
-    constexpr int    maximum_threshold_rounds = 2;
 
     // ------------------------------------------------------------- what is asked
 
@@ -380,25 +376,13 @@ namespace Squeal
             },
             options);
         };
-        // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. Which do, the
-        // values of the grid tell.
+        // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
+        // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
         ChartOptions coarse        = options;
         coarse.maximum_refinements = 0;
-        const auto open_round      = [&](const int round) {
-          refinements = open_store(text("line_", line, "_from_", friction_coefficients.front(), "_round_", round));
-        };
-        ChartLine result{title(line), {}, {}};
-        open_round(0);
+        refinements = open_store(text("line_", line, "_from_", friction_coefficients.front()));
         sharpen(line, chart_of(coarse), friction_coefficients);
-        for (int round = 1;; ++round)
-          {
-            result.chart = chart_of(options);
-            if (round == maximum_threshold_rounds)
-              break;
-            open_round(round);
-            if (!sharpen(line, result.chart, friction_coefficients))
-              break;
-          }
+        ChartLine result{title(line), chart_of(options), {}};
         refinements.reset();
         result.labels = labels(result.chart);
         const StabilityChart &chart = result.chart;
@@ -410,50 +394,39 @@ namespace Squeal
       }
 
       /**
-       * Adds to the basis what the modes of uncertain thresholds lack on both sides, and forgets the results
-       * there and at refinements: they were found without it. Returns whether there was anything to add.
+       * Adds to the basis what the modes of all thresholds lack on both sides, and forgets the results
+       * there: they were found without it.
        */
-      bool sharpen(const int line, const StabilityChart &chart, const std::vector<double> &grid)
+      void sharpen(const int line, const StabilityChart &chart, const std::vector<double> &grid)
       {
-        std::vector<ChartModel::ModesAt> sets;
+        // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
+        std::map<int, std::set<int>> modes_at; // by point of the chart, which has those of the grid only
         for (const Threshold &threshold : chart.thresholds)
           {
-            if (threshold.share_of_modes <= threshold_safety * run.parameters.sweep.threshold_tolerance)
-              continue;
-            // Values of the grid beside it: next to a coalescence the vectors of both modes are nearly the same
-            const auto above = std::upper_bound(grid.begin(), grid.end(), threshold.friction_coefficient);
-            for (const auto place : {above, above == grid.begin() ? above : std::prev(above)})
-              {
-                if (place == grid.end())
-                  continue;
-                const auto i = std::find_if(chart.points.begin(), chart.points.end(),
-                                            [&](const ChartPoint &point) { return point.friction_coefficient == *place; }) -
-                               chart.points.begin();
-                ChartModel::ModesAt set{operating_point(line, *place, states.at(operation_at(lines[line], *place))), &chart.points[i], {}};
-                for (const int branch : {threshold.branch, threshold.partner})
-                  if (branch >= 0 && chart.branches[branch].modes[i] >= 0)
-                    set.modes.push_back(chart.branches[branch].modes[i]);
-                sets.push_back(set);
-              }
+            const int above = std::upper_bound(grid.begin(), grid.end(), threshold.friction_coefficient) - grid.begin();
+            for (const int i : {above - 1, above})
+              for (const int branch : {threshold.branch, threshold.partner})
+                if (i >= 0 && i < static_cast<int>(grid.size()) && branch >= 0 && chart.branches[branch].modes[i] >= 0)
+                  modes_at[i].insert(chart.branches[branch].modes[i]);
           }
+        std::vector<ChartModel::ModesAt> sets;
+        for (const auto &[i, modes] : modes_at)
+          sets.push_back({operating_point(line, grid[i], states.at(operation_at(lines[line], grid[i]))), &chart.points[i],
+                          {modes.begin(), modes.end()}});
         if (sets.empty())
-          return false;
+          return;
         if (const auto earlier = refinements->basis(); !earlier.empty())
           model->extend(earlier.front());
         else
           {
             const auto vectors = model->new_vectors(sets);
             if (!vectors || model->size() + vectors->NumVectors() > static_cast<int>(run.parameters.sweep.maximum_basis))
-              return false;
+              return;
             refinements->keep(*vectors);
             model->extend(*vectors);
           }
-        for (std::size_t i = 0; i < chart.points.size(); ++i)
-          if (chart.is_refinement[i])
-            known.erase({line, chart.points[i].friction_coefficient});
         for (const ChartModel::ModesAt &set : sets)
           known.erase({line, set.point.friction_coefficient});
-        return true;
       }
 
       /// Right vectors of some modes of a point at full order.

@@ -4,6 +4,9 @@
 
 namespace Squeal
 {
+  /// Divergence rates |ξ| below this are rounding errors of a neutral mode [-].
+  constexpr double negligible_divergence = 1e-8;
+
   /**
    * How an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K is reported. This is
    * the only place where rad/s become Hz and rates become per cent.

@@ -20,6 +20,6 @@ namespace Squeal
     std::vector<std::string>                     warnings;    ///< doubts about the input
   };
 
-  /// Versions, revision, machine, counts, and time and peak memory of each step, as JSON.
+  /// Versions, revision, machine, counts, time and peak memory of each step, and the margins of decisions, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 } // namespace Squeal

@@ -65,7 +65,6 @@ namespace Squeal
   {
     double               friction_coefficient = 0.;
     double               uncertainty          = 0.; ///< of the friction coefficient: of the search and of λ
-    double               share_of_modes       = 0.; ///< of λ alone in that, for which the accuracy of the modes answers
     ThresholdEvent       event                = ThresholdEvent::onset;
     ThresholdMechanism   mechanism            = ThresholdMechanism::zero_growth;
     int                  branch               = -1; ///< the one that grows

@@ -43,6 +43,12 @@ namespace Squeal
   };
   OrthonormalBasis orthonormal_basis(const ComplexDenseMatrix &X);
 
+  /**
+   * The vectors with those of each cluster of λ replaced by an orthonormal basis of their span: an eigensolver chooses
+   * them within that span by rounding errors, and what is summed over them must not depend on its choice.
+   */
+  ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<std::complex<double>> &lambda);
+
   /// Some columns of X.
   ComplexDenseMatrix selected_columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen);
 
