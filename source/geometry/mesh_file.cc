@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
 #include <squeal/geometry/gmsh_session.h>
 #include <squeal/geometry/mesh_file.h>
 
@@ -173,6 +174,12 @@ namespace Squeal
       {
         std::filesystem::remove(temporary, failure);
         throw FileError(error.what(), file, "check free space");
+      }
+    // Gmsh does not tell whether there was room for the file.
+    if (!file_ends_with(temporary, "$EndElements"))
+      {
+        std::filesystem::remove(temporary, failure);
+        throw FileError("The mesh could not be written to its end", file, "check free space");
       }
     std::filesystem::rename(temporary, file, failure);
     if (failure)

@@ -1,6 +1,7 @@
 #include <squeal/output/fields.h>
 
 #include <deal.II/base/data_out_base.h>
+#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_tools.h>
@@ -29,13 +30,32 @@ namespace Squeal
       return largest > 0. ? largest : 1.;
     }
 
-    template <int dim, int spacedim>
-    void set_flags(DataOut<dim, spacedim> &output)
+    DataOutBase::VtkFlags compressed()
     {
       DataOutBase::VtkFlags flags;
       flags.compression_level = DataOutBase::VtkFlags::best_speed;
-      output.set_flags(flags);
+      return flags;
     }
+
+    /// Fields on the bodies, of which every process has the cells that it owns.
+    class BodyOutput : public DataOut<3>
+    {
+    public:
+      /// Writes one file with the cells of all processes; all must call. Unlike deal.II's own, it tells why a file could not be written.
+      void write(const ResultFolder &folder, const std::string &name, const MPI_Comm communicator) const
+      {
+        std::ostringstream piece;
+        if (!get_patches().empty())
+          DataOutBase::write_vtu_main(get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), compressed(), piece);
+        const std::vector<std::string> pieces = Utilities::MPI::gather(communicator, piece.str());
+        folder.write(name, [&](std::ostream &stream) {
+          DataOutBase::write_vtu_header(stream, compressed());
+          for (const std::string &text : pieces)
+            stream << text;
+          DataOutBase::write_vtu_footer(stream);
+        });
+      }
+    };
 
     std::array<long, 3> position_key(const double x, const double y, const double z)
     {
@@ -121,8 +141,7 @@ namespace Squeal
     const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
     const auto   arg   = dof_vector(mode.displacement, [](const Complex &u) { return std::arg(u); });
 
-    DataOut<3> output;
-    set_flags(output);
+    BodyOutput output;
     output.attach_dof_handler(model.dof_handler());
     output.add_data_vector(re, std::vector<std::string>(3, "displacement_real"), DataOut<3>::type_dof_data, vector_field);
     output.add_data_vector(im, std::vector<std::string>(3, "displacement_imag"), DataOut<3>::type_dof_data, vector_field);
@@ -130,7 +149,7 @@ namespace Squeal
     output.add_data_vector(arg, std::vector<std::string>(3, "phase"), DataOut<3>::type_dof_data, vector_field);
     output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
     output.build_patches(model.mapping(), model.degree());
-    output.write_vtu_in_parallel(folder.path("modes/" + mode.name + ".vtu"), model.communicator());
+    output.write(folder, "modes/" + mode.name + ".vtu", model.communicator());
 
     write_contact(mode);
   }
@@ -140,7 +159,7 @@ namespace Squeal
     using Complex      = std::complex<double>;
     const double scale = 1. / largest_amplitude(mode);
     DataOut<2, 3> output;
-    set_flags(output);
+    output.set_flags(compressed());
     output.attach_dof_handler(contact_dofs);
     output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.real(); }), "normal_reaction_real");
     output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.imag(); }), "normal_reaction_imag");
@@ -163,13 +182,12 @@ namespace Squeal
           u(dof)                       = -side[component] * state.approach[component];
         }
 
-    DataOut<3> bodies;
-    set_flags(bodies);
+    BodyOutput bodies;
     bodies.attach_dof_handler(model.dof_handler());
     bodies.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
     bodies.add_data_vector(components, "component", DataOut<3>::type_cell_data);
     bodies.build_patches(model.mapping(), model.degree());
-    bodies.write_vtu_in_parallel(folder.path("sliding_state.vtu"), model.communicator());
+    bodies.write(folder, "sliding_state.vtu", model.communicator());
 
     std::vector<double> pressure;
     for (unsigned int c = 0; c < interface.size(); ++c)
@@ -182,7 +200,7 @@ namespace Squeal
                                                                                       {&state.radial_damping, "c_b"},
                                                                                       {&state.sliding_damping, "c_t"}};
     DataOut<2, 3> faces;
-    set_flags(faces);
+    faces.set_flags(compressed());
     faces.attach_dof_handler(contact_dofs);
     for (const auto &[values, name] : fields)
       faces.add_data_vector(contact_vector(*values, identity), name);
@@ -201,15 +219,14 @@ namespace Squeal
         const auto   turn = std::polar(scale, mode.lambda.imag() * time);
         const auto   u    = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (turn * value).real(); });
 
-        DataOut<3> output;
-        set_flags(output);
+        BodyOutput output;
         output.attach_dof_handler(model.dof_handler());
         output.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
         output.build_patches(model.mapping(), model.degree());
 
         std::ostringstream name;
         name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame << ".vtu";
-        output.write_vtu_in_parallel(folder.path("animations/" + name.str()), model.communicator());
+        output.write(folder, "animations/" + name.str(), model.communicator());
         frames.emplace_back(time, name.str());
       }
     folder.write("animations/" + mode.name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, frames); });

@@ -1,9 +1,15 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
 #include <squeal/output/plot.h>
 
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <ostream>
@@ -68,14 +74,6 @@ namespace Squeal
           result += c;
         }
       return result + "\"";
-    }
-
-    std::string shell_quoted(const std::string &text)
-    {
-      std::string result = "'";
-      for (const char c : text)
-        result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-      return result + "'";
     }
 
     bool is_shown(const PlotPanel &panel, const double x, const double y)
@@ -212,6 +210,28 @@ namespace Squeal
           }
     }
 
+    /// Whether gnuplot is there and draws what a script says, in the folder of the script.
+    bool runs_gnuplot(const std::filesystem::path &script)
+    {
+      std::string        program = "gnuplot", folder = script.parent_path().string(), file = script.filename().string();
+      std::vector<char *> arguments = {program.data(), file.data(), nullptr};
+
+      posix_spawn_file_actions_t actions;
+      posix_spawn_file_actions_init(&actions);
+      posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
+      for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO})
+        posix_spawn_file_actions_addopen(&actions, descriptor, "/dev/null", O_WRONLY, 0);
+      pid_t     process;
+      const int problem = ::posix_spawnp(&process, program.c_str(), &actions, nullptr, arguments.data(), environ);
+      posix_spawn_file_actions_destroy(&actions);
+      if (problem != 0)
+        return false;
+      int status = 0;
+      while (::waitpid(process, &status, 0) < 0 && errno == EINTR)
+        ;
+      return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    }
+
     void write_script(std::ostream &stream, const std::string &name, const Plot &plot)
     {
       const int n_panels = plot.panels.size(), n_columns = std::min(plot.n_columns, n_panels), n_rows = (n_panels + n_columns - 1) / n_columns;
@@ -344,7 +364,16 @@ namespace Squeal
     folder.write("plots/" + name + ".gp", [&](std::ostream &stream) { write_script(stream, name, plot); });
     if (!folder.writes_here())
       return true;
-    const auto directory = std::filesystem::path(folder.path("plots/" + name + ".gp")).parent_path();
-    return std::system(("cd " + shell_quoted(directory.string()) + " && gnuplot " + name + ".gp >/dev/null 2>&1").c_str()) == 0;
+    const std::filesystem::path script = folder.path("plots/" + name + ".gp"), picture = std::filesystem::path(script).replace_extension(".svg");
+    const bool                  is_drawn = runs_gnuplot(script);
+    if (!is_drawn)
+      {
+        std::error_code ignored;
+        std::filesystem::remove(picture, ignored);
+      }
+    // gnuplot does not tell whether there was room for the picture.
+    else if (!file_ends_with(picture, "</svg>"))
+      throw FileError("the picture is incomplete", "file " + folder.name() + "/plots/" + name + ".svg", "check free space");
+    return is_drawn;
   }
 } // namespace Squeal
