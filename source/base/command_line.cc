@@ -1,0 +1,77 @@
+#include <squeal/base/command_line.h>
+#include <squeal/base/exceptions.h>
+
+#include <algorithm>
+#include <map>
+
+namespace Squeal
+{
+  namespace
+  {
+    [[noreturn]] void refuse(const std::string &what, const std::string &word, const std::string &change = "squeal --help lists the options")
+    {
+      throw ParameterError(what, "command line, `" + word + "`", change);
+    }
+
+    bool begins_with(const std::string &word, const char *beginning)
+    {
+      return word.rfind(beginning, 0) == 0;
+    }
+  } // namespace
+
+  CommandLine parse_command_line(const std::vector<std::string> &words)
+  {
+    CommandLine                               line;
+    const std::map<std::string, bool *>       switches = {{"--dry-run", &line.dry_run},
+                                                          {"--print-parameters", &line.print_parameters},
+                                                          {"--version", &line.version},
+                                                          {"--help", &line.help},
+                                                          {"-h", &line.help}};
+    std::vector<std::string>                  outputs, files;
+    const std::map<std::string, std::vector<std::string> *> with_value = {{"--set", &line.overrides}, {"--output", &outputs}};
+
+    bool options_end = false;
+    for (std::size_t i = 0; i < words.size(); ++i)
+      {
+        const std::string &word = words[i];
+        if (options_end || !begins_with(word, "-"))
+          {
+            files.push_back(word);
+            continue;
+          }
+        if (word == "--")
+          {
+            options_end = true;
+            continue;
+          }
+        const std::size_t equals = word.find('=');
+        const std::string name   = word.substr(0, equals);
+        if (const auto found = switches.find(name); found != switches.end())
+          {
+            if (equals != std::string::npos)
+              refuse("an option takes no value", word);
+            *found->second = true;
+          }
+        else if (const auto option = with_value.find(name); option != with_value.end())
+          {
+            if (equals != std::string::npos)
+              option->second->push_back(word.substr(equals + 1));
+            else if (i + 1 < words.size() && !begins_with(words[i + 1], "--"))
+              option->second->push_back(words[++i]);
+            else
+              refuse("an option lacks its value", word);
+          }
+        else
+          refuse("unknown option", word);
+      }
+    if (files.size() > 1)
+      refuse("more than one parameter file", files[1], "give one; scripts/run.sh runs several in turn");
+    if (outputs.size() > 1)
+      refuse("more than one result folder", outputs[1], "give --output once");
+    if (!files.empty())
+      line.parameter_file = files.front();
+    if (!outputs.empty())
+      line.output = outputs.front();
+    return line;
+  }
+} // namespace Squeal

@@ -1,0 +1,19 @@
+#include <squeal/base/mpi_environment.h>
+
+#include <unistd.h>
+
+#include <cstdlib>
+
+namespace Squeal
+{
+  void prepare_mpi_environment()
+  {
+    // What mpirun tells the processes that it starts
+    const char *n_processes = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
+    if (n_processes == nullptr)
+      setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    // Not the cores to which this process is bound, but all that there are
+    else if (std::atoi(n_processes) > ::sysconf(_SC_NPROCESSORS_ONLN))
+      setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);
+  }
+} // namespace Squeal
