@@ -138,12 +138,13 @@ build_release()
 
 # The environment in which programs run: one BLAS thread for each process (threads that share cores
 # with other processes slow the factorisations down many times), and Open MPI usable in a container,
-# by root, and with more processes than cores.
+# by root, and with more processes than cores, where those that wait must leave the core to the others.
 set_environment()
 {
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
   export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
   export OMPI_MCA_rmaps_base_oversubscribe=1
+  export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}
   export OMPI_MCA_btl_vader_single_copy_mechanism=none
   if (($(id -u) == 0)); then
     export OMPI_ALLOW_RUN_AS_ROOT=1

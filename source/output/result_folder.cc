@@ -1,65 +1,192 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
 #include <squeal/output/result_folder.h>
+#include <squeal/output/result_place.h>
+#include <squeal/output/run_record.h>
 
-#include <filesystem>
-#include <fstream>
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <sstream>
+#include <utility>
 
 namespace Squeal
 {
   namespace fs = std::filesystem;
 
-  ResultFolder::ResultFolder(const std::string &directory_name, const bool is_root)
-    : directory(fs::path(directory_name).lexically_normal().string())
-    , is_root(is_root)
+  namespace
   {
-    while (directory.size() > 1 && directory.back() == '/')
-      directory.pop_back();
-    temporary = directory + ".unfinished";
+    /// As the user wrote it, without the slash at its end and detours.
+    std::string shown_name(const std::string &directory)
+    {
+      std::string name = fs::path(directory).lexically_normal().string();
+      while (name.size() > 1 && name.back() == '/')
+        name.pop_back();
+      return name;
+    }
+
+    FileError not_written(const std::string &file, const int problem)
+    {
+      return FileError(std::string("the file cannot be written: ") + std::strerror(problem), "file " + file,
+                       "check permissions and free space");
+    }
+
+    /// Whether a folder is there with something in it.
+    bool holds_something(const fs::path &folder)
+    {
+      return fs::exists(fs::symlink_status(folder)) && !(fs::is_directory(folder) && fs::is_empty(folder));
+    }
+
+    /// Waits until the disk has everything; returns the number of the error, or 0.
+    int store(const fs::path &folder)
+    {
+      const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+      const int problem    = descriptor < 0 || ::syncfs(descriptor) != 0 ? errno : 0;
+      if (descriptor >= 0)
+        ::close(descriptor);
+      return problem;
+    }
+  } // namespace
+
+  ResultFolder::ResultFolder(const std::string &directory, const bool is_root, const std::string &command, Interruption *interruption)
+    : shown(shown_name(directory))
+    , is_root(is_root)
+    , interruption(interruption)
+  {
     if (!is_root)
       return;
-    if (directory.empty())
-      throw FileError("the name of the result folder is empty", "--output", "name a folder");
+    place      = result_place(directory);
+    unfinished = place.string() + ".unfinished";
+    replaced   = place.string() + ".replaced";
+    const auto held = uninterrupted();
     try
       {
-        if (fs::exists(directory) && !fs::is_directory(directory))
-          throw FileError("`" + directory + "` is a file, not a folder", "--output", "choose another name");
-        if (fs::exists(directory) && !fs::is_empty(directory) && !fs::exists(fs::path(directory) / run_record))
-          throw FileError("the folder `" + directory + "` holds files that are not the results of a run", "--output",
-                          "choose another name, or empty the folder");
-        fs::remove_all(temporary);
-        fs::create_directories(temporary);
+        open(command);
       }
     catch (const fs::filesystem_error &error)
       {
-        throw FileError(std::string("the result folder cannot be created: ") + error.code().message(), "--output " + directory,
+        remove_traces();
+        throw FileError("the result folder cannot be created: " + error.code().message(), "--output " + shown,
                         "choose a folder that you may write to");
       }
+    catch (const FileError &)
+      {
+        remove_traces();
+        throw;
+      }
+    if (interruption != nullptr)
+      interruption->before_end([this] {
+        remove_traces();
+        return state == State::in_place ? "the results were complete" : "no results were written";
+      });
+  }
+
+  void ResultFolder::open(const std::string &command)
+  {
+    check_result_place(place, shown, run_record);
+    for (fs::path parent = place.parent_path(); !fs::exists(parent); parent = parent.parent_path())
+      new_parents.insert(new_parents.begin(), parent);
+    fs::create_directories(place.parent_path());
+    lock = std::make_unique<FolderLock>(place.string() + ".lock", shown, command);
+    settle_former_run();
+    // Once more, as another run may have ended meanwhile
+    check_result_place(place, shown, run_record);
+    state = State::at_work;
+    fs::create_directory(unfinished);
+    try_writing();
+  }
+
+  /// Clears away what a run has left that was killed.
+  void ResultFolder::settle_former_run() const
+  {
+    if (lock->was_left_behind())
+      {
+        if (!fs::exists(place) && fs::exists(replaced))
+          fs::rename(replaced, place);
+        fs::remove_all(replaced);
+        fs::remove_all(unfinished);
+      }
+    for (const fs::path &folder : {unfinished, replaced})
+      if (holds_something(folder))
+        throw FileError("`" + folder.string() + "` is in the way: the program needs this name for a while", "--output " + shown,
+                        "move or delete it, or choose another name");
+  }
+
+  /// A disk that is full and names that are too long should show before the work, not after.
+  void ResultFolder::try_writing() const
+  {
+    constexpr std::size_t longest_name = 200, size = 4096;
+    const fs::path        file = unfinished / std::string(longest_name, 'x');
+    const int             problem = write_file(file, O_TRUNC, {std::string(size, ' ')}, true);
+    fs::remove(file);
+    if (problem != 0)
+      throw FileError(std::string("files cannot be written to the result folder: ") + std::strerror(problem), "--output " + shown,
+                      "choose a folder that you may write to, with free space");
   }
 
   ResultFolder::~ResultFolder()
   {
+    const auto held = uninterrupted();
+    remove_traces();
+    if (is_root && interruption != nullptr)
+      interruption->before_end({});
+  }
+
+  std::unique_lock<std::mutex> ResultFolder::uninterrupted() const
+  {
+    return interruption != nullptr ? interruption->hold() : std::unique_lock<std::mutex>();
+  }
+
+  /// Removes everything but results in their place.
+  void ResultFolder::remove_traces()
+  {
     std::error_code ignored;
-    if (is_root && !committed)
-      fs::remove_all(temporary, ignored);
+    if (state == State::at_work)
+      {
+        // A library may go on writing.
+        constexpr int most_attempts = 100;
+        for (int n = 0; n < most_attempts && fs::exists(unfinished, ignored); ++n)
+          fs::remove_all(unfinished, ignored);
+      }
+    lock.reset();
+    if (state != State::in_place)
+      for (auto parent = new_parents.rbegin(); parent != new_parents.rend(); ++parent)
+        fs::remove(*parent, ignored);
   }
 
   std::string ResultFolder::path(const std::string &name) const
   {
-    const fs::path file = fs::path(temporary) / name;
+    const auto held = uninterrupted();
+    promised.insert(name);
+    return place_for(name).string();
+  }
+
+  fs::path ResultFolder::place_for(const std::string &name) const
+  {
+    const fs::path  file = unfinished / name;
     std::error_code ignored;
-    fs::create_directories(file.parent_path(), ignored);
-    return file.string();
+    if (is_root)
+      fs::create_directories(file.parent_path(), ignored);
+    return file;
   }
 
   void ResultFolder::write(const std::string &name, const std::function<void(std::ostream &)> &writer) const
   {
     if (!is_root)
       return;
-    std::ofstream stream(path(name));
+    std::ostringstream stream;
     writer(stream);
-    stream.close();
-    if (!stream)
-      throw FileError("the file cannot be written", "file " + directory + "/" + name, "check permissions and free space");
+    if (stream.bad())
+      throw not_written(shown + "/" + name, ENOMEM);
+    const std::string text = stream.str();
+    // Once a signal has begun to clear away, nothing new may come up.
+    const auto held = uninterrupted();
+    if (const int problem = write_file(place_for(name), O_TRUNC, {text}, false); problem != 0)
+      throw not_written(shown + "/" + name, problem);
+    written[name] = text.size();
   }
 
   bool ResultFolder::writes_here() const
@@ -67,28 +194,83 @@ namespace Squeal
     return is_root;
   }
 
-  void ResultFolder::commit()
+  FileSizes ResultFolder::files() const
   {
-    if (is_root)
-      try
-        {
-          const std::string replaced = directory + ".replaced";
-          fs::remove_all(replaced);
-          if (fs::exists(directory))
-            fs::rename(directory, replaced);
-          fs::rename(temporary, directory);
-          fs::remove_all(replaced);
-        }
-      catch (const fs::filesystem_error &error)
-        {
-          throw FileError(std::string("the results cannot be moved to their place: ") + error.code().message(), "--output " + directory,
-                          "choose a folder that you may write to");
-        }
-    committed = true;
+    return is_root ? files_below(unfinished) : FileSizes();
+  }
+
+  void ResultFolder::check_complete(const fs::path &folder, const FileSizes &sizes) const
+  {
+    std::string missing = first_incomplete(folder, sizes);
+    for (const std::string &name : promised)
+      if (missing.empty() && !fs::exists(folder / name))
+        missing = name;
+    if (!missing.empty())
+      throw FileError("a result was removed or changed while the program ran", "file " + shown + "/" + missing,
+                      "let nothing else write to the folders of a run, and run again");
+  }
+
+  std::vector<std::string> ResultFolder::bring_user_files() const
+  {
+    std::vector<std::string> remarks;
+    const auto               listed = read_file_list(place / run_record);
+    const bool               is_result = fs::exists(place / run_record);
+    const auto               is_of_run = [&](const std::string &file) {
+      return file == run_record || (listed ? listed->count(file) > 0 : is_result && is_name_of_result(file));
+    };
+    for (const auto &[name, new_name] : bring_over(place, unfinished, is_of_run))
+      remarks.push_back("the results need the name `" + name + "`: the file of yours in " + shown + " is `" + new_name + "` now");
+    fs::permissions(unfinished, fs::status(place).permissions());
+    return remarks;
+  }
+
+  /// At every moment `place`, or else `replaced`, is a complete folder.
+  void ResultFolder::put_in_place() const
+  {
+    if (!fs::exists(place))
+      fs::rename(unfinished, place);
+    else if (!exchange(unfinished, place))
+      move_to_place(unfinished, place, replaced);
+  }
+
+  std::vector<std::string> ResultFolder::commit()
+  {
+    const auto held = uninterrupted();
+    if (!is_root)
+      return {};
+    check_complete(unfinished, written);
+    // The folder must not take its name with files that a failure of the machine could cut.
+    if (const int problem = store(unfinished); problem != 0)
+      throw not_written(shown, problem);
+    const FileSizes          complete = files();
+    std::vector<std::string> remarks;
+    try
+      {
+        if (fs::exists(place))
+          remarks = bring_user_files();
+        put_in_place();
+        state = State::in_place;
+      }
+    catch (const fs::filesystem_error &error)
+      {
+        // Without the file of the lock, no later run clears it away.
+        state = State::unplaced;
+        throw FileError("the results cannot be moved to their place: " + error.code().message(), "--output " + shown,
+                        "they are complete in `" + unfinished.string() + "`: move them yourself");
+      }
+    check_complete(place, complete);
+    for (const fs::path &former : {unfinished, replaced})
+      {
+        std::error_code problem;
+        fs::remove_all(former, problem);
+        if (problem)
+          remarks.push_back("the former results in `" + former.string() + "` cannot be deleted: " + problem.message());
+      }
+    return remarks;
   }
 
   const std::string &ResultFolder::name() const
   {
-    return directory;
+    return shown;
   }
 } // namespace Squeal

@@ -12,6 +12,7 @@
 #include <umfpack.h>
 
 #include <ctime>
+#include <fstream>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
@@ -21,13 +22,9 @@ namespace Squeal
 {
   namespace
   {
-    std::string utc_time()
-    {
-      const std::time_t  now = std::time(nullptr);
-      std::ostringstream text;
-      text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
-      return text.str();
-    }
+    using Json = nlohmann::ordered_json;
+
+    constexpr const char *file_list = "files [byte]";
 
     std::string cholmod_version()
     {
@@ -35,14 +32,21 @@ namespace Squeal
     }
   } // namespace
 
+  std::string utc_time()
+  {
+    const std::time_t  now = std::time(nullptr);
+    std::ostringstream text;
+    text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
+    return text.str();
+  }
+
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress)
   {
-    using Json = nlohmann::ordered_json;
     Json tree;
     tree["command"]  = record.command;
     tree["finished"] = utc_time();
     tree["versions"] = {{"squeal", version},
-                        {"revision", revision},
+                        {"revision", record.revision},
                         {"deal.II", DEAL_II_PACKAGE_VERSION},
                         {"Trilinos", TRILINOS_VERSION_STRING},
                         {"MUMPS", MUMPS_VERSION},
@@ -71,6 +75,21 @@ namespace Squeal
                                    {"orders of magnitude above", decision.margin_above()},
                                    {"times below", decision.n_below},
                                    {"times above", decision.n_above}});
-    stream << tree.dump(2) << '\n';
+    tree[file_list] = record.files;
+    // Names of files and words of a command need not be UTF-8.
+    stream << tree.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  }
+
+  std::optional<FileSizes> read_file_list(const std::filesystem::path &record)
+  {
+    std::ifstream stream(record);
+    try
+      {
+        return Json::parse(stream).at(file_list).get<FileSizes>();
+      }
+    catch (const Json::exception &)
+      {
+        return {};
+      }
   }
 } // namespace Squeal

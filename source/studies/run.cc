@@ -24,17 +24,22 @@ namespace Squeal
     }
   } // namespace
 
-  Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
+  Run::Run(const Parameters &parameters,
+           const RunOptions &options,
+           MPI_Comm          communicator,
+           Progress         &progress,
+           std::ostream     &screen,
+           Interruption     &interruption)
     : parameters(parameters)
     , communicator(communicator)
     , progress(progress)
     , screen(screen)
     , is_dry(options.dry_run)
     , is_root(rank(communicator) == 0)
-    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}}
+    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}, {}, options.revision}
   {
     if (!is_dry)
-      results = std::make_unique<ResultFolder>(options.output, is_root);
+      results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);
   }
 
   const ResultFolder &Run::folder() const
@@ -82,8 +87,10 @@ namespace Squeal
     Parameters repeated    = parameters;
     repeated.geometry.file = copy_of(parameters.geometry.path()).name;
     results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
+    record.files = results->files();
     results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
-    results->commit();
+    for (const std::string &remark : results->commit())
+      progress.note("  note: " + remark);
     std::string names;
     for (const std::string &name : tables)
       names += (names.empty() ? "" : ", ") + name;

@@ -196,7 +196,7 @@ TEST(RunRecords, AreJson)
   progress.finish("12 elements");
   progress.begin("Modes");
   progress.finish();
-  const RunRecord    record{"squeal \"a b.prm\" --set \"Operation/Rotation=negative\"", 3, 1, {{"dofs", 123456789012L}, {"modes", 0}}, {{"worst scaled Jacobian [-]", 0.5}}, {}};
+  const RunRecord    record{"squeal \"a b.prm\" --set \"Operation/Rotation=negative\"", 3, 1, {{"dofs", 123456789012L}, {"modes", 0}}, {{"worst scaled Jacobian [-]", 0.5}}, {}, {}, "abc1234"};
   std::ostringstream stream;
   write_run_record(stream, record, progress);
 

@@ -1,27 +1,43 @@
 #pragma once
 
+#include <squeal/base/interruption.h>
+#include <squeal/output/folder_lock.h>
+#include <squeal/output/result_files.h>
+
+#include <filesystem>
 #include <functional>
 #include <iosfwd>
+#include <memory>
+#include <mutex>
+#include <set>
 #include <string>
+#include <vector>
 
 namespace Squeal
 {
   /**
    * The folder in which a run leaves its results. Everything is written into a
    * temporary folder beside it, which takes its name when the run is complete;
-   * a run that fails leaves nothing and touches no earlier result. A folder
-   * that is not the result of an earlier run is never replaced.
+   * a run that fails or is killed leaves the earlier results as they are, and
+   * no other run may write to the same folder meanwhile.
+   *
+   * Of an earlier result, the files of that run are replaced, and what the user
+   * put there stays. A folder that holds no result at all is never replaced.
    */
   class ResultFolder
   {
   public:
     /**
-     * @param directory name of the folder after commit()
-     * @param is_root   process that creates, renames and removes
+     * Makes the temporary folder and tries whether files can be written there.
      *
-     * Throws FileError if @p directory holds something other than results, or cannot be created.
+     * @param directory    name of the folder after commit(); links are followed
+     * @param is_root      process that creates, renames and removes
+     * @param command      of this run, for other runs that want the folder
+     * @param interruption lets a signal clean up here; none if null
+     *
+     * Throws FileError if @p directory holds something other than results, cannot be created or replaced, or is in use.
      */
-    ResultFolder(const std::string &directory, bool is_root);
+    ResultFolder(const std::string &directory, bool is_root, const std::string &command = "", Interruption *interruption = nullptr);
 
     /// Removes the temporary folder unless committed.
     ~ResultFolder();
@@ -29,26 +45,62 @@ namespace Squeal
     ResultFolder(const ResultFolder &)            = delete;
     ResultFolder &operator=(const ResultFolder &) = delete;
 
-    /// Where to write a file called @p name for now; creates its parent folders.
+    /// Where to write a file called @p name for now, which has to be there by commit(); creates its parent folders.
     std::string path(const std::string &name) const;
 
-    /// Writes a text file on the root process; throws FileError if the disk is full.
+    /// Writes a file on the root process; throws FileError with the cause if it could not be written to the end.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
     /// Whether this process writes the files.
     bool writes_here() const;
 
-    /// Gives the folder its name; an earlier result of that name is replaced.
-    void commit();
+    /// What the run has written so far, with sizes; for its record.
+    FileSizes files() const;
 
-    /// Name of the finished folder.
+    /**
+     * Gives the folder its name. Nothing happens to earlier results unless all
+     * files are there to their last byte. Returns what the user should know, one line each.
+     *
+     * Throws FileError if files are missing, or the folder cannot be put in its
+     * place; in the latter case the message says where the results are.
+     */
+    std::vector<std::string> commit();
+
+    /// Name of the finished folder, as the user has it.
     const std::string &name() const;
 
-    /// File that marks a folder as the result of a run.
+    /// File that marks a folder as the result of a run, and lists its files.
     static constexpr const char *run_record = "run.json";
 
   private:
-    std::string directory, temporary;
-    bool        is_root, committed = false;
+    enum class State
+    {
+      not_begun,
+      at_work,  ///< the temporary folder is ours and goes with us
+      unplaced, ///< results are complete but could not be put in place
+      in_place
+    };
+
+    void                         open(const std::string &command);
+    void                         settle_former_run() const;
+    void                         try_writing() const;
+    void                         check_complete(const std::filesystem::path &folder, const FileSizes &sizes) const;
+    std::vector<std::string>     bring_user_files() const;
+    void                         put_in_place() const;
+    void                         remove_traces();
+    std::filesystem::path        place_for(const std::string &name) const;
+    std::unique_lock<std::mutex> uninterrupted() const;
+
+    const std::string                  shown; ///< name as the user has it
+    const bool                         is_root;
+    Interruption *const                interruption;
+    std::filesystem::path              place, unfinished, replaced;
+    std::vector<std::filesystem::path> new_parents; ///< folders made on the way to it, outermost first
+    std::unique_ptr<FolderLock>        lock;
+    State                              state = State::not_begun;
+
+    // Whoever may write to the folder adds to the list.
+    mutable FileSizes             written;  ///< here, to the end
+    mutable std::set<std::string> promised; ///< whatever writes them
   };
 } // namespace Squeal

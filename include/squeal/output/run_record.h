@@ -1,8 +1,11 @@
 #pragma once
 
 #include <squeal/base/progress.h>
+#include <squeal/output/result_files.h>
 
+#include <filesystem>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,8 +21,16 @@ namespace Squeal
     std::vector<std::pair<std::string, long>>    counts;      ///< elements, dofs, contact nodes, modes, ...
     std::vector<std::pair<std::string, double>>  quantities;  ///< worst element quality, ...
     std::vector<std::string>                     warnings;    ///< doubts about the input
+    FileSizes                                    files    = {};        ///< what the run has written, but for the record itself
+    std::string                                  revision = "unknown"; ///< of the program's sources
   };
 
-  /// Versions, revision, machine, counts, time and peak memory of each step, and the margins of decisions, as JSON.
+  /// Versions, revision, machine, counts, time and peak memory of each step, the margins of decisions, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
+
+  /// The files that a record lists; nothing if it lists none, as those of version 0.1.0 do, or cannot be read.
+  std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
+
+  /// Date and time of day, such as 2026-01-31T12:00:00Z.
+  std::string utc_time();
 } // namespace Squeal

@@ -19,8 +19,9 @@ namespace Squeal
   /// What the command line adds to the parameters.
   struct RunOptions
   {
-    std::string command; ///< as typed, for the run record
-    std::string output;  ///< result folder
+    std::string command;  ///< as typed, for the run record
+    std::string revision; ///< of the program's sources
+    std::string output;   ///< result folder
     bool        dry_run = false;
   };
 
@@ -29,11 +30,17 @@ namespace Squeal
   {
   public:
     /**
-     * @param screen where tables go; a null stream buffer on all processes but one
+     * @param screen       where tables go; a null stream buffer on all processes but one
+     * @param interruption lets a signal end the run without traces
      *
      * Throws FileError if the result folder cannot be made; a dry run makes none.
      */
-    Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
+    Run(const Parameters &parameters,
+        const RunOptions &options,
+        MPI_Comm          communicator,
+        Progress         &progress,
+        std::ostream     &screen,
+        Interruption     &interruption);
 
     const Parameters &parameters;
     const MPI_Comm    communicator;

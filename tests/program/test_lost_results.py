@@ -1,0 +1,404 @@
+"""Results are never lost: two runs into one folder, files of the user, signals, full disks, folders that cannot be written."""
+
+import concurrent.futures
+import json
+import os
+import pathlib
+import random
+import resource
+import shutil
+import signal
+import socket
+import subprocess
+import tempfile
+import time
+import unittest
+
+from program import EXECUTABLE, MPIRUN, ProgramTest, contents
+
+TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv", "table1.csv"]
+
+# Every mode shape: the run takes a few seconds.
+LONG = ["Output/Mode shapes=all", "Output/Animation frames=12"]
+
+# Largest time between a signal and the end of the process on a busy machine [s]
+PROMPT = 10
+
+
+def limit_files(size):
+    """Lets a process write no file beyond this size [byte]."""
+    return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
+
+
+class LostResults(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results")
+
+    def setUp(self):
+        """Everything beside the scene and the first results goes."""
+        self.addCleanup(self.clean)
+
+    def clean(self):
+        for path in self.folder.iterdir():
+            if path.name not in ("results", "scene.prm"):
+                shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+
+    def copy(self, name="copy"):
+        shutil.copytree(self.results, self.folder / name)
+        return self.folder / name
+
+    def start(self, output, *overrides, n_processes=1, **options):
+        settings = [word for override in overrides for word in ("--set", override)]
+        launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
+        process = subprocess.Popen([*launcher, EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
+        self.addCleanup(self.stop, process)
+        return process
+
+    @staticmethod
+    def stop(process):
+        if process.poll() is None:
+            process.kill()
+            process.communicate()
+
+    def wait_for(self, condition, process):
+        deadline = time.monotonic() + 60
+        while not condition():
+            self.assertIsNone(process.poll(), "the run ended too early")
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.005)
+
+    def assert_complete(self, folder):
+        """Every file that the record lists is there with its size."""
+        record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+        sizes = record["files [byte]"]
+        self.assertLessEqual({*TABLES, "parameters.prm", "mesh.msh"}, set(sizes))
+        self.assertEqual({name: (folder / name).stat().st_size for name in sizes}, sizes)
+
+    def assert_refused(self, process, *mentions):
+        """One error with its three parts, before any work."""
+        self.assertEqual(process.returncode, 1, process.stderr)
+        lines = process.stderr.strip().splitlines()
+        for start in ("error: ", "  where:  ", "  change: "):
+            self.assertEqual(sum(line.startswith(start) and len(line) > len(start) for line in lines), 1, process.stderr)
+        for word in mentions:
+            self.assertIn(word, process.stderr)
+        self.assertNotIn("Component modes", process.stdout)
+
+    def refused(self, output, *mentions):
+        before = contents(self.folder)
+        process = self.call("scene.prm", "--output", output)
+        self.assertEqual(contents(self.folder), before)
+        self.assertNotIn("Mesh", process.stdout)
+        self.assert_refused(process, *mentions)
+
+
+class TwoRuns(LostResults):
+    def test_the_second_is_refused(self):
+        (self.folder / "link").symlink_to("shared")
+        first = self.start("shared", *LONG)
+        self.wait_for((self.folder / "shared.unfinished").is_dir, first)
+        first.send_signal(signal.SIGSTOP)
+        for name in ("shared", "shared/", "link"):
+            second = self.call("scene.prm", "--output", name)
+            self.assert_refused(second, "another run", f"process {first.pid} ", socket.gethostname(), " since 20", "scene.prm --output shared")
+        first.send_signal(signal.SIGCONT)
+        first.communicate()
+        self.assertEqual(first.returncode, 0)
+        self.assert_complete(self.folder / "shared")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["link", "results", "scene.prm", "shared"])
+
+    def test_results_removed_meanwhile(self):
+        copy = self.copy()
+        before = contents(copy)
+        process = self.start("copy", *LONG)
+        table = self.folder / "copy.unfinished" / "real_modes.csv"
+        self.wait_for(table.is_file, process)
+        table.unlink()
+        _, message = process.communicate()
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("copy/real_modes.csv", message)
+        self.assertEqual(contents(copy), before)
+
+    def test_a_killed_run_keeps_nobody_out(self):
+        copy = self.copy()
+        before = contents(copy)
+        process = self.start("copy", *LONG)
+        self.wait_for((self.folder / "copy.unfinished" / "modes").is_dir, process)
+        process.kill()
+        process.communicate()
+        self.assertEqual(contents(copy), before)
+        self.assertTrue((self.folder / "copy.unfinished").is_dir())
+        self.run_scene("copy")
+        self.assert_complete(copy)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["copy", "results", "scene.prm"])
+
+
+class FilesOfTheUser(LostResults):
+    def test_they_stay(self):
+        shapes = self.run_scene("copy", "Output/Mode shapes=unstable")
+        (shapes / "mynotes.txt").write_text("notes", encoding="utf-8")
+        (shapes / "modes" / "mode.png").write_bytes(b"picture")
+        (shapes / "own" / "deep").mkdir(parents=True)
+        (shapes / "own" / "deep" / "data.csv").write_text("1,2", encoding="utf-8")
+        (shapes / "latest").symlink_to("own/deep")
+        self.run_scene("copy")
+        self.assert_complete(shapes)
+        self.assertEqual((shapes / "mynotes.txt").read_text(encoding="utf-8"), "notes")
+        self.assertEqual((shapes / "modes" / "mode.png").read_bytes(), b"picture")
+        self.assertEqual((shapes / "latest" / "data.csv").read_text(encoding="utf-8"), "1,2")
+        # What the former run wrote is gone where this one does not write it.
+        self.assertEqual([path.name for path in (shapes / "modes").iterdir()], ["mode.png"])
+        self.assertFalse((shapes / "animations").exists())
+
+    def test_names_that_the_results_need(self):
+        copy = self.copy()
+        (copy / "matrices").write_text("a list", encoding="utf-8")
+        self.run_scene("copy", "Output/Write matrices=true")
+        self.assert_complete(copy)
+        self.assertEqual((copy / "matrices.kept").read_text(encoding="utf-8"), "a list")
+        # A file of the same name, in a folder of the user
+        other = self.copy("other")
+        (other / "matrices").mkdir()
+        (other / "matrices" / "nodes.csv").write_text("mine", encoding="utf-8")
+        process = self.call("scene.prm", "--output", "other", "--set", "Output/Write matrices=true")
+        self.assertEqual(process.returncode, 0)
+        self.assertIn("matrices/nodes.csv.kept", process.stdout)
+        self.assertEqual((other / "matrices" / "nodes.csv.kept").read_text(encoding="utf-8"), "mine")
+        self.assertIn("row x", (other / "matrices" / "nodes.csv").read_text(encoding="utf-8"))
+
+    def test_results_of_the_earlier_version(self):
+        copy = self.copy()
+        record = json.loads((copy / "run.json").read_text(encoding="utf-8"))
+        del record["files [byte]"]
+        (copy / "run.json").write_text(json.dumps(record), encoding="utf-8")
+        (copy / "modes").mkdir()
+        (copy / "modes" / "complex_099_A0-9.vtu").write_text("old", encoding="utf-8")
+        (copy / "modes" / "mode.png").write_bytes(b"picture")
+        (copy / "mynotes.txt").write_text("notes", encoding="utf-8")
+        self.run_scene("copy")
+        self.assert_complete(copy)
+        self.assertEqual([path.name for path in (copy / "modes").iterdir()], ["mode.png"])
+        self.assertEqual((copy / "mynotes.txt").read_text(encoding="utf-8"), "notes")
+
+
+class Places(LostResults):
+    def test_links(self):
+        (self.folder / "target").mkdir()
+        (self.folder / "link").symlink_to("target")
+        (self.folder / "dangling").symlink_to("elsewhere/deep")
+        for link, target in {"link": "target", "dangling/": "elsewhere/deep"}.items():
+            for _ in range(2):
+                self.run_scene(link)
+                self.assertTrue((self.folder / link).is_symlink())
+                self.assertFalse((self.folder / target).is_symlink())
+                self.assert_complete(self.folder / target)
+
+    def test_detours(self):
+        self.run_scene("new/../other//")
+        self.assert_complete(self.folder / "other")
+        self.assertFalse((self.folder / "new").exists())
+
+    def test_refusals(self):
+        (self.folder / "circle").symlink_to("circle")
+        (self.folder / "file").touch()
+        (self.folder / "taken.unfinished").mkdir()
+        (self.folder / "taken.unfinished" / "thesis.tex").touch()
+        (self.folder / "locked.lock").write_text("a key", encoding="utf-8")
+        self.refused(".", "`.`", "was started")
+        self.refused("..", "`..`", "was started")
+        self.refused("/", "`/`", "was started")
+        self.refused("", "empty")
+        self.refused("file/", "`file` is a file")
+        self.refused("file/results", "Not a directory", "file/results")
+        self.refused("circle", "symbolic links")
+        self.refused("x" * 300, "File name too long")
+        self.refused("x" * 250, "File name too long")
+        self.refused("/".join(["x" * 200] * 21), "File name too long")
+        self.refused("taken", "taken.unfinished` is in the way")
+        self.refused("locked", "locked.lock", "is none")
+        self.refused("/proc/results", "/proc/results")
+        self.refused("/proc/self", "/proc/self")
+
+    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
+    def test_permissions(self):
+        copy = self.copy()
+        for mode in (0o500, 0o000):
+            copy.chmod(mode)
+            self.addCleanup(copy.chmod, 0o700)
+            self.refused("copy", "Permission denied")
+
+    def test_permissions_of_the_folder_stay(self):
+        copy = self.copy()
+        copy.chmod(0o2750)
+        self.run_scene("copy")
+        self.assertEqual(copy.stat().st_mode & 0o7777, 0o2750)
+
+
+class Signals(LostResults):
+    TRIALS = 40
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        start = time.monotonic()
+        cls.run_scene("timed", *LONG)
+        cls.duration = time.monotonic() - start
+        shutil.rmtree(cls.folder / "timed")
+
+    def trial(self, number, delay):
+        """Ends a run after a while; returns what is wrong."""
+        output = f"trial_{number}"
+        copy = self.copy(output)
+        before = contents(copy)
+        ending = (signal.SIGTERM, signal.SIGINT)[number % 2]
+        process = self.start(output, *LONG)
+        time.sleep(delay)
+        sent = time.monotonic()
+        process.send_signal(ending)
+        try:
+            _, message = process.communicate(timeout=PROMPT)
+        except subprocess.TimeoutExpired:
+            return f"{ending.name} after {delay:.2f} s: goes on"
+        seconds = time.monotonic() - sent
+        status = process.returncode
+        shown = f"{ending.name} after {delay:.2f} s: status {status}, {seconds:.2f} s, {message.strip()!r}"
+        left = [path.name for path in self.folder.glob(f"{output}.*")]
+        if left:
+            return f"{shown}, left {left}"
+        # Before main() begins, the loader is at work, and the signal has its usual meaning.
+        if status not in (0, 128 + ending, -ending) or (status > 0) != (ending.name in message) or message.count("\n") > 2:
+            return shown
+        if status != 0 and "complete" not in message and contents(copy) != before:
+            return f"{shown}, results differ"
+        return None
+
+    def test_at_random_moments(self):
+        moments = random.Random(20110330)
+        delays = [moments.uniform(0, self.duration) for _ in range(self.TRIALS)]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            outcomes = list(pool.map(self.trial, range(self.TRIALS), delays))
+        self.assertEqual([outcome for outcome in outcomes if outcome], [])
+
+    def test_of_several_processes(self):
+        copy = self.copy()
+        before = contents(copy)
+        for ending in (signal.SIGTERM, signal.SIGINT):
+            process = self.start("copy", *LONG, n_processes=2)
+            self.wait_for((self.folder / "copy.unfinished").is_dir, process)
+            process.send_signal(ending)
+            _, message = process.communicate(timeout=PROMPT)
+            self.assertNotEqual(process.returncode, 0)
+            self.assertEqual(message.count("squeal was ended by"), 1, message)
+            self.assertEqual(contents(copy), before)
+            self.assertEqual(list(self.folder.glob("copy.*")), [])
+
+    def test_a_reader_that_goes_away(self):
+        process = self.start("new", *LONG)
+        process.stdout.readline()
+        process.stdout.close()
+        self.assertEqual(process.wait(timeout=60), 128 + signal.SIGPIPE)
+        self.assertEqual(list(self.folder.glob("new*")), [])
+        process.stderr.close()
+
+    def test_ignored(self):
+        """nohup and shells that start a run in the background want it to go on."""
+        process = self.start("new", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
+        self.wait_for((self.folder / "new.unfinished").is_dir, process)
+        process.send_signal(signal.SIGHUP)
+        process.communicate()
+        self.assertEqual(process.returncode, 0)
+        self.assert_complete(self.folder / "new")
+
+
+class FullDisks(LostResults):
+    EVERYTHING = ["Output/Mode shapes=unstable", "Output/Write matrices=true"]
+
+    def assert_not_written(self, process, name, cause, output):
+        _, message = process.communicate()
+        self.assertEqual(process.returncode, 1, message)
+        self.assertEqual(message.count("error: "), 1, message)
+        self.assertEqual(len(message.strip().splitlines()), 3, message)
+        self.assertIn(name, message)
+        self.assertIn(cause, message)
+        self.assertEqual(list(self.folder.glob(f"{output}.*")), [])
+
+    def test_limited_sizes(self):
+        """The first file beyond the limit is named, whoever writes it."""
+        sizes = json.loads((self.run_scene("whole", *self.EVERYTHING) / "run.json").read_text(encoding="utf-8"))["files [byte]"]
+        copy = self.copy()
+        before = contents(copy)
+        largest = {ending: max((name for name in sizes if name.endswith(ending)), key=sizes.get) for ending in (".mtx", ".msh", ".vtu")}
+        self.assertGreater(sizes[largest[".mtx"]], sizes[largest[".msh"]])
+        for ending, settings in {".mtx": self.EVERYTHING, ".msh": self.EVERYTHING[2:], ".vtu": self.EVERYTHING[:1]}.items():
+            process = self.start("copy", *settings, preexec_fn=limit_files(sizes[largest[ending]] - 100))
+            name = ending if ending == ".vtu" else largest[ending]
+            self.assert_not_written(process, name, "free space" if ending == ".msh" else "File too large", "copy")
+            self.assertEqual(contents(copy), before)
+
+    def test_nothing_can_be_written(self):
+        process = self.start("new", preexec_fn=limit_files(1000))
+        self.assert_not_written(process, "--output new", "File too large", "new")
+        self.assertEqual(list(self.folder.glob("new*")), [])
+
+    def mount(self, size):
+        """A small disk of its own."""
+        place = tempfile.mkdtemp(dir=self.folder)
+        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place], capture_output=True).returncode:
+            self.skipTest("only root may mount a small disk")
+        self.addCleanup(subprocess.run, ["umount", place], check=True)
+        return pathlib.Path(place)
+
+    def test_small_disk(self):
+        disk = self.mount("700k")
+        shutil.copytree(self.results, disk / "results")
+        before = contents(disk)
+        process = self.start(str(disk / "results"), LONG[0])
+        self.assert_not_written(process, "modes/", "No space left on device", "copy")
+        self.assertEqual(contents(disk), before)
+
+    def test_mounted_folder(self):
+        disk = self.mount("10m")
+        self.refused(str(disk), "mounted", disk.name)
+        self.run_scene(str(disk / "results"))
+        self.assert_complete(disk / "results")
+
+    def test_screen(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            process = subprocess.run([EXECUTABLE, "--help"], stdout=full, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("standard output", process.stderr)
+
+
+class CommandLine(LostResults):
+    def test_words(self):
+        self.assertEqual(self.call("-h").stdout, self.call("--help").stdout)
+        for words, mentions in {("scene.prm", "--ouput", "x"): ["unknown option", "`--ouput`"],
+                                ("-x", "scene.prm"): ["unknown option", "`-x`"],
+                                ("scene.prm", "-nx", "--dry-run"): ["unknown option", "`-nx`"],
+                                ("scene.prm", "--dry-run=1"): ["takes no value", "`--dry-run=1`"],
+                                ("scene.prm", "--output", "--dry-run"): ["lacks its value", "`--output`"],
+                                ("scene.prm", "--output", "a", "--output", "b"): ["more than one result folder", "`b`"],
+                                ("results",): ["is a folder", "`results`"],
+                                ("--", "--missing.prm"): ["cannot be read", "--missing.prm"]}.items():
+            with self.subTest(words):
+                self.assert_refused(self.call(*words), *mentions)
+
+    def test_words_that_are_not_text(self):
+        """File names may be any bytes; the record of the run stands all the same."""
+        name = os.fsdecode(b"r\xff\xfe")
+        process = self.start(name, errors="replace")
+        process.communicate()
+        self.assertEqual(process.returncode, 0)
+        record = json.loads((self.folder / name / "run.json").read_text(encoding="utf-8"))
+        self.assertIn("--output", record["command"])
+
+    def test_options_are_not_those_of_libraries(self):
+        process = self.call("scene.prm", "--dry-run", "--set", "Geometry/Disc layers=1")
+        self.assertEqual(process.stderr, "")
+
+
+if __name__ == "__main__":
+    unittest.main()
