@@ -2,22 +2,39 @@
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/number_parameter.h>
 
-#include <deal.II/base/utilities.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <type_traits>
 
 namespace Squeal
 {
   namespace
   {
+    /// Part of a message; parameters are shown as they are.
+    template <typename Value>
+    void print(std::ostream &stream, const Value &value)
+    {
+      if constexpr (std::is_same_v<Value, double>)
+        stream << exact_text(value);
+      else
+        stream << value;
+    }
+
     template <typename... Values>
     std::string text(const Values &...values)
     {
       std::ostringstream stream;
-      (stream << ... << values);
+      (print(stream, values), ...);
+      return stream.str();
+    }
+
+    /// What was computed from parameters, without the digits that rounding adds.
+    std::string rounded(const double value)
+    {
+      std::ostringstream stream;
+      stream << value;
       return stream.str();
     }
 
@@ -33,7 +50,7 @@ namespace Squeal
     {
       const std::string format = std::filesystem::path(file).extension().string();
       if (!is_script(file) && format != ".msh")
-        refuse("The format of Geometry/File = " + file + (format.empty() ? " is unknown" : ", " + format + ", is not supported"), "File",
+        refuse("The format of Geometry/File = " + legible(file) + (format.empty() ? " is unknown" : ", " + legible(format) + ", is not supported"), "File",
                "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts meshes of other formats to .msh");
     }
 
@@ -82,12 +99,12 @@ namespace Squeal
           const double outside = layout.radii[i] + pin_radius - parameters.disc_outer_radius;
           if (inside >= 0. || outside >= 0.)
             refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", layout.radii[i],
-                        " m with diameter ", parameters.pin_diameter, " m, reaches ", std::max(inside, outside),
+                        " m with diameter ", parameters.pin_diameter, " m, reaches ", rounded(std::max(inside, outside)),
                         " m beyond the ", inside >= outside ? "inner" : "outer", " radius of the disc (",
                         inside >= outside ? parameters.disc_inner_radius : parameters.disc_outer_radius, " m)"),
                    radii_name,
-                   text("a radius between ", parameters.disc_inner_radius + pin_radius, " m and ",
-                        parameters.disc_outer_radius - pin_radius,
+                   text("a radius between ", rounded(parameters.disc_inner_radius + pin_radius), " m and ",
+                        rounded(parameters.disc_outer_radius - pin_radius),
                         " m, both excluded, keeps the pin on the disc; or make the pin smaller"));
         }
 
@@ -102,7 +119,7 @@ namespace Squeal
                         4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
             if (distance <= parameters.pin_diameter)
               refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
-                          parameters.pin_diameter - distance, " m: their axes are ", distance,
+                          rounded(parameters.pin_diameter - distance), " m: their axes are ", rounded(distance),
                           " m apart, their diameter is ", parameters.pin_diameter, " m"),
                      angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
           }
@@ -124,17 +141,9 @@ namespace Squeal
                         "Variable of the geometry; empty for the value there, " + variable.declaration.value +
                           ". Units: as the geometry says.");
       prm.add_action(name, [&variable, name](const std::string &text) {
-        variable.value.reset();
-        if (text.empty())
-          return;
-        try
-          {
-            variable.value = dealii::Utilities::string_to_double(text);
-          }
-        catch (const dealii::ExceptionBase &)
-          {}
-        if (!variable.value || !std::isfinite(*variable.value))
-          refuse(Squeal::text("Geometry/", name, " is `", text, "`, which is not a finite number"), name,
+        variable.value = parse_number(text);
+        if (!variable.value && !text.empty())
+          refuse("Geometry/" + name + " is " + in_quotes(text) + ", which is not a finite number", name,
                  "give a number, or leave it empty for the value in the geometry");
       });
     }
@@ -252,9 +261,9 @@ namespace Squeal
              "Disc inner radius", "set it below the outer radius");
     const double width = disc_outer_radius - disc_inner_radius;
     if (element_size > width / 2.)
-      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", width,
+      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", rounded(width),
                   " m wide between its radii"),
-             "Element size", text("set it to at most ", width / 2., " m, better a fraction of that"));
+             "Element size", text("set it to at most ", rounded(width / 2.), " m, better a fraction of that"));
     if (element_size > disc_inner_radius)
       refuse(text("Geometry/Element size is ", element_size, " m, but the bore has a radius of only ",
                   disc_inner_radius, " m"),

@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/geometry_file.h>
 
 #include <algorithm>
@@ -124,7 +125,7 @@ namespace Squeal
           return candidate.lexically_normal().string();
         searched += (searched.empty() ? "" : ", ") + candidate.lexically_normal().parent_path().string();
       }
-    throw MeshError("There is no geometry '" + name + "'", searched, "set Geometry/File to an existing .geo or .msh");
+    throw MeshError("There is no geometry '" + legible(name) + "'", searched, "set Geometry/File to an existing .geo or .msh");
   }
 
   bool is_supplied(const std::string &geometry)

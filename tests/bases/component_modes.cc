@@ -165,6 +165,13 @@ TEST(MarkDoublets, PairsOnly)
   EXPECT_EQ(labels, (std::vector<std::string>{"A0-2 -", "F1", "A0-2 +", "A0-0", "F1", "F1"}));
 }
 
+TEST(MarkDoublets, TheOneThatGrowsMoreIsPlus)
+{
+  std::vector<std::string> labels = {"A0-4", "A0-4", "A0-5", "A0-5", "R0-1", "R0-1", "T1", "T1"};
+  mark_doublets(labels, {100., 0., 0., 50., 0., 0., 3., 2.});
+  EXPECT_EQ(labels, (std::vector<std::string>{"A0-4 +", "A0-4 -", "A0-5 -", "A0-5 +", "R0-1 -", "R0-1 +", "T1 +", "T1 -"}));
+}
+
 
 
 namespace

@@ -1,0 +1,260 @@
+#include <squeal/geometry/geometry_usage.h>
+#include <squeal/parameters/catalogue.h>
+#include <squeal/studies/parameter_usage.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+
+using namespace Squeal;
+
+namespace
+{
+  namespace fs = std::filesystem;
+
+  /// Parameters read from an empty file and overrides.
+  Parameters parameters_of(const std::vector<std::string> &overrides)
+  {
+    const fs::path file = fs::temp_directory_path() / ("squeal_usage_" + std::to_string(getpid()) + ".prm");
+    std::ofstream(file.string()).flush();
+    const Parameters parameters = Parameters::read(file.string(), overrides);
+    fs::remove(file);
+    return parameters;
+  }
+
+  std::set<std::string> unused(const std::vector<std::string> &overrides)
+  {
+    std::set<std::string> paths;
+    for (const UnusedParameter &parameter : unused_parameters(parameters_of(overrides)))
+      paths.insert(parameter.path);
+    return paths;
+  }
+
+  /// A value other than the default for every parameter that some run does not use.
+  const std::map<std::string, std::string> &other_values()
+  {
+    static const std::map<std::string, std::string> values = {
+      {"Disc material/Rayleigh alpha", "1"},
+      {"Disc material/Rayleigh beta", "1e-9"},
+      {"Pin material/Rayleigh alpha", "1"},
+      {"Pin material/Rayleigh beta", "1e-9"},
+      {"Damping/Modal damping ratio", "100: 0.01"},
+      {"Operation/Friction coefficient", "0.3"},
+      {"Operation/Rotation", "negative"},
+      {"Operation/Rotation speed", "5"},
+      {"Operation/Load per side", "500"},
+      {"Operation/Radial dissipation", "consistent"},
+      {"Operation/Friction slope", "-0.01"},
+      {"Steady sliding/Contact state", "steady sliding"},
+      {"Steady sliding/Control", "load per pin"},
+      {"Steady sliding/Displacement", "1e-5"},
+      {"Steady sliding/Loads", "pin_top_1: 100"},
+      {"Steady sliding/Gaps", "pin_top_1: 1e-6"},
+      {"Reduction/Problem", "frictionless"},
+      {"Reduction/Bases", "free"},
+      {"Reduction/Component modes", "6000"},
+      {"Reduction/Coupled frequency", "6000"},
+      {"Reduction/Rank tolerance", "1e-9"},
+      {"Reduction/Grown tolerances", "1e-5"},
+      {"Reduction/Snapshots", "0.1"},
+      {"Reduction/POD tolerance", "1e-5"},
+      {"Sweep/First friction coefficient", "0.1"},
+      {"Sweep/Last friction coefficient", "0.3"},
+      {"Sweep/Number of friction coefficients", "10"},
+      {"Sweep/Tolerance", "1e-5"},
+      {"Sweep/Maximum basis", "1000"},
+      {"Sweep/Threshold tolerance", "1e-5"},
+      {"Sweep/Compare dissipation", "false"},
+      {"Sweep/Mode shapes at", "0.2"},
+      {"Sweep/Count modes at", "0.2"},
+      {"Sweep/Map parameter", "load"},
+      {"Sweep/First map value", "200"},
+      {"Sweep/Last map value", "2000"},
+      {"Sweep/Number of map values", "3"},
+      {"Sweep/Map friction coefficients", "3"},
+      {"Complex modes/Solver", "residual iteration"},
+      {"Complex modes/Shift inverse", "sparse LU"},
+      {"Complex modes/Tolerance", "1e-8"},
+      {"Complex modes/Iteration tolerance", "1e-6"},
+      {"Complex modes/Maximum basis", "1000"},
+      {"Output/Mode shapes", "unstable"},
+      {"Output/Animation frames", "3"},
+      {"Output/Write matrices", "true"}};
+    return values;
+  }
+
+  /// Those of the parameters that are not used when each alone is changed.
+  std::set<std::string> unused_alone(const std::vector<std::string> &run)
+  {
+    std::set<std::string> paths;
+    for (const auto &[path, value] : other_values())
+      {
+        std::vector<std::string> overrides = run;
+        overrides.push_back(path + "=" + value);
+        try
+          {
+            for (const std::string &unused_path : unused(overrides))
+              if (unused_path == path)
+                paths.insert(path);
+          }
+        catch (const std::exception &)
+          {} // a combination that is refused is no question of use
+      }
+    return paths;
+  }
+
+  /// Paths that begin with one of the given texts, without some exceptions.
+  std::set<std::string> those_of(const std::vector<std::string> &beginnings, const std::set<std::string> &exceptions = {})
+  {
+    std::set<std::string> paths;
+    for (const auto &[path, value] : other_values())
+      for (const std::string &beginning : beginnings)
+        if (path.rfind(beginning, 0) == 0 && exceptions.count(path) == 0)
+          paths.insert(path);
+    return paths;
+  }
+
+  const std::vector<std::string> sweep_map = {"Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction"};
+
+  std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string> &b)
+  {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+} // namespace
+
+
+
+TEST(ParameterUsage, EveryParameterIsAccountedFor)
+{
+  // Of these sections every run uses everything; of the others every parameter must be in the table of the tests below.
+  const std::set<std::string> always = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra"};
+  const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density"};
+  Parameters               parameters;
+  dealii::ParameterHandler prm;
+  parameters.add_parameters(prm);
+  std::set<std::string> declared;
+  for (const CataloguedParameter &parameter : catalogue(prm))
+    {
+      declared.insert(parameter.path);
+      const auto parts = parameter.path_parts();
+      const bool is_always_used = parameter.path == "Study" || always.count(parts.front()) > 0 || of_materials.count(parts.back()) > 0;
+      EXPECT_TRUE(is_always_used || other_values().count(parameter.path) > 0) << parameter.path << " has no rule of when it is used";
+    }
+  for (const auto &[path, value] : other_values())
+    EXPECT_EQ(declared.count(path), 1u) << path;
+  for (const std::string &path : conditional_parameters())
+    EXPECT_TRUE(std::any_of(declared.begin(), declared.end(), [&](const std::string &name) { return name.rfind(path, 0) == 0; })) << path;
+}
+
+
+
+TEST(ParameterUsage, NothingIsUnusedByDefault)
+{
+  for (const char *study : {"stability", "dissipation", "reduction", "sweep"})
+    EXPECT_EQ(unused({std::string("Study=") + study}), std::set<std::string>()) << study;
+}
+
+
+
+TEST(ParameterUsage, OfStability)
+{
+  const std::vector<std::string> others = {"Reduction/", "Sweep/", "Complex modes/Iteration", "Complex modes/Maximum"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
+  EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
+  EXPECT_EQ(unused_alone({"Operation/Radial dissipation=consistent"}), those_of(joined(others, steady)));
+  EXPECT_EQ(unused_alone({"Steady sliding/Contact state=steady sliding"}), those_of(others));
+  EXPECT_EQ(unused_alone({"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
+            those_of(joined(others, {"Operation/Load"})));
+  EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
+            those_of(joined({"Reduction/", "Sweep/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}, steady)));
+}
+
+
+
+TEST(ParameterUsage, OfDissipation)
+{
+  EXPECT_EQ(unused_alone({"Study=dissipation"}),
+            those_of({"Reduction/", "Sweep/", "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
+}
+
+
+
+TEST(ParameterUsage, OfReduction)
+{
+  const std::vector<std::string> always = {"Sweep/", "Output/", "Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps", "Complex modes/Iteration"};
+  EXPECT_EQ(unused_alone({"Study=reduction"}), those_of(joined(always, {"Operation/Load", "Operation/Rotation speed"})));
+  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Bases=real, free", "Operation/Radial dissipation=consistent"}),
+            those_of(joined(always, {"Complex modes/Maximum", "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
+  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Bases=residual-grown, POD", "Operation/Radial dissipation=consistent"}),
+            those_of(joined(always, {"Reduction/Component modes", "Reduction/Coupled frequency"})));
+  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Problem=frictionless"}),
+            those_of(joined(always, {"Operation/", "Damping/", "Disc material/", "Pin material/", "Complex modes/", "Reduction/Coupled",
+                                     "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
+}
+
+
+
+TEST(ParameterUsage, OfSweeps)
+{
+  const std::vector<std::string> always = {"Reduction/", "Complex modes/", "Operation/Friction coefficient", "Output/Write"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
+  EXPECT_EQ(unused_alone({"Study=sweep"}), those_of(joined(joined(joined(always, sweep_map), steady),
+                                                           {"Operation/Load", "Operation/Rotation speed", "Output/"})));
+  EXPECT_EQ(unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
+            those_of(joined(always, steady)));
+}
+
+
+
+TEST(ParameterUsage, OfGeometries)
+{
+  const fs::path folder = fs::temp_directory_path() / ("squeal_geometries_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  const auto file = [&](const std::string &name, const std::string &text) {
+    std::ofstream((folder / name).string()) << text;
+    return "Geometry/File=" + (folder / name).string();
+  };
+  const std::vector<std::string> sizes = {"Geometry/Disc thickness=0.04", "Geometry/Pin diameter=0.04", "Geometry/Disc outer radius=0.32"};
+  const auto                     with  = [&](const std::string &geometry) { return unused(joined(sizes, {geometry})); };
+
+  EXPECT_EQ(with("Geometry/File=disc_pins.geo"), std::set<std::string>());
+  EXPECT_EQ(with(file("plan.geo", "// pin_diameter\nr = disc_outer_radius;\nPhysical Surface(\"disc\") = {1};\n")),
+            std::set<std::string>{"Geometry/Pin diameter"});
+  EXPECT_EQ(with(file("solid.geo", "r = pin_diameter;\nPhysical Volume(\"disc\") = {1};\n")),
+            (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius"}));
+  EXPECT_EQ(with(file("solid.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n")),
+            (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius", "Geometry/Pin diameter"}));
+  EXPECT_EQ(with(file("plan.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"disc\"\n$EndPhysicalNames\n")),
+            (std::set<std::string>{"Geometry/Disc outer radius", "Geometry/Pin diameter"}));
+  fs::remove_all(folder);
+}
+
+
+
+TEST(ParameterUsage, NoFalseAlarmOnShippedFiles)
+{
+  std::size_t n_files = 0;
+  for (const auto &entry : fs::recursive_directory_iterator(fs::path(SQUEAL_SOURCE_DIRECTORY) / "prm"))
+    if (entry.path().extension() == ".prm")
+      {
+        EXPECT_EQ(unused_parameters_note(Parameters::read(entry.path().string(), {})), "") << entry.path();
+        ++n_files;
+      }
+  EXPECT_GE(n_files, 17u);
+}
+
+
+
+TEST(ParameterUsage, TheNoteNamesAllWithTheirReasons)
+{
+  EXPECT_EQ(unused_parameters_note(parameters_of({"Operation/Load per side=500", "Sweep/Tolerance=1e-5"})),
+            "  note: not used here: Operation/Load per side (no contact damping), Sweep/Tolerance (of Study = sweep)");
+}
