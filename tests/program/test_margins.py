@@ -1,0 +1,36 @@
+"""Decisions on rank, determinacy and multiplicity keep two orders of magnitude from their thresholds on all shipped scenes."""
+
+import sys
+import unittest
+
+from program import EXECUTABLE, SOURCE
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+import measure_margins  # noqa: E402
+
+# The shipped scenes on a coarse mesh and a narrower band, with fewer values and modes: seconds instead of minutes.
+COARSE = ["Geometry/Nodes per pin face=7", "Geometry/Pin layers=2", "Geometry/Disc layers=2", "Band/Maximum frequency=2000",
+          "Output/Mode shapes=none", "Sweep/Number of friction coefficients=10", "Sweep/Map friction coefficients=3",
+          "Sweep/Number of map values=3", "Reduction/Component modes=20, 24, 24"]
+
+# [m]; 18 pins and curved quadratic elements need finer meshes
+ELEMENT_SIZES = {"disc_pins_18": 0.03, "quadratic": 0.023}
+
+
+class MarginsTest(unittest.TestCase):
+    def test_shipped_scenes(self):
+        margins = {}
+        for file in measure_margins.shipped():
+            size = ELEMENT_SIZES.get(file.stem, 0.04)
+            found = measure_margins.decisions(EXECUTABLE, str(file), [*COARSE, f"Geometry/Element size={size}"])
+            self.assertGreater(len(found), 4, file)
+            measure_margins.add_margins(margins, found, file.stem)
+        # The scenes reach both sides of what matters most
+        elastic = margins["eigenvalue of the symmetric problem / largest wanted one"]
+        self.assertLess(elastic.below, 15)
+        self.assertLess(elastic.above, 15)
+        self.assertEqual(measure_margins.small_margins(margins), [], margins)
+
+
+if __name__ == "__main__":
+    unittest.main()
