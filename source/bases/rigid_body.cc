@@ -15,9 +15,6 @@ namespace Squeal
     const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency * zero_frequency);
     const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
 
-    /// ω_max / s for a disc that is free or held softly.
-    constexpr double band_per_shift = 50.;
-
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
     std::pair<MultiVector, std::vector<double>> rayleigh_ritz(const MultiVector &X, const SecondOrderSystem &system)
     {
@@ -40,7 +37,7 @@ namespace Squeal
      */
     double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
     {
-      const double s = largest_circular_frequency / band_per_shift;
+      const double s = largest_circular_frequency / band_per_stabilizing_shift;
       return eigenvalues.front() < s * s ? s : 0.;
     }
   } // namespace

@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/matrix_operator.h>
 #include <squeal/stability/krylov_modes.h>
@@ -34,6 +35,36 @@ namespace Squeal
       std::shared_ptr<const SparseMatrix> matrix;
       const CoupledSystem                &system;
     };
+
+    /// Q(s)⁻¹ at friction coefficient @p mu, by @p inverse or by factors kept in @p lu.
+    const LinearOperator &inverse_with_friction(const SecondOrderSystem        &matrices,
+                                                const double                    shift,
+                                                const double                    mu,
+                                                const SolverParameters         &parameters,
+                                                UpdatedInverse                 &inverse,
+                                                std::unique_ptr<Factorization> &lu)
+    {
+      if (parameters.shift_inverse == ShiftInverse::updated_cholesky)
+        {
+          inverse.set_friction_coefficient(mu);
+          return inverse;
+        }
+      const auto library = parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library;
+      lu                 = factorize_general(*pencil_at(matrices, shift), library, "stiffness of the coupled system with friction");
+      return *lu;
+    }
+
+    ComplexModes complex_modes(const QuadraticModes &found)
+    {
+      ComplexModes modes;
+      modes.lambda         = found.values;
+      modes.real_part      = found.real_part;
+      modes.imaginary_part = found.imaginary_part;
+      modes.real_values    = found.real_values;
+      modes.n_rigid_body   = found.n_zero_values / 2;
+      modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
+      return modes;
+    }
   } // namespace
 
   ComplexModes krylov_modes(const CoupledSystem    &system,
@@ -58,17 +89,6 @@ namespace Squeal
     const DampingOperator   damping(matrices.damping, system);
     const QuadraticPencil   pencil{&mass, system.has_damping() ? &damping : nullptr, &stiffness};
 
-    // Its inverse at the shift
-    std::unique_ptr<Factorization> lu;
-    if (parameters.shift_inverse == ShiftInverse::sparse_lu)
-      {
-        const auto library = parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library;
-        lu                 = factorize_general(*pencil_at(matrices, shift), library, "stiffness of the coupled system with friction");
-      }
-    else
-      inverse.set_friction_coefficient(mu);
-    const LinearOperator &shift_inverse = lu ? static_cast<const LinearOperator &>(*lu) : inverse;
-
     QuadraticModesOptions options;
     options.shift             = shift;
     options.largest_frequency = largest_circular_frequency;
@@ -77,15 +97,24 @@ namespace Squeal
     options.tolerance         = parameters.complex_tolerance;
     options.stiffness_norm    = matrices.stiffness->NormInf();
     options.report            = [&](const std::string &state) { progress.update(state); };
-    const QuadraticModes found = quadratic_modes(pencil, shift_inverse, options);
 
-    ComplexModes modes;
-    modes.lambda         = found.values;
-    modes.real_part      = found.real_part;
-    modes.imaginary_part = found.imaginary_part;
-    modes.real_values    = found.real_values;
-    modes.n_rigid_body   = found.n_zero_values / 2;
-    modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
+    ComplexModes                   modes;
+    std::unique_ptr<Factorization> lu;
+    try
+      {
+        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, inverse, lu), options));
+      }
+    catch (const SolverError &)
+      {
+        // Near the friction coefficient where a mode begins to diverge K̃ is almost singular, and its inverse magnifies rounding
+        // errors: a shift helps. If the reason was another one, the next attempt says so.
+        if (shift != 0. || system.modal_damping)
+          throw;
+        options.shift = largest_circular_frequency / band_per_stabilizing_shift;
+        UpdatedInverse shifted(system, options.shift, parameters.library);
+        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, shifted, lu), options));
+        modes.summary += ", shifted";
+      }
     finish_modes(system, mu, inverse, modes);
     return modes;
   }

@@ -31,8 +31,8 @@ namespace Squeal
       for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
         if (run.parameters.discretization.degree == 1 && material.poisson_ratio >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
-                                 locking_poisson_ratio, " on bending frequencies are more than 1 % too high, growth rates off by a third "
-                                 "and more; set Discretization/Degree = 2"));
+                                 locking_poisson_ratio, " on bending frequencies are more than 1 % too high, growth rates less accurate "
+                                 "still; set Discretization/Degree = 2"));
     }
   } // namespace
 

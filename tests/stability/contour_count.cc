@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include <iterator>
+
 using namespace Squeal;
 using namespace Squeal::Testing;
 
@@ -122,6 +124,40 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
       EXPECT_EQ(count(system, {unstable}, contour(0.999 * l.imag(), 1., method))[0].n_modes, 0);
       EXPECT_EQ(count(system, {unstable}, contour(1.001 * l.imag(), 1., method))[0].n_modes, 2);
     }
+}
+
+
+
+TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
+{
+  // Modes diverge, and others grow faster than the band is wide
+  const Scene  s      = scene(RadialDissipation::none);
+  const double radius = band_radius(omega_max);
+  int          n_real = 0;
+  for (const double mu : {3., 6., 10.})
+    {
+      const ComplexModes found = krylov(s.coupled, mu, 1e-9), other = iterated(s.coupled, mu, 1e-8);
+      EXPECT_LT(largest(distances(other.lambda, found.lambda)), 1e-6);
+      EXPECT_EQ(count(s.coupled, {mu}, contour(omega_max))[0].n_modes, n_inside(found.lambda, omega_max));
+
+      // Real eigenvalues and the whole disc beside a dense solution
+      const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+      const auto              dense    = dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), omega_max);
+      std::vector<Complex>    inside;
+      std::copy_if(dense.values.begin(), dense.values.end(), std::back_inserter(inside), [&](const Complex &l) { return std::abs(l) <= radius; });
+      EXPECT_LT(largest(distances(found.lambda, inside)), 1e-7);
+      std::vector<double> real;
+      std::copy_if(dense.real_values.begin(), dense.real_values.end(), std::back_inserter(real), [&](const double l) { return std::abs(l) <= radius; });
+      ASSERT_EQ(found.real_values.size(), real.size());
+      ASSERT_EQ(other.real_values.size(), real.size());
+      for (std::size_t j = 0; j < real.size(); ++j)
+        {
+          EXPECT_NEAR(found.real_values[j] / real[j], 1., 1e-7);
+          EXPECT_NEAR(other.real_values[j] / real[j], 1., 1e-6);
+        }
+      n_real += real.size();
+    }
+  EXPECT_GT(n_real, 0);
 }
 
 

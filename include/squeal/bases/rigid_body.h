@@ -7,6 +7,9 @@
 
 namespace Squeal
 {
+  /// ω_max / s for a shift s that keeps the inverse of K + s² M from magnifying slow motions [-].
+  inline constexpr double band_per_stabilizing_shift = 50.;
+
   /// Displacements along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
   MultiVector rigid_motions(const Model &model, unsigned int component);
 

@@ -13,6 +13,8 @@ namespace Squeal
    * @param inverse    factor and attachment modes of the frictionless system at @p shift
    * @param n_expected real modes in the band, which tells how many to look for
    *
+   * Where the stiffness with friction is almost singular without a shift, a factor with a shift is made for this μ.
+   *
    * Throws SolverError if a mode misses the tolerance, or if there is modal damping and the shift is not zero.
    */
   ComplexModes krylov_modes(const CoupledSystem    &system,
