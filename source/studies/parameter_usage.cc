@@ -81,7 +81,7 @@ namespace Squeal
 
     // --------------------------------------------------------------------- rules
 
-    Reason damping_of_the_material(const Parameters &p)
+    Reason no_damping(const Parameters &p)
     {
       return unless(p.has_friction(), "the frictionless problem has no damping");
     }
@@ -94,11 +94,11 @@ namespace Squeal
     const std::vector<UsageRule> &rules()
     {
       static const std::vector<UsageRule> table = {
-        {"Disc material/Rayleigh alpha", damping_of_the_material},
-        {"Disc material/Rayleigh beta", damping_of_the_material},
-        {"Pin material/Rayleigh alpha", damping_of_the_material},
-        {"Pin material/Rayleigh beta", damping_of_the_material},
-        {"Damping/", damping_of_the_material},
+        {"Disc material/Rayleigh alpha", no_damping},
+        {"Disc material/Rayleigh beta", no_damping},
+        {"Pin material/Rayleigh alpha", no_damping},
+        {"Pin material/Rayleigh beta", no_damping},
+        {"Damping/", no_damping},
 
         {"Operation/Friction coefficient",
          [](const Parameters &p) {
@@ -121,8 +121,8 @@ namespace Squeal
            return unless(is_shared || (p.uses_load_per_side() && (p.has_friction() || p.needs_steady_sliding())),
                          p.needs_steady_sliding() ? "Steady sliding/Control = displacement" : "no contact damping");
          }},
-        {"Operation/Radial dissipation", damping_of_the_material},
-        {"Operation/Friction slope", damping_of_the_material},
+        {"Operation/Radial dissipation", no_damping},
+        {"Operation/Friction slope", no_damping},
 
         {"Steady sliding/Contact state",
          [](const Parameters &p) { return unless(p.study != Study::dissipation, "the study compares both states"); }},
