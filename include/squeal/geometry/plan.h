@@ -32,7 +32,7 @@ namespace Squeal
       Side                      side;
       std::vector<unsigned int> faces; ///< indices into Plan::faces, ascending
       Point                     displacement; ///< from the place in the plan to that on the disc [m]
-      bool                      is_round;     ///< filled by fill_with_o_grid(): it may turn about its centre
+      bool                      is_round = false; ///< filled by fill_with_o_grid(): it may turn about its centre
     };
 
     struct Curve
