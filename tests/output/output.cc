@@ -83,7 +83,7 @@ TEST(Tables, TwelveDigitsAndUnitsOnDisk)
   EXPECT_EQ(table.n_rows(), 2u);
   EXPECT_EQ(csv(table), "label,frequency [Hz],share [-],number [-],rest [1/s]\n"
                         "A0-2 -,333.333333333,1e-20,42,\n"
-                        "\"a,\"\"b\"\"\",-0,2.5,-1,1\n");
+                        "\"a,\"\"b\"\"\",0,2.5,-1,1\n");
 
   // On the screen: as many lines, all of one width
   std::ostringstream screen;
