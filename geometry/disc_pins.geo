@@ -100,7 +100,9 @@ For pin In {1 : n_pins}
 EndFor
 
 // Holes that overlap, because a pin overlaps two of the other side, move apart,
-// and so do holes of pins on different sides with no room for elements between.
+// and so do holes of pins on different sides with no room for elements between:
+// halving a circle of three intervals moves nodes by half its radius.
+closest = (k > 1) ? 1.05 : 1.25;
 least   = disc_inner_radius + 0.55 * pin_diameter;
 most    = disc_outer_radius - 0.55 * pin_diameter;
 crowded = 1;
@@ -113,10 +115,9 @@ For pass In {1 : 50}
           dx = hole_x~{pin} - hole_x~{other};
           dy = hole_y~{pin} - hole_y~{other};
           distance = Hypot(dx, dy);
-          apart    = (pin <= n_top) == (other <= n_top) ? 1 : 1.05;
-          If(distance < apart * pin_diameter)
+          If(distance < ((pin <= n_top) == (other <= n_top) ? 1 : closest) * pin_diameter)
             crowded = 1;
-            push = (1.1 * pin_diameter / distance - 1) / 2;
+            push = ((closest + 0.05) * pin_diameter / distance - 1) / 2;
             For which In {0 : 1}
               pushed = which ? pin : other;
               sign   = which ? 1 : -1;

@@ -5,6 +5,7 @@
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <vector>
@@ -30,7 +31,7 @@ namespace Squeal
     // What is_misplaced() does not mind
     constexpr double negligible_angle  = 0.1 * pi / 180.;
     constexpr double negligible_offset = 1e-3; ///< [radius]
-    constexpr double clearly_rounder   = 0.1;  ///< share of the lateral area
+    constexpr double clearly_rounder   = 0.1;  ///< share of the area
 
     struct Face
     {
@@ -105,17 +106,24 @@ namespace Squeal
       return {a, -(inverse * (transpose(av) * a))};
     }
 
-    /// Share of the lateral area that a motion leaves where it is.
+    /**
+     * Share of the area that a motion leaves where it is: of the lateral faces, which tell where an axis is, or of
+     * the others, which tell how it is inclined, whichever is less.
+     */
     double fitting_share(const Surface &surface, const Motion &motion)
     {
-      double lateral = 0., fitting = 0.;
+      double all[2] = {0., 0.}, fitting[2] = {0., 0.};
       for (const Face &face : surface.faces)
-        if (std::abs(face.normal * motion.a) < largest_lateral_cosine)
-          {
-            lateral += face.area;
-            fitting += std::abs(motion.normal_velocity(face)) < fitting_motion ? face.area : 0.;
-          }
-      return lateral > 0. ? fitting / lateral : 0.;
+        {
+          const bool is_lateral = std::abs(face.normal * motion.a) < largest_lateral_cosine;
+          all[is_lateral] += face.area;
+          fitting[is_lateral] += std::abs(motion.normal_velocity(face)) < fitting_motion ? face.area : 0.;
+        }
+      double least = 1.;
+      for (const bool is_lateral : {false, true})
+        if (all[is_lateral] > 0.)
+          least = std::min(least, fitting[is_lateral] / all[is_lateral]);
+      return least;
     }
 
     std::string print(const std::array<double, 3> &vector, const double negligible)

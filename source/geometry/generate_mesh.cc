@@ -96,15 +96,7 @@ namespace Squeal
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && !variable.declaration.onelab_name.empty())
           numbers[variable.declaration.onelab_name] = *variable.value;
-      try
-        {
-          return run_mesher(driver.string(), script, scratch.string(), numbers, limits);
-        }
-      catch (const ForbiddenAction &action)
-        {
-          throw MeshError(std::string("The geometry ") + action.what(), GeometryScript(script).find(shell_statements).value_or(script),
-                          "remove the statement; if you trust every line of the file, set Geometry/Allow shell commands = true");
-        }
+      return run_mesher(driver.string(), script, scratch.string(), numbers, limits);
     }
 
     /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more.
@@ -113,8 +105,16 @@ namespace Squeal
       const TemporaryDirectory scratch;
       const MesherLimits       limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit,
                                 !parameters.allow_shell_commands};
-      return is_script(geometry) ? run_script(parameters, geometry, scratch.path, limits) :
-                                   run_mesher(geometry, geometry, scratch.path.string(), {}, limits);
+      try
+        {
+          return is_script(geometry) ? run_script(parameters, geometry, scratch.path, limits) :
+                                       run_mesher(geometry, geometry, scratch.path.string(), {}, limits);
+        }
+      catch (const ForbiddenAction &action)
+        {
+          throw MeshError(std::string("The geometry ") + action.what(), GeometryScript(geometry).find(shell_statements).value_or(geometry),
+                          "remove the statement; if you trust every line of the file, set Geometry/Allow shell commands = true");
+        }
     }
 
     /// The same on every process of the communicator: one runs Gmsh, and all get its mesh or its error.

@@ -13,7 +13,7 @@ namespace Squeal
     // Rows of faces around the bad ones that move along; a pin and its neighbour are fewer apart.
     constexpr int n_rings = 6;
 
-    constexpr int    max_sweeps        = 400;
+    constexpr int    max_sweeps        = 100;  ///< ε has been least for a third of them
     constexpr double epsilon_decrease  = 0.9;
     constexpr double smallest_epsilon  = 1e-3;
     constexpr double converged         = 1e-3; ///< relative decrease of a node's energy in a sweep

@@ -154,7 +154,16 @@ namespace Squeal
     file      = name;
     directory = parameter_directory;
     variables.clear();
-    if (const std::string geometry = path(); is_script(geometry))
+    std::string geometry;
+    try
+      {
+        geometry = path();
+      }
+    catch (const MeshError &)
+      {
+        return; // refused where it is opened
+      }
+    if (is_script(geometry))
       for (const GeometryVariable &variable : GeometryScript(geometry).variables())
         if (std::find(own_variables.begin(), own_variables.end(), variable.name) == own_variables.end())
           variables.push_back({variable, {}});

@@ -6,7 +6,6 @@
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <regex>
 #include <sstream>
 
 namespace Squeal
@@ -50,12 +49,16 @@ namespace Squeal
     /// The text between a bracket and its counterpart; empty where there is none.
     std::string inside_brackets(const std::string &text, const std::size_t open)
     {
-      int depth = 0;
+      int  depth     = 0;
+      bool in_string = false;
       for (std::size_t i = open; i < text.size(); ++i)
-        if (text[i] == '[' || text[i] == '{' || text[i] == '(')
-          ++depth;
-        else if ((text[i] == ']' || text[i] == '}' || text[i] == ')') && --depth == 0)
-          return text.substr(open + 1, i - open - 1);
+        {
+          in_string = in_string != (text[i] == '"');
+          depth += !in_string && (text[i] == '[' || text[i] == '{' || text[i] == '(');
+          depth -= !in_string && (text[i] == ']' || text[i] == '}' || text[i] == ')');
+          if (depth == 0)
+            return i == open ? "" : text.substr(open + 1, i - open - 1);
+        }
       return "";
     }
 
@@ -80,30 +83,88 @@ namespace Squeal
       return result;
     }
 
+    bool is_word_character(const char c)
+    {
+      return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+    }
+
+    /// Where a whole word begins at or after a position; npos where it does not.
+    std::size_t find_word(const std::string &text, const std::string &word, std::size_t from = 0)
+    {
+      for (; (from = text.find(word, from)) != std::string::npos; ++from)
+        if ((from == 0 || !is_word_character(text[from - 1])) &&
+            (from + word.size() == text.size() || !is_word_character(text[from + word.size()])))
+          break;
+      return from;
+    }
+
+    /// What follows each occurrence of a word, blanks left out: the position of its first character.
+    std::vector<std::size_t> positions_after(const std::string &text, const std::string &word)
+    {
+      std::vector<std::size_t> result;
+      for (std::size_t at = 0; (at = find_word(text, word, at)) != std::string::npos;)
+        {
+          at = text.find_first_not_of(" \t\r\n", at + word.size());
+          if (at == std::string::npos)
+            break;
+          result.push_back(at);
+        }
+      return result;
+    }
+
+    /// The name at the beginning of a text; empty where it does not begin with one.
+    std::string leading_name(const std::string &text)
+    {
+      const std::size_t end = std::find_if_not(text.begin(), text.end(), is_word_character) - text.begin();
+      return end > 0 && std::isdigit(static_cast<unsigned char>(text[0])) ? "" : text.substr(0, end);
+    }
+
+    /// The text between the quotes with which a text begins; empty where it does not.
+    std::string leading_string(const std::string &text)
+    {
+      const std::size_t end = text.empty() || text[0] != '"' ? std::string::npos : text.find('"', 1);
+      return end == std::string::npos ? "" : text.substr(1, end - 1);
+    }
+
     /// The text of option Name "..." among the options of a number.
     std::string onelab_name(const std::vector<std::string> &options)
     {
-      static const std::regex pattern(R"re(^Name\s*"([^"]*)"$)re");
-      std::smatch             match;
       for (const std::string &option : options)
-        if (std::regex_match(option, match, pattern))
-          return match[1];
+        if (leading_name(option) == "Name")
+          return leading_string(trimmed(option.substr(std::string("Name").size())));
       return "";
     }
 
     /// One item of DefineConstant[...]: name, name = value, or name = {value, options}.
     std::optional<GeometryVariable> constant(const std::string &item)
     {
-      static const std::regex pattern(R"re(^([A-Za-z_]\w*)\s*(?:=\s*([\s\S]*))?$)re");
-      std::smatch             match;
-      if (!std::regex_match(item, match, pattern))
+      const std::string name = leading_name(item), rest = trimmed(item.substr(name.size()));
+      if (name.empty() || (!rest.empty() && rest[0] != '='))
         return {};
-      std::string value = trimmed(match[2]);
+      std::string value = rest.empty() ? "0" : trimmed(rest.substr(1));
       if (!value.empty() && value[0] == '{')
         value = items(inside_brackets(value, 0))[0];
-      if (!value.empty() && (value[0] == '"' || value[0] == '{'))
+      if (value.empty() || value[0] == '"' || value[0] == '{')
         return {};
-      return GeometryVariable{match[1], value.empty() ? "0" : value, ""};
+      return GeometryVariable{name, value, ""};
+    }
+
+    /// The name to which the expression at a position is assigned; empty where it is not.
+    std::string assigned_name(const std::string &text, const std::size_t position)
+    {
+      const auto blank_before = [&](std::size_t at) {
+        while (at > 0 && std::isspace(static_cast<unsigned char>(text[at - 1])))
+          --at;
+        return at;
+      };
+      const std::size_t equal = blank_before(position);
+      if (equal == 0 || text[equal - 1] != '=')
+        return "";
+      const std::size_t end   = blank_before(equal - 1);
+      std::size_t       begin = end;
+      while (begin > 0 && is_word_character(text[begin - 1]))
+        --begin;
+      return leading_name(text.substr(begin, end - begin));
     }
   } // namespace
 
@@ -153,25 +214,24 @@ namespace Squeal
     text << std::ifstream(file).rdbuf();
     parts.push_back({file, without_comments(text.str())});
 
-    const std::string       here = parts.back().text;
-    static const std::regex pattern(R"re(\b(Include|Merge)\s*\(?\s*"([^"]*)")re");
-    for (std::sregex_iterator match(here.begin(), here.end(), pattern), end; match != end; ++match)
-      {
-        const fs::path  other = (fs::path(file).parent_path() / (*match)[2].str()).lexically_normal();
-        std::error_code ignored;
-        if (!fs::is_regular_file(other, ignored))
-          continue;
-        if ((*match)[1] == "Include" || is_script(other.string()))
-          read(other.string());
-        else
-          merged.push_back(other.string());
-      }
+    const std::string here = parts.back().text;
+    for (const char *statement : {"Include", "Merge"})
+      for (const std::size_t at : positions_after(here, statement))
+        {
+          const std::string name = leading_string(here.substr(at, here.find('\n', at) - at));
+          const fs::path    other = (fs::path(file).parent_path() / name).lexically_normal();
+          std::error_code   ignored;
+          if (name.empty() || !fs::is_regular_file(other, ignored))
+            continue;
+          if (statement == std::string("Include") || is_script(other.string()))
+            read(other.string());
+          else
+            merged.push_back(other.string());
+        }
   }
 
   std::vector<GeometryVariable> GeometryScript::variables() const
   {
-    static const std::regex       constants(R"re(\bDefineConstant\s*\[)re");
-    static const std::regex       numbers(R"re(([A-Za-z_]\w*)\s*=\s*DefineNumber\s*\[)re");
     std::vector<GeometryVariable> result;
     const auto                    add = [&](const GeometryVariable &variable) {
       if (std::none_of(result.begin(), result.end(), [&](const GeometryVariable &other) { return other.name == variable.name; }))
@@ -180,15 +240,16 @@ namespace Squeal
     for (const Part &part : parts)
       {
         const std::string &text = part.text;
-        for (std::sregex_iterator match(text.begin(), text.end(), constants), end; match != end; ++match)
-          for (const std::string &item : items(inside_brackets(text, match->position() + match->length() - 1)))
+        for (const std::size_t at : positions_after(text, "DefineConstant"))
+          for (const std::string &item : items(inside_brackets(text, at)))
             if (const auto variable = constant(item))
               add(*variable);
-        for (std::sregex_iterator match(text.begin(), text.end(), numbers), end; match != end; ++match)
+        for (std::size_t at = 0; (at = find_word(text, "DefineNumber", at)) != std::string::npos; ++at)
           {
-            const auto options = items(inside_brackets(text, match->position() + match->length() - 1));
-            if (const std::string name = onelab_name(options); !name.empty())
-              add({(*match)[1], options[0], name});
+            const auto        options = items(inside_brackets(text, text.find_first_of("[(", at)));
+            const std::string name = assigned_name(text, at), onelab = onelab_name(options);
+            if (!name.empty() && !onelab.empty())
+              add({name, options[0], onelab});
           }
       }
     return result;
@@ -211,7 +272,7 @@ namespace Squeal
         std::string        line;
         for (unsigned int number = 1; std::getline(lines, line); ++number)
           for (const std::string &word : words)
-            if (std::regex_search(line, std::regex("\\b" + word + "\\b")))
+            if (find_word(line, word) != std::string::npos)
               return part.file + ", line " + std::to_string(number) + ": " + trimmed(line);
       }
     return {};

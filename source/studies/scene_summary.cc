@@ -29,7 +29,7 @@ namespace Squeal
     constexpr Range bar_speeds       = {20., 20000.};  ///< [m/s]
     constexpr Range disc_masses      = {1e-3, 2e4};    ///< [kg]
 
-    constexpr double least_round = 0.5;  ///< share of the lateral area of a round disc [-]
+    constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
     constexpr double most_modes  = 500.; ///< that a user is likely to mean [-]
     constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
 
@@ -165,7 +165,7 @@ namespace Squeal
     check_disc_axis(axis, mesh, parameters.geometry.path());
     if (axis.round_about_z < least_round)
       run.warn(text("the disc is not round about the z axis, about which it turns: ", std::round(100. * axis.round_about_z),
-                    " % of its lateral area is"));
+                    " % of its surface is"));
     for (const std::string &doubt : implausible(bodies, parameters.materials))
       run.warn(doubt);
     if (n_modes > most_modes)

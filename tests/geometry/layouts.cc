@@ -10,44 +10,45 @@ namespace
 {
   const double pi = std::acos(-1.);
 
-  /// Two pins of each row, those above turned against those below.
+  /// Pins of the default layout, those above spread further than those below.
   GeometryParameters askew(const double spread, const unsigned int nodes_per_pin_face, const double element_size)
   {
     GeometryParameters parameters;
-    parameters.top                = {{0.1970, 0.1970, 0.2585, 0.2585}, {0., spread, 0., spread}};
-    parameters.bottom             = {{0.1970, 0.1970, 0.2585, 0.2585}, {0., 18.4, 0., 18.4}};
+    parameters.top.angles         = {-spread, 0., spread, -spread, 0., spread};
     parameters.nodes_per_pin_face = nodes_per_pin_face;
     parameters.element_size       = element_size;
     parameters.pin_layers         = 1;
     return parameters;
   }
+
+  /// Nodes of the contact faces above on the outline of the pin at this place.
+  unsigned int n_on_outline(const HexMesh &mesh, const double radius, const double angle, const double pin_radius)
+  {
+    unsigned int n = 0;
+    for (const unsigned int node : nodes_on(mesh, "pin_contact"))
+      n += mesh.points[node][2] > 0. && std::abs(std::hypot(mesh.points[node][0] - radius * std::cos(angle * pi / 180.),
+                                                            mesh.points[node][1] - radius * std::sin(angle * pi / 180.)) -
+                                                 pin_radius) < 1e-9;
+    return n;
+  }
 } // namespace
 
 TEST(Layouts, PinsThatOverlapAskewAreMeshed)
 {
-  for (const double spread : {24., 30., 33.})
-    for (const unsigned int nodes : {7, 19})
+  for (const double spread : {27., 30., 33.})
+    for (const unsigned int k : {1, 2})
       for (const double size : {0.012, 0.02, 0.03})
         {
-          SCOPED_TRACE(std::to_string(spread) + " degrees, " + std::to_string(nodes) + " nodes, " + std::to_string(size) + " m");
-          const GeometryParameters parameters = askew(spread, nodes, size);
+          SCOPED_TRACE(std::to_string(spread) + " degrees, k = " + std::to_string(k) + ", " + std::to_string(size) + " m");
+          const GeometryParameters parameters = askew(spread, 3 * k * (k + 1) + 1, size);
           const HexMesh            mesh       = generate_mesh(parameters);
           EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, smallest_scaled_jacobian);
 
           // Every pin is a regular polygon at its place
-          const unsigned int k = nodes == 7 ? 1 : 2;
-          EXPECT_NEAR(volume(mesh, "pin_"), 8. * 3. * k * std::pow(parameters.pin_diameter / 2., 2) * std::sin(pi / (3. * k)) * parameters.pin_height,
-                      1e-10);
-          for (const double angle : {0., spread})
-            {
-              unsigned int on_circle = 0;
-              for (const unsigned int node : nodes_on(mesh, "pin_contact"))
-                on_circle += mesh.points[node][2] > 0. &&
-                             std::abs(std::hypot(mesh.points[node][0] - 0.1970 * std::cos(angle * pi / 180.),
-                                                 mesh.points[node][1] - 0.1970 * std::sin(angle * pi / 180.)) -
-                                      parameters.pin_diameter / 2.) < 1e-9;
-              EXPECT_EQ(on_circle, 6 * k);
-            }
+          const double radius = parameters.pin_diameter / 2.;
+          EXPECT_NEAR(volume(mesh, "pin_"), 12. * 3. * k * radius * radius * std::sin(pi / (3. * k)) * parameters.pin_height, 1e-10);
+          for (std::size_t pin = 0; pin < 6; ++pin)
+            EXPECT_EQ(n_on_outline(mesh, parameters.top.radii[pin], parameters.top.angles[pin], radius), 6 * k);
         }
 }
 

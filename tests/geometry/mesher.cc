@@ -47,7 +47,7 @@ TEST(Mesher, ConfinesGmsh)
   EXPECT_EQ(attempt("SystemCall \"true\";"), "starts another program");
   EXPECT_EQ(attempt("NonBlockingSystemCall \"true\";"), "starts another program");
   expect_mentions(attempt("Printf(\"x\") > \"trace\";"), {"trace`"});
-  expect_mentions(attempt("Save \"trace\";"), {"trace`"});
+  expect_mentions(attempt("Save \"trace.msh\";"), {"trace.msh`"});
   expect_mentions(attempt("CreateDir \"trace\";"), {"trace`"});
 }
 

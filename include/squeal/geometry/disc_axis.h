@@ -14,7 +14,7 @@ namespace Squeal
     std::array<double, 3> centre;    ///< point of the axis nearest to the disc's centre [m]
     double                angle;     ///< between the axis and z [rad]
     double                offset;    ///< distance of the centre from the z axis [m]
-    double                round;     ///< share of the lateral area that is round about the axis [-]
+    double                round;     ///< share of the surface that is round about the axis [-]
     double                round_about_z; ///< the same about z [-]
 
     /// Whether the disc is round about this axis, and this axis is not z.

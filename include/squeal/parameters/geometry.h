@@ -50,7 +50,7 @@ namespace Squeal
     std::string           directory; ///< where the parameter file is; a relative file is looked for there first
     std::vector<Variable> variables; ///< of the script, those that parameters above set left out
 
-    /// Takes over file and directory, and the variables of the file where it is a script. Throws MeshError if there is no such file.
+    /// Takes over file and directory, and the variables of the file where it is a script that exists.
     void set_file(const std::string &name, const std::string &parameter_directory);
 
     /// Path of the file. Throws MeshError if there is none.
