@@ -88,8 +88,10 @@ For pin In {1 : n_pins}
   other = twin~{pin};
   hole_x~{pin} = x~{pin};
   hole_y~{pin} = y~{pin};
+  opposite~{pin} = other > 0;
   If(other)
     If(Hypot(x~{pin} - x~{other}, y~{pin} - y~{other}) > tolerance)
+      opposite~{pin} = 0;
       mean_x = (x~{pin} + x~{other}) / 2;
       mean_y = (y~{pin} + y~{other}) / 2;
       scale  = (radius~{pin} + radius~{other}) / 2 / Hypot(mean_x, mean_y);
@@ -115,7 +117,9 @@ For pass In {1 : 50}
           dx = hole_x~{pin} - hole_x~{other};
           dy = hole_y~{pin} - hole_y~{other};
           distance = Hypot(dx, dy);
-          If(distance < ((pin <= n_top) == (other <= n_top) ? 1 : closest) * pin_diameter)
+          // A pin exactly opposite another is on the same side as any third
+          same_side = (pin <= n_top) == (other <= n_top) || opposite~{pin} || opposite~{other};
+          If(distance < (same_side ? 1 : closest) * pin_diameter)
             crowded = 1;
             push = ((closest + 0.05) * pin_diameter / distance - 1) / 2;
             For which In {0 : 1}

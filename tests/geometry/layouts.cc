@@ -52,6 +52,22 @@ TEST(Layouts, PinsThatOverlapAskewAreMeshed)
         }
 }
 
+TEST(Layouts, OppositePinsStayWhereThePlanHasThem)
+{
+  for (const unsigned int nodes : {7, 19})
+    {
+      GeometryParameters parameters;
+      parameters.nodes_per_pin_face = nodes;
+      parameters.element_size       = 0.02;
+      const HexMesh                              mesh = generate_mesh(parameters);
+      std::set<std::pair<double, double>>        above, below;
+      for (const unsigned int node : nodes_on(mesh, "disc_contact"))
+        (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
+      EXPECT_EQ(above.size(), 6 * nodes);
+      EXPECT_EQ(above, below); // to the last bit: nothing was sheared
+    }
+}
+
 TEST(Layouts, InvertedFacesAreTurnedOver)
 {
   // A grid of 4 x 4 faces whose inner nodes are mirrored
