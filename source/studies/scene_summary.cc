@@ -30,7 +30,6 @@ namespace Squeal
     constexpr Range disc_masses      = {1e-3, 2e4};    ///< [kg]
 
     constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
-    constexpr double most_modes  = 500.; ///< that a user is likely to mean [-]
     constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
 
     bool are_alike(const BodySummary &a, const BodySummary &b)
@@ -153,8 +152,9 @@ namespace Squeal
     // Modes and memory
     const unsigned int degree  = parameters.discretization.degree;
     const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band)).coupled();
+    const unsigned int allowed = parameters.solvers.maximum_modes;
     const ProblemSize  size    = expected_size(mesh, degree);
-    const double       bytes   = size.memory(degree, std::min(n_modes, most_modes));
+    const double       bytes   = size.memory(degree, std::min<double>(n_modes, allowed));
     run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9, " GB of memory; ",
                            available_memory() / 1e9, " GB are available"));
     run.measure("expected modes [-]", n_modes);
@@ -168,8 +168,9 @@ namespace Squeal
                     " % of its surface is"));
     for (const std::string &doubt : implausible(bodies, parameters.materials))
       run.warn(doubt);
-    if (n_modes > most_modes)
-      run.warn(text("some ", n_modes, " modes are expected, which takes long: lower Band/Maximum frequency, or check units"));
-    check_memory(size, degree, std::min(n_modes, most_modes), parameters.geometry.path());
+    if (n_modes > allowed)
+      run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
+                    ": lower Band/Maximum frequency, or check units"));
+    check_memory(size, degree, std::min<double>(n_modes, allowed), parameters.geometry.path());
   }
 } // namespace Squeal
