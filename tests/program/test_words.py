@@ -107,12 +107,12 @@ class Words(ProgramTest):
 
     def test_the_answer_comes_on_one_screen(self):
         results = self.folder / "results"
-        screen  = self.screen()
-        lines   = screen.splitlines()
+        screen = self.screen()
+        lines = screen.splitlines()
         self.assertLessEqual(len(lines), 40)
-        rows    = sorted((row for row in read_table(results / "complex_modes.csv") if float(row["growth rate [1/s]"]) > 1e-3),
+        rows = sorted((row for row in read_table(results / "complex_modes.csv") if float(row["growth rate [1/s]"]) > 1e-3),
                          key=lambda row: -float(row["divergence rate [%]"]))
-        start   = next(i for i, line in enumerate(lines) if "unstable mode " in line)
+        start = next(i for i, line in enumerate(lines) if "unstable mode " in line)
         self.assertRegex(lines[start - 2], rf"squeal: {len(rows)} unstable modes at mu = 0.4, led by {re.escape(rows[0]['label'])} at \d+ Hz")
         for row, line in zip(rows, lines[start + 1:]):
             self.assertTrue(line.strip().startswith(row["label"]), line)
@@ -125,19 +125,19 @@ class Words(ProgramTest):
         self.assertFalse((self.folder / "results" / "table1.csv").exists())
         self.write("default.prm", "")
         results = self.run_scene("default", *COARSE, file="default.prm")
-        rows    = {row["label"]: row for row in read_table(results / "table1.csv")}
+        rows = {row["label"]: row for row in read_table(results / "table1.csv")}
         self.assertEqual(rows["A0-4 +"]["divergence paper [%]"], "0.64")
         self.assertGreater(float(rows["A0-4 +"]["divergence [%]"]), 0.1)
         # Its complex modes have friction of 0.4
         results = self.run_scene("default", *COARSE, "Operation/Friction coefficient=0.2", file="default.prm")
-        rows    = {row["label"]: row for row in read_table(results / "table1.csv")}
+        rows = {row["label"]: row for row in read_table(results / "table1.csv")}
         self.assertEqual(rows["A0-4 +"]["divergence [%]"], "")
         self.assertNotEqual(rows["A0-4 +"]["coupled [Hz]"], "")
 
     def test_growing_modes_have_one_name(self):
         """Of a doublet the one that grows is `+` in every study."""
         self.write("default.prm", "")
-        sweep   = ["Study=sweep", "Sweep/First friction coefficient=0.3", "Sweep/Last friction coefficient=0.4",
+        sweep = ["Study=sweep", "Sweep/First friction coefficient=0.3", "Sweep/Last friction coefficient=0.4",
                    "Sweep/Number of friction coefficients=3"]
         studies = {"stability": read_table(self.run_scene("names", *COARSE, file="default.prm") / "complex_modes.csv"),
                    "sweep": [row for row in read_table(self.run_scene("sweep", *COARSE, *sweep, file="default.prm") / "branches.csv")
