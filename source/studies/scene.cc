@@ -44,13 +44,14 @@ namespace Squeal
     run.progress.begin("Mesh");
     scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces(), run.communicator);
     const MeshQuality quality = check_mesh(scene.mesh);
-    check_wave_resolution(scene.mesh, parameters.materials, parameters.discretization.degree,
-                          circular_frequency(parameters.discretization.maximum_frequency));
     run.count("elements", scene.mesh.hexahedra.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ",
                              quality.worst_scaled_jacobian));
     summarise_scene(scene.mesh, run);
+    // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
+    check_wave_resolution(scene.mesh, parameters.materials, parameters.discretization.degree,
+                          circular_frequency(parameters.discretization.maximum_frequency));
     if (!run.is_dry)
       run.keep_geometry();
 
