@@ -12,9 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -28,31 +26,10 @@ namespace Squeal
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
 
-    /// A directory of its own that vanishes at the end.
-    struct TemporaryDirectory
-    {
-      TemporaryDirectory()
-      {
-        std::string pattern = (fs::temp_directory_path() / "squeal-XXXXXX").string();
-        if (::mkdtemp(pattern.data()) == nullptr)
-          throw FileError("No temporary directory can be made", pattern, "set TMPDIR to a writable directory");
-        path = pattern;
-      }
-      ~TemporaryDirectory()
-      {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-      }
-      TemporaryDirectory(const TemporaryDirectory &)            = delete;
-      TemporaryDirectory &operator=(const TemporaryDirectory &) = delete;
-
-      fs::path path;
-    };
-
     /// A .geo that sets the parameters and includes the geometry, which keeps values that exist.
-    void write_driver(const fs::path &driver, const fs::path &geometry, const GeometryParameters &parameters)
+    std::string driver(const std::string &geometry, const GeometryParameters &parameters)
     {
-      std::ofstream file(driver);
+      std::ostringstream file;
       file.precision(std::numeric_limits<double>::max_digits10);
       const auto scalar = [&](const char *name, const double value) { file << name << " = " << value << ";\n"; };
       const auto list   = [&](const char *name, const std::vector<double> &values) {
@@ -79,36 +56,32 @@ namespace Squeal
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && variable.declaration.onelab_name.empty())
           scalar(variable.declaration.name.c_str(), *variable.value);
-      file << "Include \"" << geometry.string() << "\";\n";
-      if (!file.flush())
-        throw FileError("The values for Gmsh could not be written", driver.string(), "check space and permissions");
+      file << "Include \"" << geometry << "\";\n";
+      return file.str();
     }
 
     // Statements of Gmsh by which a script reaches beyond the mesh
     const std::vector<std::string> shell_statements = {"SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print",
                                                        "Printf", "Plugin"};
 
-    GmshMesh run_script(const GeometryParameters &parameters, const std::string &script, const fs::path &scratch, const MesherLimits &limits)
+    MesherInput mesher_input(const GeometryParameters &parameters, const std::string &geometry)
     {
-      const fs::path driver = scratch / "driver.geo";
-      write_driver(driver, script, parameters);
-      std::map<std::string, double> numbers;
+      if (!is_script(geometry))
+        return {geometry, "", {}};
+      MesherInput input{geometry, driver(geometry, parameters), {}};
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && !variable.declaration.onelab_name.empty())
-          numbers[variable.declaration.onelab_name] = *variable.value;
-      return run_mesher(driver.string(), script, scratch.string(), numbers, limits);
+          input.numbers[variable.declaration.onelab_name] = *variable.value;
+      return input;
     }
 
     /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more.
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
-      const TemporaryDirectory scratch;
-      const MesherLimits       limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit,
-                                !parameters.allow_shell_commands};
+      const MesherLimits limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit, !parameters.allow_shell_commands};
       try
         {
-          return is_script(geometry) ? run_script(parameters, geometry, scratch.path, limits) :
-                                       run_mesher(geometry, geometry, scratch.path.string(), {}, limits);
+          return run_mesher(mesher_input(parameters, geometry), geometry, limits);
         }
       catch (const ForbiddenAction &action)
         {

@@ -10,13 +10,14 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -27,7 +28,6 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *mesher_log   = "gmsh.log";
     constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the place";
     constexpr std::size_t quoted_lines = 8;
 
@@ -37,36 +37,100 @@ namespace Squeal
                       "build the target squeal_mesher; check permissions and limits on processes");
     }
 
+    /// An open file or end of a pipe, above the numbers that the mesher is given.
+    class Descriptor
+    {
+    public:
+      /// Takes over @p opened, the result of a call that opens a file or fails with errno.
+      explicit Descriptor(const int opened)
+      {
+        constexpr int least = 10;
+        number              = opened < 0 ? -1 : fcntl(opened, F_DUPFD_CLOEXEC, least);
+        const int error     = errno;
+        if (opened >= 0)
+          close(opened);
+        if (number < 0)
+          cannot_start(error);
+      }
+
+      ~Descriptor()
+      {
+        reset();
+      }
+
+      Descriptor(const Descriptor &)            = delete;
+      Descriptor &operator=(const Descriptor &) = delete;
+
+      void reset()
+      {
+        if (number >= 0)
+          close(number);
+        number = -1;
+      }
+
+      int operator*() const
+      {
+        return number;
+      }
+
+    private:
+      int number = -1;
+    };
+
+    /// A file in memory that vanishes with its last descriptor.
+    int memory_file(const char *name, const std::string &content = "")
+    {
+      const int file = memfd_create(name, MFD_CLOEXEC);
+      for (std::size_t written = 0; file >= 0 && written < content.size();)
+        {
+          const ssize_t n = pwrite(file, content.data() + written, content.size() - written, written);
+          if (n <= 0)
+            cannot_start(errno);
+          written += n;
+        }
+      return file;
+    }
+
+    std::string content_of(const Descriptor &file)
+    {
+      std::string       all;
+      std::vector<char> buffer(1 << 16);
+      for (ssize_t n; (n = pread(*file, buffer.data(), buffer.size(), all.size())) > 0;)
+        all.append(buffer.data(), n);
+      return all;
+    }
+
     /// A process that runs Gmsh, from its start until it is waited for or killed.
     class MesherProcess
     {
     public:
-      MesherProcess(const std::vector<std::string> &arguments, const std::vector<std::string> &environment, const std::string &log)
+      MesherProcess(const std::vector<std::string> &arguments, const std::vector<std::string> &environment, const std::string &script)
+        : printed(memory_file("gmsh.log"))
       {
-        int pipe_ends[2];
+        int pipe_ends[2] = {-1, -1};
         if (pipe2(pipe_ends, O_CLOEXEC) != 0)
           cannot_start(errno);
-        reply = pipe_ends[0];
+        Descriptor writing(pipe_ends[1]);
+        reply.emplace(pipe_ends[0]);
+        const Descriptor script_file(memory_file("driver.geo", script));
 
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-        posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-        posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], mesher_reply_descriptor);
+        for (const auto &[from, to] : {std::make_pair(*printed, STDOUT_FILENO), std::make_pair(*printed, STDERR_FILENO),
+                                       std::make_pair(*writing, mesher_reply_descriptor), std::make_pair(*script_file, mesher_script_descriptor)})
+          posix_spawn_file_actions_adddup2(&actions, from, to);
         const int error = posix_spawn(&process, SQUEAL_MESHER, &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
         posix_spawn_file_actions_destroy(&actions);
-        close(pipe_ends[1]);
         if (error != 0)
           {
-            close(reply);
+            is_over = true;
             cannot_start(error);
           }
       }
 
       ~MesherProcess()
       {
-        close(reply);
         if (!is_over)
           {
             kill(process, SIGKILL);
@@ -88,11 +152,11 @@ namespace Squeal
             const std::chrono::duration<double, std::milli> left = end - std::chrono::steady_clock::now();
             if (left.count() <= 0.)
               return {};
-            pollfd     waiting{reply, POLLIN, 0};
+            pollfd     waiting{**reply, POLLIN, 0};
             const int  longest_wait = 1000; // [ms]
             if (poll(&waiting, 1, std::min<double>(left.count() + 1., longest_wait)) <= 0)
               continue;
-            const ssize_t n = ::read(reply, buffer.data(), buffer.size());
+            const ssize_t n = ::read(**reply, buffer.data(), buffer.size());
             if (n == 0)
               return all;
             if (n > 0)
@@ -110,6 +174,12 @@ namespace Squeal
         return status;
       }
 
+      /// What Gmsh printed so far.
+      std::string log() const
+      {
+        return content_of(printed);
+      }
+
     private:
       static std::vector<char *> pointers(const std::vector<std::string> &texts)
       {
@@ -120,12 +190,13 @@ namespace Squeal
         return result;
       }
 
-      pid_t process = 0;
-      int   reply   = -1;
-      bool  is_over = false;
+      pid_t                     process = 0;
+      bool                      is_over = false;
+      Descriptor                printed;
+      std::optional<Descriptor> reply;
     };
 
-    std::vector<std::string> environment(const std::string &scratch, const bool is_confined)
+    std::vector<std::string> environment(const bool is_confined)
     {
       std::vector<std::string> result;
       if (is_confined)
@@ -133,8 +204,7 @@ namespace Squeal
           // Where the libraries are, and nothing else
           if (const char *path = std::getenv("LD_LIBRARY_PATH"))
             result.push_back(std::string("LD_LIBRARY_PATH=") + path);
-          for (const char *name : {"HOME", "TMPDIR"})
-            result.push_back(name + ("=" + scratch));
+          result.push_back("HOME=/nonexistent"); // no preferences of the libraries, either
         }
       else
         for (char **variable = environ; *variable != nullptr; ++variable)
@@ -145,9 +215,9 @@ namespace Squeal
     /// What Gmsh printed last, from the first error if there is one.
     std::string quoted(const std::string &log)
     {
-      std::ifstream            file(log);
+      std::istringstream       stream(log);
       std::vector<std::string> lines;
-      for (std::string line; std::getline(file, line);)
+      for (std::string line; std::getline(stream, line);)
         if (!line.empty())
           lines.push_back(line);
       const auto  first_error = std::find_if(lines.begin(), lines.end(), [](const std::string &line) { return line.rfind("Error", 0) == 0; });
@@ -200,33 +270,28 @@ namespace Squeal
     }
   } // namespace
 
-  GmshMesh run_mesher(const std::string                   &file,
-                      const std::string                   &where,
-                      const std::string                   &scratch,
-                      const std::map<std::string, double> &numbers,
-                      const MesherLimits                  &limits)
+  GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits)
   {
-    std::vector<std::string> arguments = {SQUEAL_MESHER, file, exact_text(limits.bytes), exact_text(limits.seconds),
-                                          limits.is_confined ? mesher_confined : mesher_free};
-    for (const auto &[name, value] : numbers)
+    std::vector<std::string> arguments = {SQUEAL_MESHER, input.script.empty() ? input.file : mesher_script_name, exact_text(limits.bytes),
+                                          exact_text(limits.seconds), limits.is_confined ? mesher_confined : mesher_free};
+    for (const auto &[name, value] : input.numbers)
       arguments.insert(arguments.end(), {name, exact_text(value)});
-    const std::string log = scratch + "/" + mesher_log;
 
-    MesherProcess                    mesher(arguments, environment(scratch, limits.is_confined), log);
+    MesherProcess                    mesher(arguments, environment(limits.is_confined), input.script);
     const std::optional<std::string> reply = mesher.read(limits.seconds);
     if (!reply)
       throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
                       "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");
     const int status = mesher.wait();
     if (reply->empty())
-      explain_end(status, log, where);
+      explain_end(status, mesher.log(), where);
     try
       {
         return mesh_from(*reply, limits, where);
       }
     catch (const std::length_error &)
       {
-        explain_end(status, log, where); // the reply breaks off
+        explain_end(status, mesher.log(), where); // the reply breaks off
       }
   }
 } // namespace Squeal

@@ -48,7 +48,7 @@ int main(int argc, char **argv)
   if (argc < 5)
     return 2;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  close_range(mesher_reply_descriptor + 1, ~0u, 0);
+  close_range(mesher_script_descriptor + 1, ~0u, 0);
   limit_resources(std::atof(argv[2]), std::atof(argv[3]));
   try
     {

@@ -13,9 +13,9 @@ namespace
     Physical Volume("disc") = {1};
   )";
 
-  GmshMesh mesh_of(const File &file, const MesherLimits &limits = {60., 4e9, true}, const std::map<std::string, double> &numbers = {})
+  GmshMesh mesh_of(const File &file, const MesherLimits &limits = {60., 4e9, true})
   {
-    return run_mesher(file.string(), "here", file.directory.string(), numbers, limits);
+    return run_mesher({file.string(), "", {}}, "here", limits);
   }
 } // namespace
 
@@ -36,6 +36,16 @@ TEST(Mesher, HandsOverWhatGmshHolds)
   EXPECT_EQ(to_bytes(from_bytes(bytes)), bytes);
   for (const std::size_t n : {std::size_t(0), std::size_t(7), bytes.size() / 2, bytes.size() - 1})
     EXPECT_THROW(from_bytes(bytes.substr(0, n)), std::length_error);
+}
+
+TEST(Mesher, ReadsAScriptFromMemoryWithNumbersOfItsOwn)
+{
+  std::string script = "size = DefineNumber[ 1, Name \"Parameters/Size\" ];\n" + std::string(box);
+  script.replace(script.find("1, 1, 1}"), 8, "1, 1, size}");
+  double height = 0.;
+  for (const auto &point : run_mesher({"", script, {{"Parameters/Size", 2.5}}}, "here", {60., 4e9, true}).points)
+    height = std::max(height, point[2]);
+  EXPECT_EQ(height, 2.5);
 }
 
 TEST(Mesher, ConfinesGmsh)

@@ -23,24 +23,25 @@ namespace Squeal
     using std::runtime_error::runtime_error;
   };
 
+  /// What Gmsh opens in that process.
+  struct MesherInput
+  {
+    std::string                   file;    ///< a mesh or geometry; unused where there is a script
+    std::string                   script;  ///< text of a geometry
+    std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by that name
+  };
+
   /**
    * Opens a geometry or mesh in a process of its own, meshes it as GmshSession
    * does (a solid where there are physical volumes, else a plan), and returns
    * what Gmsh then holds. Whatever happens to Gmsh there leaves this process and, if
-   * confined, the user's files alone. The process works in @p scratch, sees
-   * none of the user's environment if confined, and ends with this one.
+   * confined, the user's files alone. The process sees none of the user's
+   * environment if confined, and ends with this one. No temporary file is made.
    *
-   * @param file    what Gmsh opens
-   * @param where   name of the geometry that errors quote
-   * @param scratch folder for what Gmsh prints
-   * @param numbers values for DefineNumber[..., Name "..."], by that name
+   * @param where name of the geometry that errors quote
    *
    * Throws MeshError where Gmsh fails, crashes, ends by itself or exceeds its limits;
    * ForbiddenAction; FileError where the process cannot be started.
    */
-  GmshMesh run_mesher(const std::string                   &file,
-                      const std::string                   &where,
-                      const std::string                   &scratch,
-                      const std::map<std::string, double> &numbers,
-                      const MesherLimits                  &limits);
+  GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits);
 } // namespace Squeal

@@ -19,6 +19,10 @@ namespace Squeal
 
   inline constexpr int mesher_reply_descriptor = 3;
 
+  /// Where the mesher finds a script, and the name by which Gmsh opens it.
+  inline constexpr int         mesher_script_descriptor = 4;
+  inline constexpr const char *mesher_script_name       = "/proc/self/fd/4";
+
   /// Arguments of the mesher that say whether the geometry may do what confine() forbids.
   inline constexpr const char *mesher_confined = "confined", *mesher_free = "free";
 } // namespace Squeal
