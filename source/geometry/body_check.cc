@@ -59,7 +59,7 @@ namespace Squeal
     }
 
     /// Nodes of a named surface, by the volume they belong to.
-    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh &mesh, const std::vector<unsigned int> &volume_of_node, const char *name)
+    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh &mesh, const std::vector<unsigned int> &volume_of_node, const std::string &name)
     {
       std::vector<std::set<unsigned int>> result(mesh.volume_names.size());
       for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
@@ -80,7 +80,7 @@ namespace Squeal
     }
   } // namespace
 
-  void check_bodies(const HexMesh &mesh, const std::string &where)
+  void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
   {
     check_connected(mesh, where);
 
@@ -91,12 +91,22 @@ namespace Squeal
     const std::set<unsigned int> disc     = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
     const auto                   contacts = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
     const auto                   clamps   = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
+    std::vector<bool> is_held(mesh.volume_names.size(), false);
+    for (const std::string &surface : mounted_surfaces)
+      {
+        const auto mounted = nodes_by_volume(mesh, volume_of_node, surface);
+        for (std::size_t volume = 0; volume < mounted.size(); ++volume)
+          is_held[volume] = is_held[volume] || !mounted[volume].empty();
+      }
     for (std::size_t pin = 1; pin < mesh.volume_names.size(); ++pin)
       {
         const std::string &name = mesh.volume_names[pin];
         if (contacts[pin].empty())
           throw MeshError("'" + name + "' has no face on 'pin_contact', so it touches nothing", where,
                           "put its face on the disc into the physical surface 'pin_contact', or leave the volume out");
+        if (clamps[pin].empty() && !is_held[pin])
+          throw MeshError("'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
+                          "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
           throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it", where,
                           "exchange the names 'pin_clamp' and 'pin_contact' there");

@@ -75,10 +75,14 @@ namespace Squeal
       return input;
     }
 
-    /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more.
+    /**
+     * Runs Gmsh on the geometry, which may only read unless the parameters allow it more. The program's own geometries
+     * need no confinement, which not every system offers.
+     */
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
-      const MesherLimits limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit, !parameters.allow_shell_commands};
+      const bool         is_trusted = parameters.allow_shell_commands || is_supplied(geometry);
+      const MesherLimits limits{parameters.meshing_time_limit, 1e9 * parameters.meshing_memory_limit, !is_trusted};
       try
         {
           return run_mesher(mesher_input(parameters, geometry), geometry, limits);
@@ -184,7 +188,7 @@ namespace Squeal
       check_memory(expected_size(parameters), least_degree, no_modes, where);
     HexMesh            mesh        = mesh_once(parameters, where, additional_surfaces, communicator);
     check_parts(mesh, additional_surfaces, where);
-    check_bodies(mesh, where);
+    check_bodies(mesh, additional_surfaces, where);
     for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian; ++attempt)
       {
         parameters.element_size *= smaller_next_time;

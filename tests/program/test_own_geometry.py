@@ -208,6 +208,9 @@ class OwnGeometry(ProgramTest):
                               BLOCKS + other_pin + HEXAHEDRA + VOLUMES.replace("{2}", "{2, 3}") + SURFACES)
         self.geometry_refused(["'pin_2' has no face on 'pin_contact'", "touches nothing"],
                               BLOCKS + other_pin + HEXAHEDRA + VOLUMES + 'Physical Volume("pin_2") = {3};' + SURFACES)
+        self.geometry_refused(["'pin_2' has no face on 'pin_clamp'", "nothing holds it"],
+                              BLOCKS + "Box(3) = {0.1, 0.2, 0, 0.1, 0.1, 0.02};\n" + HEXAHEDRA + VOLUMES + 'Physical Volume("pin_2") = {3};' +
+                              SURFACES.replace("{11}", "{11, 17}"))
         self.geometry_refused(["'pin_1' touches the disc with its face on 'pin_clamp'", "exchange"],
                               BLOCKS + HEXAHEDRA + VOLUMES + SURFACES.replace("{11}", "{0}").replace("{12}", "{11}").replace("{0}", "{12}"))
         self.geometry_refused(["exchanged"], BLOCKS + HEXAHEDRA + VOLUMES.replace("{1}", "{0}").replace("{2}", "{1}").replace("{0}", "{2}") + SURFACES)

@@ -52,8 +52,8 @@ namespace Squeal
 
   /**
    * Throws MeshError, naming @p where, for a body in several pieces, a pin that
-   * touches nothing, and a pin whose clamp and contact are exchanged. Needs
-   * what check_parts() makes sure of.
+   * touches nothing, that neither a clamp nor a mount holds, or whose clamp and
+   * contact are exchanged. Needs what check_parts() makes sure of.
    */
-  void check_bodies(const HexMesh &mesh, const std::string &where);
+  void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
 } // namespace Squeal
