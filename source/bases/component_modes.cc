@@ -32,6 +32,7 @@ namespace Squeal
 
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
+                                 const ContactInterface      &closed,
                                  const SecondOrderSystem     &system,
                                  const Component              component,
                                  const ContactBoundary        boundary,
@@ -41,7 +42,7 @@ namespace Squeal
     std::vector<bool> selected(model.component_names().size());
     for (std::size_t c = 0; c < selected.size(); ++c)
       selected[c] = (c == 0) == (component == Component::disc);
-    const auto T = component_kernel(model, interface, selected, boundary);
+    const auto T = component_kernel(model, closed, selected, boundary);
 
     const SymmetricModes modes =
       symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, options);

@@ -40,7 +40,7 @@ namespace Squeal
     const std::string file = parameters.path();
     if (is_script(file))
       script.emplace(file);
-    is_plan = script ? !script->find({"Physical\\s+Volume"}) : !has_volumes(file);
+    is_plan = script ? !script->find({"Physical Volume"}) : !has_volumes(file);
   }
 
   bool GeometryUsage::uses(const std::string &name) const

@@ -272,7 +272,7 @@ namespace Squeal
         std::string        line;
         for (unsigned int number = 1; std::getline(lines, line); ++number)
           for (const std::string &word : words)
-            if (find_word(line, word) != std::string::npos)
+            if (find_word(single_spaced(line), word) != std::string::npos)
               return part.file + ", line " + std::to_string(number) + ": " + trimmed(line);
       }
     return {};

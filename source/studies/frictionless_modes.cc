@@ -95,7 +95,7 @@ namespace Squeal
       component_options.shift = component == Component::disc ? disc_shift * disc_shift : 0.;
       // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
       component_options.by_parts = component == Component::pins;
-      return component_modes(*scene.model, linearisation.interface, scene.system, component, boundary, band * band * limit, component_options);
+      return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit, component_options);
     };
     run.progress.begin("Component modes");
     result.disc            = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);

@@ -189,7 +189,7 @@ namespace Squeal
         {
           const double         omega = circular_frequency(band);
           const ComponentModes modes =
-            component_modes(*scene.model, linearisation.interface, scene.system, component, boundary, omega * omega, options);
+            component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, omega * omega, options);
           const int found = modes.eigenvalues.size();
           if (count == 0 && found == 0)
             throw SolverError(options.what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",

@@ -282,7 +282,7 @@ namespace
     const Model       model(mesh, degree, MPI_COMM_WORLD);
     const auto        interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
     const auto        system    = assemble(model, materials);
-    const auto        modes     = component_modes(model, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
+    const auto        modes     = component_modes(model, interface, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
     const MultiVector u         = displacements(model, 1, shape);
     const DenseMatrix shares    = gram(u, *system.mass * *modes.vectors);
     int               best      = 0;

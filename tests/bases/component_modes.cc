@@ -122,6 +122,16 @@ TEST(PinLabels, AnalyticFields)
 
 
 
+TEST(PinLabels, APinThatHardlyTouchesBendsAboutItsOwnAxis)
+{
+  const Scene            s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const ContactInterface closed(s.interface.begin(), s.interface.begin() + 1);
+  const double           limit = 2. * M_PI * 9000.;
+  const auto modes = component_modes(s.model, s.interface, closed, s.system, Component::pins, ContactBoundary::sliding, limit * limit, {});
+  ASSERT_GE(modes.labels.size(), 3u);
+  EXPECT_EQ((std::vector<std::string>(modes.labels.begin(), modes.labels.begin() + 3)), (std::vector<std::string>{"F1", "F1", "T1"}));
+}
+
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
   // Slender beams have flexural modes first; the numbers of every family ascend with frequency and count all pins.
@@ -130,7 +140,7 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
     {
       const double limit = 2. * M_PI * 9000.;
-      const auto   modes = component_modes(s.model, s.interface, s.system, Component::pins, boundary, limit * limit, {});
+      const auto   modes = component_modes(s.model, s.interface, s.interface, s.system, Component::pins, boundary, limit * limit, {});
       ASSERT_GE(modes.labels.size(), 3u);
       EXPECT_EQ((std::vector<std::string>(modes.labels.begin(), modes.labels.begin() + 2)), (std::vector<std::string>{"F1", "F1"}));
       EXPECT_NEAR(modes.eigenvalues[0] / modes.eigenvalues[1], 1., 1e-9); // the O-grid has a threefold axis
@@ -185,8 +195,8 @@ namespace
     References()
     {
       const double limit = 2. * M_PI * 4000.;
-      disc = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::free, limit * limit, {});
-      pins = component_modes(s.model, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
+      disc = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::free, limit * limit, {});
+      pins = component_modes(s.model, s.interface, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
     }
 
     /// Numbers of the first of two disc modes with one label and of a mode with another.
@@ -296,14 +306,14 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   EXPECT_GT(shift, 0.);
   EXPECT_LT(shift, omega);
   options.shift   = shift * shift;
-  const auto disc = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::free, omega * omega, options);
+  const auto disc = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::free, omega * omega, options);
   EXPECT_EQ(std::count(disc.labels.begin(), disc.labels.end(), "RB"), 6);
   for (int j = 0; j < 6; ++j)
     EXPECT_EQ(disc.eigenvalues[j], 0.);
   EXPECT_GT(disc.eigenvalues.at(6), 0.);
 
   // Its sliding modes: the faces keep the height, so only the motions in the plane are left.
-  const auto sliding = component_modes(s.model, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
+  const auto sliding = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
   EXPECT_EQ(std::count(sliding.labels.begin(), sliding.labels.end(), "RB"), 3);
 
   const auto coupled = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega * omega, options);

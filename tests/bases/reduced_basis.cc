@@ -75,7 +75,7 @@ namespace
       options.shift          = shift * shift;
       const double limit     = component_band * component_band * omega_max * omega_max;
       const auto   component = [&](const Component which, const ContactBoundary boundary) {
-        return component_modes(s.model, s.interface, s.system, which, boundary, limit, options).vectors;
+        return component_modes(s.model, s.interface, s.interface, s.system, which, boundary, limit, options).vectors;
       };
       disc_free    = component(Component::disc, ContactBoundary::free);
       disc_sliding = component(Component::disc, ContactBoundary::sliding);

@@ -228,7 +228,7 @@ TEST(ParameterUsage, OfGeometries)
   EXPECT_EQ(with("Geometry/File=disc_pins.geo"), std::set<std::string>());
   EXPECT_EQ(with(file("plan.geo", "// pin_diameter\nr = disc_outer_radius;\nPhysical Surface(\"disc\") = {1};\n")),
             std::set<std::string>{"Geometry/Pin diameter"});
-  EXPECT_EQ(with(file("solid.geo", "r = pin_diameter;\nPhysical Volume(\"disc\") = {1};\n")),
+  EXPECT_EQ(with(file("solid.geo", "r = pin_diameter;\nPhysical  Volume(\"disc\") = {1};\n")),
             (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius"}));
   EXPECT_EQ(with(file("solid.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n")),
             (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius", "Geometry/Pin diameter"}));

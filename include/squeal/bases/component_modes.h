@@ -30,9 +30,13 @@ namespace Squeal
    * All modes of a component with ω² ≤ @p largest_eigenvalue, contact nodes
    * free or sliding, labelled by shape. The number of modes is certified by
    * inertia. Throws SolverError where it is not met.
+   *
+   * @param interface all contact nodes, which give the pins their axes, whether they are closed or not
+   * @param closed    those in contact
    */
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
+                                 const ContactInterface      &closed,
                                  const SecondOrderSystem     &system,
                                  Component                    component,
                                  ContactBoundary              boundary,

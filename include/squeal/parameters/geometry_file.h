@@ -45,7 +45,7 @@ namespace Squeal
     /// The script itself, then the files that it names in Include and Merge and that exist.
     std::vector<std::string> files() const;
 
-    /// File, line and text of the first line with one of the words.
+    /// File, line and text of the first line with one of the words, or several words one blank apart.
     std::optional<std::string> find(const std::vector<std::string> &words) const;
 
   private:
