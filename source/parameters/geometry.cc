@@ -250,11 +250,14 @@ namespace Squeal
     check_positive(disc_layers, "Disc layers");
     check_nodes_per_pin_face(nodes_per_pin_face);
 
-    for (const auto &[layout, side] : {std::make_pair(&top, "Top"), std::make_pair(&bottom, "Bottom")})
-      if (layout->radii.size() != layout->angles.size())
-        refuse(text("Geometry/", side, " pin radii has ", layout->radii.size(), " values, ", side,
-                    " pin angles has ", layout->angles.size()),
+    const auto check_lengths = [](const PinLayout &layout, const char *side) {
+      if (layout.radii.size() != layout.angles.size())
+        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, ", side,
+                    " pin angles has ", layout.angles.size()),
                text(side, " pin angles"), "give every pin one radius and one angle");
+    };
+    check_lengths(top, "Top");
+    check_lengths(bottom, "Bottom");
 
     // Pairs must be unambiguous: neighbours on a contact face are at least one element apart.
     if (pairing_tolerance >= element_size / 2.)

@@ -120,14 +120,15 @@ namespace Squeal
         result.push_back(text(body.names[0], " extends ", body.height, " m along z; lengths are in metres"));
     if (!disc_masses.contains(disc.mass))
       result.push_back(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
-    for (const auto &[material, section] : {std::make_pair(&materials.disc, "Disc material"), std::make_pair(&materials.pin, "Pin material")})
-      {
-        if (!densities.contains(material->density))
-          result.push_back(text(section, "/Density is ", material->density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
-        if (const double speed = std::sqrt(material->young_modulus / material->density); !bar_speeds.contains(speed))
-          result.push_back(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
-                                "; moduli are in Pa, densities in kg/m^3"));
-      }
+    const auto doubt = [&result](const Material &material, const char *section) {
+      if (!densities.contains(material.density))
+        result.push_back(text(section, "/Density is ", material.density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
+      if (const double speed = std::sqrt(material.young_modulus / material.density); !bar_speeds.contains(speed))
+        result.push_back(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
+                              "; moduli are in Pa, densities in kg/m^3"));
+    };
+    doubt(materials.disc, "Disc material");
+    doubt(materials.pin, "Pin material");
     return result;
   }
 
