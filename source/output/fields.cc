@@ -47,7 +47,10 @@ namespace Squeal
         std::ostringstream piece;
         if (!get_patches().empty())
           DataOutBase::write_vtu_main(get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), compressed(), piece);
-        const std::vector<std::string> pieces = Utilities::MPI::gather(communicator, piece.str());
+        // gather() compresses what it sends once more, which takes longer than all the rest
+        const std::vector<std::string> pieces = Utilities::MPI::n_mpi_processes(communicator) == 1 ?
+                                                  std::vector<std::string>{piece.str()} :
+                                                  Utilities::MPI::gather(communicator, piece.str());
         folder.write(name, [&](std::ostream &stream) {
           DataOutBase::write_vtu_header(stream, compressed());
           for (const std::string &text : pieces)
