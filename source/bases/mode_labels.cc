@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/bases/mode_labels.h>
 
 #include <algorithm>
@@ -10,6 +11,9 @@ namespace Squeal
 {
   namespace
   {
+    /// Functions r^k e^{inθ} of a disc's plane that the others do not span.
+    const Decision independent("rest of a function of a label / function", 1e-8);
+
     /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product.
     class Projection
     {
@@ -35,7 +39,7 @@ namespace Squeal
                   subtract(combinations, s, i, j);
                 }
             const double norm = std::sqrt(inner(basis.column(j), basis.column(j)));
-            const double factor = norm > dependence * before ? 1. / norm : 0.;
+            const double factor = independent.exceeded_by(norm / before) ? 1. / norm : 0.;
             scale(basis, factor, j);
             scale(combinations, factor, j);
           }
@@ -60,8 +64,6 @@ namespace Squeal
       }
 
     private:
-      static constexpr double dependence = 1e-8;
-
       std::vector<double> orthonormal_coefficients(const std::vector<double> &field) const
       {
         std::vector<double> result(basis.n_columns());

@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/eigen/dense_quadratic.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace Squeal
 
     /// Corrections larger than this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the value is defective.
     constexpr double largest_correction = 1e-6;
-    /// λ counts as real if |Im λ| is below this fraction of |λ|.
-    constexpr double real_fraction = 1e-12;
+    /// λ oscillates; below, it is real.
+    const Decision oscillating("Im / modulus of an eigenvalue of a dense quadratic problem", 1e-12);
 
     double frobenius_norm(const DenseMatrix &A)
     {
@@ -112,7 +113,7 @@ namespace Squeal
     for (int j = 0; j < companion.n_rows(); ++j)
       {
         const Complex lambda = value(j);
-        if (std::abs(lambda.imag()) <= real_fraction * std::abs(lambda))
+        if (!oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
           {
             modes.real_values.push_back(lambda.real());
             if (linear)

@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/eigen/quadratic_modes.h>
@@ -18,8 +19,9 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// λ is real if |Im λ| is below this fraction of |λ|.
-    constexpr double real_fraction = 1e-7;
+    const Decision nonzero("|lambda| of a mode / end of the band", zero_frequency);
+    /// λ oscillates; below, it is real.
+    const Decision oscillating("Im / modulus of lambda of a mode", 1e-7);
     /// Values beyond the radius that have to converge, so that none inside can still be on its way.
     constexpr int n_beyond = 2;
     /// Block steps of fresh directions, with the values found deflated, before these are taken as complete.
@@ -219,9 +221,9 @@ namespace Squeal
           const bool    pair   = nu.imag() != 0.;
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
-          if (std::abs(lambda) <= zero_frequency * options.largest_frequency)
+          if (!nonzero.exceeded_by(std::abs(lambda) / options.largest_frequency))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
-          else if (std::abs(lambda.imag()) <= real_fraction * std::abs(lambda))
+          else if (!oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
             {
               modes.real_values.push_back(lambda.real());
               if (transformation.degree == 1)

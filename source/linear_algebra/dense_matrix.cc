@@ -17,6 +17,8 @@ namespace Squeal
   {
     /// A matrix that is singular leaves 10⁻¹⁷ to 10⁻¹⁵.
     const Decision regular("reciprocal condition number of a dense matrix", 1e-14);
+    /// Of Q(λ), which is nearly singular close to an eigenvalue.
+    const Decision complex_regular("reciprocal condition number of a dense complex matrix", 1e-16);
 
     /// LAPACK wants leading dimensions of at least one, also for empty matrices.
     template <typename Number>
@@ -327,7 +329,7 @@ namespace Squeal
         LAPACKE_zgecon_work(LAPACK_COL_MAJOR, '1', n, entries(factors.column()), n, norm, &rcond, entries(work.data()), rwork.data());
       }
     // Written so that a NaN counts as singular, too.
-    norm_of_inverse = rcond > 1e-16 && std::isfinite(norm) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
+    norm_of_inverse = complex_regular.exceeded_by(rcond) && std::isfinite(norm) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
   }
 
 

@@ -1,5 +1,6 @@
 #include "libraries.h"
 
+#include <squeal/base/decision.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <suitesparse/umfpack.h>
@@ -8,6 +9,8 @@ namespace Squeal
 {
   namespace
   {
+    const Decision regular("smallest / largest pivot of a sparse LU factor", 1e-16);
+
     class UmfpackFactorization : public Factorization
     {
     public:
@@ -34,7 +37,7 @@ namespace Squeal
         umfpack_di_free_symbolic(&symbolic);
 
         const bool singular = factorised == UMFPACK_WARNING_singular_matrix ||
-                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !(info[UMFPACK_RCOND] > 1e-16));
+                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !regular.exceeded_by(info[UMFPACK_RCOND]));
         if (analysed != UMFPACK_OK || factorised != UMFPACK_OK || singular)
           umfpack_di_free_numeric(&numeric);
         if (singular)

@@ -1,3 +1,4 @@
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/stability/condensed_determinant.h>
@@ -20,8 +21,7 @@ namespace Squeal
     /// More terms than this mean that the series does not converge.
     constexpr int most_terms = 400;
 
-    /// How far a mode with damping of its own may lie outside of the summed modes [-].
-    constexpr double span_tolerance = 1e-6;
+    const Decision outside("square of a mode with damping of its own outside of the summed modes / whole", 1e-6);
 
     /// (1 − r) / (1 + r) and r of the series at λ.
     struct Ratio
@@ -183,7 +183,7 @@ namespace Squeal
             double square = 0.;
             for (int j = 0; j < n_modes; ++j)
               square += modal(i, j) * modal(i, j);
-            if (std::abs(square - 1.) > span_tolerance)
+            if (outside.exceeded_by(std::abs(square - 1.)))
               throw SolverError("a mode with damping of its own lies above the modes that are taken as they are",
                                 "determinant condensed to the contact nodes",
                                 "give such damping to modes of the band only, or take more real modes");

@@ -1,5 +1,6 @@
 #include <squeal/base/assignment.h>
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_labels.h>
 #include <squeal/stability/reduction_errors.h>
@@ -15,8 +16,7 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Directions of a cluster whose squared M-norm is below this part of the largest are rounding errors.
-    constexpr double dependent = 1e-12;
+    const Decision independent("squared norm of a direction of a cluster / largest", 1e-12);
     /// Weight of MAC-M of single modes beside the share in the span of their cluster.
     constexpr double member_weight = 0.1;
     /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
@@ -78,7 +78,9 @@ namespace Squeal
     {
       const auto        values = symmetric_eigenvalues(G);
       const int         n      = values.size();
-      const int         first  = std::upper_bound(values.begin(), values.end(), dependent * values.back()) - values.begin();
+      const auto        first_kept =
+        std::find_if(values.begin(), values.end(), [&values](const double value) { return independent.exceeded_by(value / values.back()); });
+      const int         first = first_kept - values.begin();
       DenseMatrix       W      = columns(G, first, n - first);
       for (int j = 0; j < W.n_columns(); ++j)
         for (int i = 0; i < n; ++i)
