@@ -6,8 +6,10 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
 
-#include <map>
+#include <algorithm>
+#include <functional>
 #include <sstream>
+#include <tuple>
 
 namespace Squeal
 {
@@ -61,14 +63,52 @@ namespace Squeal
           }
     }
 
-    /// ∫ 2 G ε:ε + Λ div div and ∫ ρ φ·φ over one cell.
-    void integrate_cell(const FEValues<3> &values, const Material &material, FullMatrix<double> &K, FullMatrix<double> &M)
+    using Cell      = DoFHandler<3>::active_cell_iterator;
+    using Predicate = std::function<bool(const Cell &)>;
+    using Integral  = std::function<void(const Cell &, FullMatrix<double> &)>;
+
+    /// The sum of an integral over those cells that contribute.
+    std::shared_ptr<const SparseMatrix> assemble_cells(const Model &model, const Predicate &contributes, const Integral &integral)
     {
-      const double G      = material.young_modulus / (2. * (1. + material.poisson_ratio));
-      const double Lambda = 2. * G * material.poisson_ratio / (1. - 2. * material.poisson_ratio);
+      IndexSet owned(model.free_map().NumGlobalElements());
+      if (model.free_map().NumMyElements() > 0)
+        owned.add_range(model.free_map().MinMyGID(), model.free_map().MaxMyGID() + 1);
+      TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator());
+      TrilinosWrappers::SparseMatrix       matrix;
+      const unsigned int                   n = model.dof_handler().get_fe().n_dofs_per_cell();
+      std::vector<types::global_dof_index> cell_dofs(n);
+      FullMatrix<double>                   cell_matrix(n, n);
+      FreeDofs                             free;
+      const auto                           for_cells = [&](const std::function<void(const Cell &)> &action) {
+        for (const auto &cell : model.dof_handler().active_cell_iterators())
+          if (cell->is_locally_owned() && contributes(cell))
+            {
+              cell->get_dof_indices(cell_dofs);
+              free.reinit(model, cell_dofs);
+              action(cell);
+            }
+      };
+      for_cells([&](const Cell &) {
+        for (const auto row : free.numbers)
+          pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
+      });
+      pattern.compress();
+      matrix.reinit(pattern);
+      for_cells([&](const Cell &cell) {
+        integral(cell, cell_matrix);
+        add_to(matrix, free, cell_matrix);
+      });
+      matrix.compress(VectorOperation::add);
+      return std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(matrix.trilinos_matrix()));
+    }
+
+    /// ∫ 2 G ε:ε + Λ div div over one cell for E = 1.
+    void integrate_stiffness(const FEValues<3> &values, const double poisson_ratio, FullMatrix<double> &K)
+    {
+      const double G      = 1. / (2. * (1. + poisson_ratio));
+      const double Lambda = 2. * G * poisson_ratio / (1. - 2. * poisson_ratio);
       const auto  &fe     = values.get_fe();
       K                   = 0.;
-      M                   = 0.;
       for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
         for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
           {
@@ -82,123 +122,126 @@ namespace Squeal
                 const auto        &grad_j = values.shape_grad(j, q);
                 double             k      = G * grad_i[b] * grad_j[a] + Lambda * grad_i[a] * grad_j[b];
                 if (a == b)
-                  {
-                    k += G * (grad_i * grad_j);
-                    M(i, j) += material.density * values.shape_value(i, q) * values.shape_value(j, q) * values.JxW(q);
-                  }
+                  k += G * (grad_i * grad_j);
                 K(i, j) += k * values.JxW(q);
               }
           }
       for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
         for (unsigned int j = 0; j < i; ++j)
-          {
-            K(j, i) = K(i, j);
-            M(j, i) = M(i, j);
-          }
+          K(j, i) = K(i, j);
     }
 
-    /// ∫ φ·S φ over one mounted face.
-    void integrate_mount(const FEFaceValues<3> &values, const ElasticMount &mount, FullMatrix<double> &K)
+    /// ∫ φ·φ over one cell.
+    void integrate_mass(const FEValues<3> &values, FullMatrix<double> &M)
     {
       const auto &fe = values.get_fe();
-      K              = 0.;
+      M              = 0.;
+      for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+        for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
+          for (unsigned int j = 0; j < fe.n_dofs_per_cell(); ++j)
+            if (fe.system_to_component_index(i).first == fe.system_to_component_index(j).first)
+              M(i, j) += values.shape_value(i, q) * values.shape_value(j, q) * values.JxW(q);
+    }
+
+    enum Direction
+    {
+      radial,
+      tangential,
+      axial
+    };
+
+    /// Adds ∫ (e·φ) (e·φ) over one mounted face, e the unit vector of a direction about the z axis.
+    void integrate_mount(const FEFaceValues<3> &values, const Direction direction, FullMatrix<double> &K)
+    {
+      const auto &fe = values.get_fe();
       for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
         {
-          const Point<3> &x = values.quadrature_point(q);
-          const double    r = std::hypot(x[0], x[1]);
-          const Tensor<1, 3> e_r({x[0] / r, x[1] / r, 0.}), e_theta({-x[1] / r, x[0] / r, 0.}), e_z({0., 0., 1.});
-          const Tensor<2, 3> S = mount.radial * outer_product(e_r, e_r) + mount.tangential * outer_product(e_theta, e_theta) +
-                                 mount.axial * outer_product(e_z, e_z);
+          const Point<3>    &x = values.quadrature_point(q);
+          const double       r = std::hypot(x[0], x[1]);
+          const Tensor<1, 3> e = direction == axial      ? Tensor<1, 3>({0., 0., 1.}) :
+                                 direction == tangential ? Tensor<1, 3>({-x[1] / r, x[0] / r, 0.}) :
+                                                           Tensor<1, 3>({x[0] / r, x[1] / r, 0.});
           for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
             for (unsigned int j = 0; j < fe.n_dofs_per_cell(); ++j)
-              K(i, j) += S[fe.system_to_component_index(i).first][fe.system_to_component_index(j).first] *
+              K(i, j) += e[fe.system_to_component_index(i).first] * e[fe.system_to_component_index(j).first] *
                          values.shape_value(i, q) * values.shape_value(j, q) * values.JxW(q);
         }
     }
+
+    /// Terms of a body: stiffness and mass at unit coefficient, once more as its damping.
+    void add_body(BodyTerms &bodies, const Model &model, const std::string &name, const Material &material, const bool is_disc)
+    {
+      FEValues<3> values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
+                         update_values | update_gradients | update_JxW_values);
+      const Predicate belongs = [is_disc](const Cell &cell) { return (cell->material_id() == 0) == is_disc; };
+      const auto      K       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
+        values.reinit(cell);
+        check_orientation(values, model.component_names()[cell->material_id()]);
+        integrate_stiffness(values, material.poisson_ratio, cell_matrix);
+      });
+      const auto      M       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
+        values.reinit(cell);
+        integrate_mass(values, cell_matrix);
+      });
+
+      const std::string young = "Young's modulus, " + name, density = "density, " + name, alpha = "Rayleigh alpha, " + name,
+                        beta = "Rayleigh beta, " + name;
+      bodies.values[young]   = {material.young_modulus};
+      bodies.values[density] = {material.density};
+      bodies.values[alpha]   = {material.rayleigh_alpha};
+      bodies.values[beta]    = {material.rayleigh_beta};
+      bodies.terms.push_back(sparse_term("stiffness, " + name, 0, {1., {{young, 1}}}, K));
+      bodies.terms.push_back(sparse_term("mass, " + name, 2, {1., {{density, 1}}}, M));
+      bodies.terms.push_back(sparse_term("damping by stiffness, " + name, 1, {1., {{beta, 1}, {young, 1}}}, K));
+      bodies.terms.push_back(sparse_term("damping by mass, " + name, 1, {1., {{alpha, 1}, {density, 1}}}, M));
+    }
+
+    void add_mount(BodyTerms &bodies, const Model &model, const ElasticMount &mount)
+    {
+      FEFaceValues<3> values(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
+                             update_values | update_quadrature_points | update_JxW_values);
+      const types::boundary_id surface    = model.surface_id(mount.surface);
+      const auto               is_mounted = [surface](const Cell &cell, const unsigned int f) {
+        return cell->at_boundary(f) && cell->face(f)->boundary_id() == surface;
+      };
+      const Predicate has_mount = [&](const Cell &cell) {
+        const auto faces = cell->face_indices();
+        return std::any_of(faces.begin(), faces.end(), [&](const unsigned int f) { return is_mounted(cell, f); });
+      };
+      for (const auto &[direction, name, stiffness] : {std::make_tuple(radial, "radial", mount.radial),
+                                                       std::make_tuple(tangential, "tangential", mount.tangential),
+                                                       std::make_tuple(axial, "axial", mount.axial)})
+        if (stiffness != 0.)
+          {
+            const auto        K = assemble_cells(model, has_mount, [&, e = direction](const Cell &cell, FullMatrix<double> &cell_matrix) {
+              cell_matrix = 0.;
+              for (const unsigned int f : cell->face_indices())
+                if (is_mounted(cell, f))
+                  {
+                    values.reinit(cell, f);
+                    integrate_mount(values, e, cell_matrix);
+                  }
+            });
+            const std::string parameter = std::string(name) + " stiffness, " + mount.surface;
+            bodies.values[parameter]    = {stiffness};
+            bodies.terms.push_back(sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, K));
+          }
+    }
   } // namespace
+
+  BodyTerms body_terms(const Model &model, const MaterialParameters &materials)
+  {
+    BodyTerms bodies;
+    add_body(bodies, model, "disc", materials.disc, true);
+    add_body(bodies, model, "pins", materials.pin, false);
+    for (const ElasticMount &mount : materials.mounts)
+      add_mount(bodies, model, mount);
+    return bodies;
+  }
 
   SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials)
   {
-    const auto &dof_handler = model.dof_handler();
-    const auto &fe          = dof_handler.get_fe();
-    const auto &map         = model.free_map();
-
-    std::map<types::boundary_id, ElasticMount> mounts;
-    for (const ElasticMount &mount : materials.mounts)
-      mounts[model.surface_id(mount.surface)] = mount;
-
-    const auto material_of = [&materials](const types::material_id component) -> const Material & {
-      return component == 0 ? materials.disc : materials.pin;
-    };
-    const bool damped = materials.disc.is_damped() || materials.pin.is_damped();
-
-    // Sparsity of the free dofs; that of the damping holds only what is damped
-    IndexSet owned(map.NumGlobalElements());
-    if (map.NumMyElements() > 0)
-      owned.add_range(map.MinMyGID(), map.MaxMyGID() + 1);
-    TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator()), damping_pattern(owned, model.communicator());
-    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
-    FreeDofs                             free;
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          cell->get_dof_indices(cell_dofs);
-          free.reinit(model, cell_dofs);
-          for (const auto row : free.numbers)
-            {
-              pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
-              if (material_of(cell->material_id()).is_damped())
-                damping_pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
-            }
-        }
-    pattern.compress();
-    TrilinosWrappers::SparseMatrix stiffness, mass, damping;
-    stiffness.reinit(pattern);
-    mass.reinit(pattern);
-    if (damped)
-      {
-        damping_pattern.compress();
-        damping.reinit(damping_pattern);
-      }
-
-    // Cells and their mounted faces
-    FEValues<3>        values(model.mapping(), fe, QGauss<3>(model.degree() + 1), update_values | update_gradients | update_JxW_values);
-    FEFaceValues<3>    face_values(model.mapping(), fe, QGauss<2>(model.degree() + 1),
-                                   update_values | update_quadrature_points | update_JxW_values);
-    FullMatrix<double> K(fe.n_dofs_per_cell(), fe.n_dofs_per_cell()), M(K), C(K), K_mount(K);
-    for (const auto &cell : dof_handler.active_cell_iterators())
-      if (cell->is_locally_owned())
-        {
-          values.reinit(cell);
-          check_orientation(values, model.component_names()[cell->material_id()]);
-          const Material &material = material_of(cell->material_id());
-          integrate_cell(values, material, K, M);
-          cell->get_dof_indices(cell_dofs);
-          free.reinit(model, cell_dofs);
-          // Before the mounts join the stiffness
-          if (material.is_damped())
-            {
-              C.equ(material.rayleigh_alpha, M, material.rayleigh_beta, K);
-              add_to(damping, free, C);
-            }
-          for (const unsigned int f : cell->face_indices())
-            if (const auto it = mounts.find(cell->face(f)->boundary_id()); cell->at_boundary(f) && it != mounts.end())
-              {
-                face_values.reinit(cell, f);
-                integrate_mount(face_values, it->second, K_mount);
-                K.add(1., K_mount);
-              }
-          add_to(stiffness, free, K);
-          add_to(mass, free, M);
-        }
-    stiffness.compress(VectorOperation::add);
-    mass.compress(VectorOperation::add);
-    if (damped)
-      damping.compress(VectorOperation::add);
-
-    const auto copy = [](const TrilinosWrappers::SparseMatrix &matrix) {
-      return std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(matrix.trilinos_matrix()));
-    };
-    return {copy(mass), damped ? copy(damping) : nullptr, copy(stiffness)};
+    const BodyTerms bodies = body_terms(model, materials);
+    return sparse_matrices(bodies.terms, bodies.values);
   }
 } // namespace Squeal

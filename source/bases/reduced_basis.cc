@@ -291,7 +291,7 @@ namespace Squeal
 
   ReducedBasis reduced_basis(const BasisKind kind, const BasisIngredients &in, const BasisOptions &options)
   {
-    const SparseMatrix &M = *required(in.coupled, kind, "the coupled system", "pass it").frictionless.mass;
+    const SparseMatrix &M = *required(in.coupled, kind, "the coupled system", "pass it").mass;
     if (is_connected(kind))
       {
         required(in.uncoupled, kind, "the matrices of the bodies", "pass them");
@@ -301,7 +301,7 @@ namespace Squeal
 
     // ------------------------------------------------- T_r0 and its nominal size
     BasisCounts counts;
-    counts.contact      = in.coupled->friction_forces->NumGlobalCols();
+    counts.contact      = in.coupled->n_contact();
     MultiVector     X   = join_parts(kind, in, counts);
     const BasisSize size = nominal_size(kind, counts);
     const int       n    = M.NumGlobalRows();

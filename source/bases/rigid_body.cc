@@ -96,7 +96,7 @@ namespace Squeal
 
   double stabilizing_shift(const Model &model, const CoupledSystem &system, const double largest_circular_frequency)
   {
-    const std::vector<double> eigenvalues = rayleigh_ritz(rigid_disc_motions(model, system), system.frictionless).second;
+    const std::vector<double> eigenvalues = rayleigh_ritz(rigid_disc_motions(model, system), {system.mass, nullptr, system.stiffness}).second;
     return shift_for(eigenvalues, largest_circular_frequency);
   }
 

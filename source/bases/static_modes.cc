@@ -128,9 +128,12 @@ namespace Squeal
 
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, const Side side)
   {
+    const auto V_K = normal_reactions(system, 0);
+    if (!V_K)
+      return MultiVector(real_modes.Map(), real_modes.NumVectors());
     if (side == Side::right)
-      return inverse.attachment_modes() * replicate(*system.normal_stiffness * real_modes);
-    return solve(inverse, transpose_times(*system.normal_stiffness, transpose_times(*system.friction_forces, real_modes)));
+      return inverse.attachment_modes() * replicate(*V_K * real_modes);
+    return solve(inverse, transpose_times(*V_K, *system.friction_forces->sparse_transpose() * real_modes));
   }
 
   MultiVector damping_response(const CoupledSystem  &system,
@@ -138,12 +141,9 @@ namespace Squeal
                                const MultiVector    &real_modes,
                                const double          friction_coefficient)
   {
-    if (!system.frictionless.damping)
+    if (!system.has_damping())
       throw SolverError("there is no damping to respond to", "response of the real modes to damping",
                         "set Operation/Radial dissipation or the Rayleigh coefficients of a material, or leave this response out");
-    MultiVector response = solve(inverse, *system.frictionless.damping * real_modes);
-    if (system.normal_damping && friction_coefficient != 0.)
-      multiply_add(-friction_coefficient, inverse.attachment_modes(), replicate(*system.normal_damping * real_modes), 1., response);
-    return response;
+    return solve(inverse, times(system.terms, system.at(friction_coefficient), 1, real_modes));
   }
 } // namespace Squeal

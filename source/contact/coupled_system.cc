@@ -1,10 +1,10 @@
 #include <squeal/contact/coupled_system.h>
-#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <Epetra_Vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 
 namespace Squeal
@@ -13,142 +13,156 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    bool all_zero(const std::vector<double> &coefficients)
-    {
-      return std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; });
-    }
-
-    Epetra_Vector on_map(const Epetra_Map &map, const std::vector<double> &values)
-    {
-      Epetra_Vector result(map);
-      for (int i = 0; i < result.MyLength(); ++i)
-        result[i] = values[map.GID(i)];
-      return result;
-    }
-
     /// Pᵀ diag(c) P; null if all c vanish.
     Matrix damping_along(const SparseMatrix &P, const std::vector<double> &coefficients)
     {
-      if (all_zero(coefficients))
+      if (std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; }))
         return nullptr;
-
+      Epetra_Vector scale(P.RowMap());
+      for (int i = 0; i < scale.MyLength(); ++i)
+        scale[i] = coefficients[P.RowMap().GID(i)];
       SparseMatrix scaled(P);
-      scaled.LeftScale(on_map(P.RowMap(), coefficients));
+      scaled.LeftScale(scale);
       return multiply(P, scaled, true, false);
     }
 
-    /// A + B; a missing one counts as zero.
-    Matrix sum(const Matrix &A, const Matrix &B)
+    bool is_friction(const Term &term)
     {
-      if (A && B)
-        return add(1., *A, 1., *B);
-      return A ? A : B;
+      return term.coefficient.contains(SystemParameter::friction);
     }
   } // namespace
 
-  bool ContactDamping::is_zero() const
+  ParameterValues ContactDamping::values() const
   {
-    return all_zero(radial) && all_zero(sliding);
+    return {{SystemParameter::radial_damping, radial}, {SystemParameter::sliding_damping, sliding}};
   }
 
   const Epetra_Map &CoupledSystem::map() const
   {
-    return frictionless.stiffness->RowMap();
+    return stiffness->RowMap();
+  }
+
+  int CoupledSystem::n_contact() const
+  {
+    return friction_forces->rank();
+  }
+
+  ParameterValues CoupledSystem::at(const double friction_coefficient, const ParameterValues &others) const
+  {
+    ParameterValues result = others;
+    result.insert(values.begin(), values.end()); // those that others leave open
+    result[SystemParameter::friction] = {friction_coefficient};
+    return result;
   }
 
   bool CoupledSystem::has_damping() const
   {
-    return frictionless.damping || modal_damping;
+    return !terms_of(terms, values, 1).empty();
   }
 
-  MultiVector CoupledSystem::damping_times(const MultiVector &X) const
+  Matrix contact_damping(const ContactOperators &contact, const ContactDamping &damping)
   {
-    if (!modal_damping)
-      return *frictionless.damping * X;
-    MultiVector result = *modal_damping * X;
-    if (frictionless.damping)
-      result.Update(1., *frictionless.damping * X, 1.);
-    return result;
+    const Matrix along_b = damping_along(*contact.radial, damping.radial), along_t = damping_along(*contact.tangential, damping.sliding);
+    return along_b && along_t ? add(1., *along_b, 1., *along_t) : along_b ? along_b : along_t;
   }
 
-  std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping)
+  CoupledSystem coupled_system(const std::vector<CoupledTerm> &bodies, Matrix tangential, Matrix radial, const ContactDamping &damping)
   {
-    return sum(damping_along(*contact.radial, damping.radial), damping_along(*contact.tangential, damping.sliding));
-  }
-
-  CoupledSystem couple(const SecondOrderSystem &system, const ContactOperators &contact, const ContactDamping &damping)
-  {
-    const SparseMatrix &T_c = *contact.kernel;
-
-    CoupledSystem coupled;
-    coupled.kernel                 = contact.kernel;
-    coupled.frictionless.mass      = congruence(*system.mass, T_c);
-    coupled.frictionless.stiffness = congruence(*system.stiffness, T_c);
-    if (system.damping)
-      coupled.body_damping = congruence(*system.damping, T_c);
-
-    coupled.friction_forces = multiply(T_c, *contact.tangential, true, true);
-    coupled.radial_motion   = multiply(*contact.radial, T_c, false, false);
-    const auto half_reaction = [&](const SparseMatrix &matrix) {
-      auto V = multiply(*multiply(*contact.normal, matrix, false, false), T_c, false, false);
-      V->Scale(0.5);
-      return V;
+    CoupledSystem result;
+    result.values                            = damping.values();
+    result.values[SystemParameter::friction] = {0.};
+    result.friction_forces                   = std::make_shared<LowRankFactor>(std::move(tangential));
+    for (const CoupledTerm &body : bodies)
+      result.terms.push_back(body.term);
+    for (const CoupledTerm &body : bodies)
+      if (body.reaction && max_norm(*body.reaction) > 0.)
+        result.terms.push_back(low_rank_term("friction, " + body.term.name, body.term.power,
+                                             body.term.coefficient * Monomial{-1., {{SystemParameter::friction, 1}}},
+                                             result.friction_forces, std::make_shared<LowRankFactor>(body.reaction)));
+    const auto add_damping = [&result](const char *weights, const std::shared_ptr<const LowRankFactor> &factor) {
+      result.terms.push_back(low_rank_term(weights, 1, {}, factor, factor, weights));
     };
-    coupled.normal_stiffness = half_reaction(*system.stiffness);
-    if (system.damping)
-      coupled.normal_damping = half_reaction(*system.damping);
-    coupled.normal_mass = half_reaction(*system.mass);
-    return with_contact_damping(coupled, damping);
+    add_damping(SystemParameter::radial_damping, std::make_shared<LowRankFactor>(std::move(radial)));
+    add_damping(SystemParameter::sliding_damping, result.friction_forces);
+
+    for (const Term &term : result.terms)
+      if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
+        (term.power == 0 ? result.stiffness : result.mass) = term.matrix;
+    return result;
   }
 
-  CoupledSystem with_contact_damping(const CoupledSystem &system, const ContactDamping &damping)
+  CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping)
   {
-    CoupledSystem result   = system;
-    result.contact_damping = damping;
-    Matrix along_t;
-    if (!all_zero(damping.sliding))
+    const SparseMatrix      &T_c = *contact.kernel;
+    std::vector<CoupledTerm> coupled;
+    for (const Term &body : bodies)
       {
-        const SparseMatrix &A = *system.friction_forces;
-        SparseMatrix        scaled(A);
-        scaled.RightScale(on_map(A.DomainMap(), damping.sliding));
-        along_t = multiply(scaled, A, false, true);
+        auto V = multiply(*multiply(*contact.normal, *body.matrix), T_c);
+        V->Scale(0.5);
+        coupled.push_back({body, V});
+        coupled.back().term.matrix = congruence(*body.matrix, T_c);
       }
-    result.frictionless.damping = sum(system.body_damping, sum(damping_along(*system.radial_motion, damping.radial), along_t));
+    CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping);
+    result.kernel        = contact.kernel;
     return result;
   }
 
-  CoupledSystem undamped(const CoupledSystem &system)
+  CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping)
   {
-    CoupledSystem result        = system;
-    result.frictionless.damping = nullptr;
-    result.body_damping         = nullptr;
-    result.normal_damping       = nullptr;
-    result.modal_damping        = nullptr;
-    result.contact_damping      = {};
-    return result;
+    std::vector<Term> terms = {sparse_term("stiffness of the bodies", 0, {}, bodies.stiffness), sparse_term("mass of the bodies", 2, {}, bodies.mass)};
+    if (bodies.damping)
+      terms.push_back(sparse_term("damping of the bodies", 1, {}, bodies.damping));
+    return couple(terms, contact, damping);
+  }
+
+  CoupledSystem with_values(CoupledSystem system, const ParameterValues &others)
+  {
+    system.values = system.at(0., others);
+    return system;
+  }
+
+  CoupledSystem undamped(CoupledSystem system)
+  {
+    auto &terms = system.terms;
+    terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.power == 1; }), terms.end());
+    return system;
+  }
+
+  void add_modal_damping(CoupledSystem             &system,
+                         const MultiVector         &modes,
+                         const std::vector<double> &eigenvalues,
+                         const std::vector<double> &ratios)
+  {
+    const auto          factor = std::make_shared<LowRankFactor>(*system.mass * modes);
+    std::vector<double> coefficients;
+    for (std::size_t j = 0; j < eigenvalues.size(); ++j)
+      coefficients.push_back(eigenvalues[j] > 0. ? 2. * ratios[j] * std::sqrt(eigenvalues[j]) : 0.);
+    system.values[SystemParameter::modal_damping] = coefficients;
+    system.terms.push_back(low_rank_term(SystemParameter::modal_damping, 1, {}, factor, factor, SystemParameter::modal_damping));
   }
 
   SecondOrderSystem with_friction(const CoupledSystem &system, const double mu)
   {
-    SecondOrderSystem result = system.frictionless;
-    if (mu == 0.)
-      return result;
-    const auto friction = [&](const SparseMatrix &V) { return multiply(*system.friction_forces, V, false, false); };
-    result.stiffness = add(1., *system.frictionless.stiffness, -mu, *friction(*system.normal_stiffness));
-    if (system.normal_damping)
-      result.damping = add(1., *system.frictionless.damping, -mu, *friction(*system.normal_damping));
-    result.mass = add(1., *system.frictionless.mass, -mu, *friction(*system.normal_mass));
-    return result;
+    return sparse_matrices(system.terms, system.at(mu));
   }
 
-  std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, const double shift)
+  Matrix pencil_at(const SecondOrderSystem &system, const double shift)
   {
     if (shift == 0.)
       return system.stiffness;
-    std::shared_ptr<const SparseMatrix> result = add(1., *system.stiffness, shift * shift, *system.mass);
+    Matrix result = add(1., *system.stiffness, shift * shift, *system.mass);
     if (system.damping)
       result = add(1., *result, shift, *system.damping);
     return result;
+  }
+
+  Matrix normal_reactions(const CoupledSystem &system, const int power)
+  {
+    std::vector<std::pair<double, Matrix>> parts;
+    for (const Term &term : system.terms)
+      if (is_friction(term) && term.power == power)
+        parts.emplace_back(term.coefficient.at(system.at(-1.)), term.right->sparse_transpose());
+    return sum(parts);
   }
 
   void normal_reactions(const CoupledSystem                     &system,
@@ -160,27 +174,21 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    const DenseMatrix K_re = replicate(*system.normal_stiffness * real_part), K_im = replicate(*system.normal_stiffness * imaginary_part);
-    const DenseMatrix M_re = replicate(*system.normal_mass * real_part), M_im = replicate(*system.normal_mass * imaginary_part);
-    DenseMatrix       C_re, C_im;
-    if (system.normal_damping)
-      {
-        C_re = replicate(*system.normal_damping * real_part);
-        C_im = replicate(*system.normal_damping * imaginary_part);
-      }
-    reaction_real      = K_re;
-    reaction_imaginary = K_im;
-    for (int j = 0; j < K_re.n_columns(); ++j)
-      {
-        const Complex square = lambda[j] * lambda[j];
-        for (int i = 0; i < K_re.n_rows(); ++i)
-          {
-            Complex r = Complex(K_re(i, j), K_im(i, j)) + square * Complex(M_re(i, j), M_im(i, j));
-            if (system.normal_damping)
-              r += lambda[j] * Complex(C_re(i, j), C_im(i, j));
-            reaction_real(i, j)      = r.real();
-            reaction_imaginary(i, j) = r.imag();
-          }
-      }
+    reaction_real = reaction_imaginary = DenseMatrix(system.n_contact(), static_cast<int>(lambda.size()));
+    for (const Term &term : system.terms)
+      if (is_friction(term))
+        {
+          const DenseMatrix re = term.right->transpose_times(real_part), im = term.right->transpose_times(imaginary_part);
+          for (int j = 0; j < re.n_columns(); ++j)
+            {
+              const Complex theta = term.coefficient.at(system.at(-1.)) * (term.power == 0 ? 1. : std::pow(lambda[j], term.power));
+              for (int i = 0; i < re.n_rows(); ++i)
+                {
+                  const Complex r = theta * Complex(re(i, j), im(i, j));
+                  reaction_real(i, j) += r.real();
+                  reaction_imaginary(i, j) += r.imag();
+                }
+            }
+        }
   }
 } // namespace Squeal

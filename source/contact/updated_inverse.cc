@@ -2,17 +2,43 @@
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
 
+#include <cmath>
+
 namespace Squeal
 {
+  namespace
+  {
+    /// S = K_c + s C_c + s² M_c of the symmetric sparse terms.
+    std::shared_ptr<const SparseMatrix> frictionless_pencil(const CoupledSystem &system, const double shift)
+    {
+      std::vector<Term> terms;
+      for (const Term &term : system.terms)
+        if (term.is_sparse() && term.symmetry == Symmetry::symmetric)
+          terms.push_back(term);
+      return pencil_at(sparse_matrices(terms, system.values), shift);
+    }
+
+    /// V_K + s V_C + s² V_M; null: none.
+    std::shared_ptr<const SparseMatrix> reactions_at(const CoupledSystem &system, const double shift)
+    {
+      std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> parts;
+      for (int power = 0; power < 3; ++power)
+        if (const auto V = normal_reactions(system, power); V && (power == 0 || shift != 0.))
+          parts.emplace_back(std::pow(shift, power), V);
+      return sum(parts);
+    }
+  } // namespace
+
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
   {
-    V      = pencil_at({system.normal_mass, system.normal_damping, system.normal_stiffness}, shift);
-    factor = factorize_positive_definite(*pencil_at(system.frictionless, shift), library, "stiffness of the coupled system without friction");
+    const int n_c = system.n_contact();
+    factor        = factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction");
 
-    const MultiVector A = *system.friction_forces * unit_vectors(system.friction_forces->DomainMap());
+    const MultiVector A = system.friction_forces->columns(0, n_c);
     X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());
     factor->apply(A, *X);
-    VX = replicate(*V * *X);
+    V  = reactions_at(system, shift);
+    VX = V ? replicate(*V * *X) : DenseMatrix(n_c, n_c);
   }
 
   void UpdatedInverse::set_friction_coefficient(const double mu)
@@ -25,7 +51,7 @@ namespace Squeal
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const
   {
     factor->apply(B, Y);
-    if (friction_coefficient == 0.)
+    if (friction_coefficient == 0. || !V)
       return;
     DenseMatrix reactions = replicate(*V * Y);
     correction->solve(reactions);

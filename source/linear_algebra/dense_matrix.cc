@@ -167,7 +167,7 @@ namespace Squeal
 
 
 
-  void border(DenseMatrix &matrix, const DenseMatrix &new_columns)
+  void border(DenseMatrix &matrix, const DenseMatrix &new_columns, const double sign)
   {
     const int r = new_columns.n_rows(), old = matrix.n_rows();
     require(old + new_columns.n_columns() == r, "bordered matrix");
@@ -178,7 +178,8 @@ namespace Squeal
       for (int i = 0; i < r; ++i)
         {
           result(i, j) = new_columns(i, j - old);
-          result(j, i) = result(i, j);
+          if (i != j)
+            result(j, i) = sign * result(i, j);
         }
     matrix = std::move(result);
   }

@@ -81,19 +81,28 @@ namespace Squeal
 
   std::shared_ptr<SparseMatrix> add(const double alpha, const SparseMatrix &A, const double beta, const SparseMatrix &B)
   {
-    if (!A.RowMap().SameAs(B.RowMap()) || !A.DomainMap().SameAs(B.DomainMap()))
-      throw SolverError("two matrices of different shape or distribution",
-                        "sum of two sparse matrices",
-                        "this is a mistake in the program: please report it");
+    return linear_combination({{alpha, &A}, {beta, &B}});
+  }
+
+
+
+  std::shared_ptr<SparseMatrix> linear_combination(const std::vector<std::pair<double, const SparseMatrix *>> &summands)
+  {
+    const SparseMatrix &first = *summands.front().second;
+    for (const auto &[factor, A] : summands)
+      if (!A->RowMap().SameAs(first.RowMap()) || !A->DomainMap().SameAs(first.DomainMap()))
+        throw SolverError("matrices of different shape or distribution",
+                          "sum of sparse matrices",
+                          "this is a mistake in the program: please report it");
 
     // Where one pattern contains the other, as those of K and M mostly do,
     // inserting into a copy would fail; summing row by row covers all cases.
-    const int n_rows = A.NumMyRows();
-
-    std::vector<int> row_lengths(n_rows);
-    for (int i = 0; i < n_rows; ++i)
-      row_lengths[i] = A.NumMyEntries(i) + B.NumMyEntries(i);
-    auto C = std::make_shared<SparseMatrix>(Copy, A.RowMap(), row_lengths.data());
+    const int        n_rows = first.NumMyRows();
+    std::vector<int> row_lengths(n_rows, 0);
+    for (const auto &[factor, A] : summands)
+      for (int i = 0; i < n_rows; ++i)
+        row_lengths[i] += A->NumMyEntries(i);
+    auto C = std::make_shared<SparseMatrix>(Copy, first.RowMap(), row_lengths.data());
 
     std::vector<std::pair<int, double>> entries;
     std::vector<int>                    columns;
@@ -101,17 +110,16 @@ namespace Squeal
     for (int i = 0; i < n_rows; ++i)
       {
         entries.clear();
-        const auto collect = [&](const SparseMatrix &S, const double factor) {
-          int     n;
-          double *value;
-          int    *column;
-          S.ExtractMyRowView(i, n, value, column);
-          for (int k = 0; k < n; ++k)
-            entries.emplace_back(S.GCID(column[k]), factor * value[k]);
-        };
-        collect(A, alpha);
-        collect(B, beta);
-        std::sort(entries.begin(), entries.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+        for (const auto &[factor, A] : summands)
+          {
+            int     n;
+            double *value;
+            int    *column;
+            A->ExtractMyRowView(i, n, value, column);
+            for (int k = 0; k < n; ++k)
+              entries.emplace_back(A->GCID(column[k]), factor * value[k]);
+          }
+        std::stable_sort(entries.begin(), entries.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
 
         columns.clear();
         values.clear();
@@ -123,10 +131,9 @@ namespace Squeal
               columns.push_back(column);
               values.push_back(value);
             }
-        check_epetra(C->InsertGlobalValues(A.GRID(i), columns.size(), values.data(), columns.data()),
-                     "sum of two sparse matrices");
+        check_epetra(C->InsertGlobalValues(first.GRID(i), columns.size(), values.data(), columns.data()), "sum of sparse matrices");
       }
-    check_epetra(C->FillComplete(A.DomainMap(), A.RangeMap()), "sum of two sparse matrices");
+    check_epetra(C->FillComplete(first.DomainMap(), first.RangeMap()), "sum of sparse matrices");
     return C;
   }
 

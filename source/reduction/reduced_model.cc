@@ -1,55 +1,43 @@
-#include <squeal/linear_algebra/replicate.h>
 #include <squeal/reduction/reduced_model.h>
+
+#include <array>
 
 namespace Squeal
 {
-  namespace
-  {
-    /// diag(c) X
-    DenseMatrix rows_scaled(DenseMatrix X, const std::vector<double> &c)
-    {
-      for (int j = 0; j < X.n_columns(); ++j)
-        for (int i = 0; i < X.n_rows(); ++i)
-          X(i, j) *= c[i];
-      return X;
-    }
-  } // namespace
-
   ReducedModel::ReducedModel(const CoupledSystem &system)
     : system(&system)
+    , matrices(system.terms.size())
   {}
 
   void ReducedModel::extend(const MultiVector &vectors)
   {
     T = std::make_unique<MultiVector>(T ? join({T.get(), &vectors}) : vectors);
-    border(parts.mass, gram(*T, *system->frictionless.mass * vectors));
-    border(parts.stiffness, gram(*T, *system->frictionless.stiffness * vectors));
-    if (system->body_damping || system->modal_damping)
+
+    std::map<const LowRankFactor *, bool> is_extended;
+    for (std::size_t k = 0; k < matrices.size(); ++k)
       {
-        MultiVector forces(vectors.Map(), vectors.NumVectors());
-        if (system->body_damping)
-          forces.Update(1., *system->body_damping * vectors, 1.);
-        if (system->modal_damping)
-          forces.Update(1., *system->modal_damping * vectors, 1.);
-        border(parts.body_damping, gram(*T, forces));
-      }
-    const auto append = [](DenseMatrix &part, const MultiVector &columns) { part = append_columns(part, replicate(columns)); };
-    append(parts.friction_forces, transpose_times(*system->friction_forces, vectors));
-    append(parts.radial_motion, *system->radial_motion * vectors);
-    append(parts.normal_stiffness, *system->normal_stiffness * vectors);
-    append(parts.normal_mass, *system->normal_mass * vectors);
-    friction_K = multiply(parts.friction_forces, parts.normal_stiffness, true);
-    friction_M = multiply(parts.friction_forces, parts.normal_mass, true);
-    if (system->normal_damping)
-      {
-        append(parts.normal_damping, *system->normal_damping * vectors);
-        friction_C = multiply(parts.friction_forces, parts.normal_damping, true);
+        const Term &term = system->terms[k];
+        if (term.matrix)
+          {
+            const DenseMatrix columns = gram(*T, *term.matrix * vectors);
+            border(matrices[k], columns, term.symmetry == Symmetry::skew ? -1. : 1.);
+            if (term.matrix == system->mass)
+              mass_matrix = matrices[k];
+            if (term.matrix == system->stiffness)
+              stiffness_matrix = matrices[k];
+            continue;
+          }
+        for (const LowRankFactor *factor : {term.left.get(), term.right.get()})
+          if (!std::exchange(is_extended[factor], true))
+            factors[factor] = append_columns(factors[factor], factor->transpose_times(vectors));
+        if (term.weights.empty())
+          matrices[k] = multiply(motions(*term.left), motions(*term.right), true);
       }
   }
 
   int ReducedModel::size() const
   {
-    return parts.mass.n_rows();
+    return mass_matrix.n_rows();
   }
 
   const MultiVector &ReducedModel::basis() const
@@ -57,35 +45,48 @@ namespace Squeal
     return *T;
   }
 
-  const ReducedModel::Blocks &ReducedModel::blocks() const
+  const CoupledSystem &ReducedModel::full_order() const
   {
-    return parts;
+    return *system;
   }
 
-  const ContactDamping &ReducedModel::contact_damping() const
+  const DenseMatrix &ReducedModel::mass() const
   {
-    return system->contact_damping;
+    return mass_matrix;
   }
 
-  ReducedPencil ReducedModel::at(const double mu) const
+  const DenseMatrix &ReducedModel::stiffness() const
   {
-    return at(mu, system->contact_damping);
+    return stiffness_matrix;
   }
 
-  ReducedPencil ReducedModel::at(const double mu, const ContactDamping &damping) const
+  const DenseMatrix &ReducedModel::projected(const std::size_t term) const
   {
-    ReducedPencil pencil{add(parts.mass, friction_M, -mu), parts.body_damping, add(parts.stiffness, friction_K, -mu), false};
-    pencil.has_damping = parts.body_damping.n_rows() > 0 || !damping.is_zero();
-    if (pencil.has_damping && parts.body_damping.n_rows() == 0)
-      pencil.damping = DenseMatrix(size(), size());
-    if (system->normal_damping)
-      pencil.damping = add(pencil.damping, friction_C, -mu);
-    const auto add_contact_damping = [&pencil](const DenseMatrix &motion, const std::vector<double> &coefficients) {
-      if (pencil.has_damping && !coefficients.empty())
-        pencil.damping = add(pencil.damping, multiply(motion, rows_scaled(motion, coefficients), true));
-    };
-    add_contact_damping(parts.radial_motion, damping.radial);
-    add_contact_damping(parts.friction_forces, damping.sliding);
-    return pencil;
+    return matrices[term];
+  }
+
+  const DenseMatrix &ReducedModel::motions(const LowRankFactor &factor) const
+  {
+    return factors.at(&factor);
+  }
+
+  ReducedPencil ReducedModel::at(const ParameterValues &values) const
+  {
+    std::array<DenseMatrix, 3> sums;
+    for (std::size_t k = 0; k < matrices.size(); ++k)
+      {
+        const Term &term = system->terms[k];
+        if (term.vanishes(values))
+          continue;
+        DenseMatrix &sum = sums[term.power];
+        if (sum.n_rows() == 0)
+          sum = DenseMatrix(size(), size());
+        if (term.weights.empty())
+          sum = add(sum, matrices[k], term.coefficient.at(values));
+        else
+          sum = add(sum, multiply(motions(*term.left), term.weighted(motions(*term.right), values), true), term.coefficient.at(values));
+      }
+    const bool has_damping = sums[1].n_rows() > 0;
+    return {std::move(sums[2]), std::move(sums[1]), std::move(sums[0]), has_damping};
   }
 } // namespace Squeal

@@ -18,24 +18,6 @@ namespace Squeal
         std::copy(part.column(j), part.column(j) + part.n_rows(), matrix.column(column + j) + row);
     }
 
-    /// Copies a complex block into real and imaginary halves from @p row on, each column times a factor.
-    void insert(DenseMatrix &halves, const ComplexDenseMatrix &part, const int row, const std::function<Complex(int, int)> &factor)
-    {
-      const int k = part.n_columns();
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < part.n_rows(); ++i)
-          {
-            const Complex value        = factor(i, j) * part(i, j);
-            halves(row + i, j)     = value.real();
-            halves(row + i, k + j) = value.imag();
-          }
-    }
-
-    bool any(const std::vector<double> &coefficients)
-    {
-      return std::any_of(coefficients.begin(), coefficients.end(), [](const double c) { return c != 0.; });
-    }
-
     /// Rows [first, first + n).
     DenseMatrix rows(const DenseMatrix &X, const int first, const int n)
     {
@@ -50,17 +32,6 @@ namespace Squeal
       MultiVector U(F.Map(), F.NumVectors());
       inverse.apply_frictionless(F, U);
       return U;
-    }
-
-    /// (T_cᵀ C T_c + C_m) X
-    MultiVector body_damping_times(const CoupledSystem &system, const MultiVector &X)
-    {
-      MultiVector result(X.Map(), X.NumVectors());
-      if (system.body_damping)
-        result.Update(1., *system.body_damping * X, 1.);
-      if (system.modal_damping)
-        result.Update(1., *system.modal_damping * X, 1.);
-      return result;
     }
 
     /// Diagonal of Xᴴ Y for matrices of real and imaginary halves.
@@ -79,192 +50,195 @@ namespace Squeal
     }
   } // namespace
 
-  ProjectedResiduals::ProjectedResiduals(const CoupledSystem  &system,
-                                         const UpdatedInverse &inverse,
-                                         const double          shift,
-                                         const ContactDamping &damping)
+  ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
+                                         const UpdatedInverse  &inverse,
+                                         const double           shift,
+                                         const ParameterValues &values)
     : system(system)
     , inverse(inverse)
     , shift(shift)
-    , has_body_damping(system.body_damping || system.modal_damping)
-    , has_radial_damping(any(damping.radial))
-    , has_sliding_damping(any(damping.sliding))
-    , n_c(system.friction_forces->NumGlobalCols())
   {
-    fixed.push_back({system.normal_stiffness.get(), true});
-    fixed.push_back({system.normal_mass.get(), true});
-    if (system.normal_damping)
-      fixed.push_back({system.normal_damping.get(), true});
-    n_reactions = n_c * static_cast<int>(fixed.size());
-    if (has_radial_damping)
-      fixed.push_back({system.radial_motion.get(), true});
-    fixed.push_back({system.friction_forces.get(), false});
-
-    for (std::size_t p = 0; p < fixed.size(); ++p)
+    const ParameterValues with_friction = system.at(1., values);
+    for (std::size_t k = 0; k < system.terms.size(); ++k)
+      if (const Term &term = system.terms[k]; term.vanishes(with_friction) || term.matrix == system.stiffness)
+        continue;
+      else if (term.matrix)
+        sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., term.matrix == system.mass ? shift * shift : 0., {}, {}});
+      else
+        {
+          low_rank.push_back(&term);
+          for (const bool transposed : {false, true})
+            {
+              const LowRankFactor *factor = &term.target(transposed);
+              auto known = std::find_if(factors.begin(), factors.end(), [factor](const Factor &f) { return f.factor == factor; });
+              if (known == factors.end())
+                known = factors.insert(known, {factor, 0, false, false});
+              (transposed ? known->in_left : known->in_right) = true;
+            }
+        }
+    std::stable_sort(factors.begin(), factors.end(), [](const Factor &a, const Factor &b) {
+      return a.in_right - a.in_left < b.in_right - b.in_left;
+    });
+    int first = 0;
+    for (Factor &f : factors)
       {
-        const SparseMatrix &part = *fixed[p].matrix;
-        // The responses to friction forces are at hand
-        const MultiVector X =
-          fixed[p].transposed ? solve(inverse, transpose_times(part, unit_vectors(part.RangeMap()))) : inverse.attachment_modes();
-        fixed_gram = append_columns(fixed_gram, fixed_products(X));
+        f.first = first;
+        first += f.factor->rank();
+        (!f.in_right ? n_left : !f.in_left ? n_right : n_shared) += f.factor->rank();
       }
+    for (const Factor &f : factors)
+      // The responses to friction forces are at hand
+      factor_gram = append_columns(factor_gram, factor_products(f.factor == system.friction_forces.get() ?
+                                                                  inverse.attachment_modes() :
+                                                                  solve(inverse, f.factor->columns(0, f.factor->rank()))));
+    clear();
   }
 
-  DenseMatrix ProjectedResiduals::fixed_products(const MultiVector &X) const
+  DenseMatrix ProjectedResiduals::factor_products(const MultiVector &X) const
   {
-    DenseMatrix result(n_c * static_cast<int>(fixed.size()), X.NumVectors());
-    for (std::size_t p = 0; p < fixed.size(); ++p)
-      insert(result, replicate(fixed[p].transposed ? *fixed[p].matrix * X : transpose_times(*fixed[p].matrix, X)), n_c * static_cast<int>(p), 0);
+    DenseMatrix result(n_left + n_shared + n_right, X.NumVectors());
+    for (const Factor &f : factors)
+      insert(result, f.factor->transpose_times(X), f.first, 0);
     return result;
+  }
+
+  int ProjectedResiduals::column_of(const Factor &factor) const
+  {
+    return factor.first + (factor.in_right ? static_cast<int>(sparse.size()) * r : 0);
   }
 
   void ProjectedResiduals::clear()
   {
-    blocks     = {};
-    fixed_mass = fixed_damping = mass_mass = mass_damping = damping_damping = left_columns = right_block = {};
+    r = 0;
+    motions.clear();
+    left_columns = right_block = {};
+    for (Sparse &part : sparse)
+      {
+        part.factor_products = {};
+        part.products.assign(sparse.size(), {});
+      }
   }
 
   void ProjectedResiduals::extend(const ReducedModel &model)
   {
-    const int old = blocks.mass.n_rows(), r = model.size();
+    const int old = r;
+    r             = model.size();
     if (r == old)
       return;
-    blocks                    = model.blocks();
-    const MultiVector  &T     = model.basis();
-    const MultiVector   fresh = view(T, old, r - old);
-    const SparseMatrix &M     = *system.frictionless.mass;
+    for (const Factor &f : factors)
+      motions[f.factor] = model.motions(*f.factor);
 
-    const MultiVector U = solve(inverse, M * fresh);
-    fixed_mass          = append_columns(fixed_mass, fixed_products(U));
-    border(mass_mass, gram(T, M * U));
-    if (has_body_damping)
+    // New columns of (A T)ᵀ S⁻¹ A' T; its new rows are those of the transposed problem
+    const MultiVector       &T     = model.basis();
+    const MultiVector        fresh = view(T, old, r - old);
+    const std::size_t        n     = sparse.size();
+    std::vector<DenseMatrix> columns(n * n);
+    for (std::size_t k = 0; k < n; ++k)
       {
-        const MultiVector U_C = solve(inverse, body_damping_times(system, fresh));
-        fixed_damping         = append_columns(fixed_damping, fixed_products(U_C));
-        border(damping_damping, gram(T, body_damping_times(system, U_C)));
-        DenseMatrix products(r, r);
-        insert(products, mass_damping, 0, 0);
-        insert(products, gram(T, M * U_C), 0, old);
-        if (old > 0)
-          insert(products, gram(body_damping_times(system, U), view(T, 0, old)), old, 0);
-        mass_damping = std::move(products);
+        const MultiVector U       = solve(inverse, *sparse[k].term->matrix * fresh);
+        sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
+        for (std::size_t l = 0; l < n; ++l)
+          {
+            MultiVector F = *sparse[l].term->matrix * U;
+            F.Scale(sparse[l].sign);
+            columns[l + n * k] = gram(T, F);
+          }
       }
-
-    // Wᵀ S⁻¹ W and Tᵀ W; the columns that grow stand between those of reactions and the other fixed ones
-    const int   n_grown = has_body_damping ? 2 * r : r, n_fixed = fixed_gram.n_rows(), size = n_grown + n_fixed;
-    const int   grown = n_reactions, rest = n_reactions + n_grown, n_rest = n_fixed - n_reactions;
-    DenseMatrix G(size, size), H(r, size);
-    const auto  insert_fixed = [&](const DenseMatrix &products, const int column) {
-      for (const auto &[target, first, n] : {std::array<int, 3>{{0, 0, n_reactions}}, {{rest, n_reactions, n_rest}}})
+    for (std::size_t k = 0; k < n; ++k)
+      for (std::size_t l = 0; l < n; ++l)
         {
-          const DenseMatrix part = rows(products, first, n);
-          insert(G, part, target, column);
-          insert(G, transpose(part), column, target);
+          DenseMatrix products(r, r);
+          insert(products, sparse[k].products[l], 0, 0);
+          insert(products, columns[l + n * k], 0, old);
+          insert(products, transpose(rows(columns[k + n * l], 0, old)), old, 0);
+          sparse[k].products[l] = std::move(products);
         }
-    };
-    const DenseMatrix reactions = columns(fixed_gram, 0, n_reactions), others = columns(fixed_gram, n_reactions, n_rest);
-    const auto insert_rows = [&](const DenseMatrix &part, const int column) {
-      insert(G, rows(part, 0, n_reactions), 0, column);
-      insert(G, rows(part, n_reactions, n_rest), rest, column);
-    };
-    insert_rows(reactions, 0);
-    insert_rows(others, rest);
-    insert(G, mass_mass, grown, grown);
-    insert_fixed(fixed_mass, grown);
-    insert(H, blocks.mass, 0, grown);
-    if (has_body_damping)
-      {
-        insert(G, damping_damping, grown + r, grown + r);
-        insert(G, mass_damping, grown, grown + r);
-        insert(G, transpose(mass_damping), grown + r, grown);
-        insert_fixed(fixed_damping, grown + r);
-        insert(H, blocks.body_damping, 0, grown + r);
-      }
-    int        column = 0;
-    const auto append = [&](const DenseMatrix &projected) {
-      insert(H, transpose(projected), 0, column);
-      column += n_c;
-    };
-    append(blocks.normal_stiffness);
-    append(blocks.normal_mass);
-    if (system.normal_damping)
-      append(blocks.normal_damping);
-    column = rest;
-    if (has_radial_damping)
-      append(blocks.radial_motion);
-    append(blocks.friction_forces);
-
-    DenseMatrix responses = H;
-    DenseLU(add(blocks.stiffness, blocks.mass, shift * shift), "stiffness of a reduced model").solve(responses);
-    const DenseMatrix remainder = add(G, multiply(H, responses, true), -1.);
-    left_columns                = columns(remainder, 0, size - (has_sliding_damping ? 0 : n_c));
-    right_block                 = rows(columns(remainder, grown, size - grown), grown, size - grown);
+    assemble(model);
   }
 
-  DenseMatrix ProjectedResiduals::coefficients(const double                mu,
-                                               const ContactDamping       &damping,
+  void ProjectedResiduals::assemble(const ReducedModel &model)
+  {
+    const int n_sparse = static_cast<int>(sparse.size()) * r, size = n_sparse + n_left + n_shared + n_right;
+
+    // Wᵀ S⁻¹ W and Tᵀ W
+    DenseMatrix G(size, size), H(r, size);
+    for (const Factor &f : factors)
+      {
+        const int column = column_of(f), rank = f.factor->rank();
+        for (const Factor &g : factors)
+          insert(G, rows(columns(factor_gram, f.first, rank), g.first, g.factor->rank()), column_of(g), column);
+        insert(H, transpose(motions.at(f.factor)), 0, column);
+      }
+    for (std::size_t k = 0; k < sparse.size(); ++k)
+      {
+        const int column = n_left + static_cast<int>(k) * r;
+        for (std::size_t l = 0; l < sparse.size(); ++l)
+          insert(G, sparse[k].products[l], n_left + static_cast<int>(l) * r, column);
+        for (const Factor &f : factors)
+          {
+            const DenseMatrix part = rows(sparse[k].factor_products, f.first, f.factor->rank());
+            insert(G, part, column_of(f), column);
+            insert(G, transpose(part), column, column_of(f));
+          }
+        insert(H, model.projected(sparse[k].number), 0, column);
+      }
+
+    DenseMatrix responses = H;
+    DenseLU(add(model.stiffness(), model.mass(), shift * shift), "stiffness of a reduced model").solve(responses);
+    const DenseMatrix remainder = add(G, multiply(H, responses, true), -1.);
+    left_columns                = columns(remainder, 0, size - n_right);
+    right_block                 = rows(columns(remainder, n_left, size - n_left), n_left, size - n_left);
+  }
+
+  DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
                                                const std::vector<Complex> &lambda,
                                                const ComplexDenseMatrix   &vectors,
-                                               const bool                  left) const
+                                               const bool                  transposed) const
   {
-    const int   k = static_cast<int>(lambda.size());
-    DenseMatrix result(left ? left_columns.n_columns() : right_block.n_columns(), 2 * k);
-    const auto  square = [&](const int j) { return lambda[j] * lambda[j]; };
-    int         row    = 0;
-    const auto  put    = [&](const ComplexDenseMatrix &part, const std::function<Complex(int, int)> &factor) {
-      insert(result, part, row, factor);
-      row += part.n_rows();
+    const int   k     = static_cast<int>(lambda.size());
+    const int   first = transposed ? 0 : n_left; // column of W that belongs to the first row
+    DenseMatrix result(transposed ? left_columns.n_columns() : right_block.n_columns(), 2 * k);
+    const auto  theta = [&](const Term &term, const int j) {
+      return term.coefficient.at(values) * (term.power == 0 ? 1. : term.power == 1 ? lambda[j] : lambda[j] * lambda[j]);
     };
-    const auto coefficient = [](const std::vector<double> &c, const int i) { return c.empty() ? 0. : c[i]; };
+    const auto add_rows = [&](const ComplexDenseMatrix &part, const int row, const std::function<Complex(int)> &factor) {
+      for (int j = 0; j < k; ++j)
+        {
+          const Complex f = factor(j);
+          for (int i = 0; i < part.n_rows(); ++i)
+            {
+              const Complex value = f * part(i, j);
+              result(row + i, j) += value.real();
+              result(row + i, k + j) += value.imag();
+            }
+        }
+    };
 
-    const ComplexDenseMatrix tangential = multiply(blocks.friction_forces, vectors);
-    if (left) // V_Kᵀ, V_Mᵀ, V_Cᵀ: friction of the left vectors
+    for (std::size_t s = 0; s < sparse.size(); ++s)
+      add_rows(vectors, n_left - first + static_cast<int>(s) * r,
+               [&](const int j) { return (transposed ? sparse[s].sign : 1.) * theta(*sparse[s].term, j) - sparse[s].sigma; });
+    std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
+    for (const Term *term : low_rank)
       {
-        put(tangential, [&](int, int) { return -mu; });
-        put(tangential, [&](int, const int j) { return -mu * square(j); });
-        if (system.normal_damping)
-          put(tangential, [&](int, const int j) { return -mu * lambda[j]; });
+        if (term->vanishes(values))
+          continue;
+        const LowRankFactor &source = term->source(transposed), &target = term->target(transposed);
+        if (moved.count(&source) == 0)
+          moved[&source] = multiply(motions.at(&source), vectors);
+        const auto factor = std::find_if(factors.begin(), factors.end(), [&target](const Factor &f) { return f.factor == &target; });
+        add_rows(term->weighted(moved.at(&source), values), column_of(*factor) - first, [&](const int j) { return theta(*term, j); });
       }
-
-    put(vectors, [&](int, const int j) { return square(j) - shift * shift; });
-    if (has_body_damping)
-      put(vectors, [&](int, const int j) { return lambda[j]; });
-    if (has_radial_damping)
-      put(multiply(blocks.radial_motion, vectors), [&](const int i, const int j) { return lambda[j] * coefficient(damping.radial, i); });
-
-    // A: damping along t of both, friction of the right vectors
-    if (row == result.n_rows())
-      return result;
-    ComplexDenseMatrix forces(n_c, k);
-    for (int j = 0; j < k; ++j)
-      for (int i = 0; i < n_c; ++i)
-        forces(i, j) = lambda[j] * coefficient(damping.sliding, i) * tangential(i, j);
-    if (!left)
-      {
-        const auto add_friction = [&](const DenseMatrix &V, const std::function<Complex(int)> &factor) {
-          const ComplexDenseMatrix reaction = multiply(V, vectors);
-          for (int j = 0; j < k; ++j)
-            for (int i = 0; i < n_c; ++i)
-              forces(i, j) -= mu * factor(j) * reaction(i, j);
-        };
-        add_friction(blocks.normal_stiffness, [](int) { return 1.; });
-        add_friction(blocks.normal_mass, square);
-        if (system.normal_damping)
-          add_friction(blocks.normal_damping, [&](const int j) { return lambda[j]; });
-      }
-    put(forces, [](int, int) { return 1.; });
     return result;
   }
 
-  ResidualProducts ProjectedResiduals::products(const double                mu,
-                                                const ContactDamping       &damping,
+  ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
                                                 const std::vector<Complex> &lambda,
                                                 const ComplexDenseMatrix   &right,
                                                 const ComplexDenseMatrix   &left) const
   {
-    const DenseMatrix y = coefficients(mu, damping, lambda, right, false), z = coefficients(mu, damping, lambda, left, true);
+    const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
     const DenseMatrix Gy = multiply(right_block, y), Gz = multiply(left_columns, z);
-    return {from_halves(multiply(rows(Gz, n_reactions, y.n_rows()), y, true)), hermitian_products(y, Gy),
+    return {from_halves(multiply(rows(Gz, n_left, y.n_rows()), y, true)), hermitian_products(y, Gy),
             hermitian_products(z, rows(Gz, 0, z.n_rows()))};
   }
 } // namespace Squeal

@@ -34,7 +34,7 @@ namespace Squeal
     , largest_frequency(largest_frequency)
     , margin(margin)
     , model(starting_model(system, inverse, real_modes, true))
-    , residuals(system, inverse, shift, system.contact_damping)
+    , residuals(system, inverse, shift, system.values)
   {
     residuals.extend(model);
   }
@@ -56,11 +56,11 @@ namespace Squeal
 
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
-    const double       mu        = point.friction_coefficient;
-    const ReducedModes modes     = local_reduced_modes(model, mu, point.damping, (1. + margin) * largest_frequency);
-    const auto         estimates = estimate_eigenvalues(modes, residuals.products(mu, point.damping, modes.lambda, modes.right, modes.left));
+    const ParameterValues values    = system.at(point.friction_coefficient, point.values);
+    const ReducedModes    modes     = local_reduced_modes(model, values, (1. + margin) * largest_frequency);
+    const auto            estimates = estimate_eigenvalues(modes, residuals.products(values, modes.lambda, modes.right, modes.left));
 
-    ChartPoint result{mu,
+    ChartPoint result{point.friction_coefficient,
                       modes.lambda,
                       modes.right,
                       modes.left,
@@ -104,16 +104,14 @@ namespace Squeal
         if (set.modes.empty())
           continue;
         ReducedModes modes;
-        modes.friction_coefficient = set.point.friction_coefficient;
-        modes.contact_damping      = set.point.damping;
+        modes.values = system.at(set.point.friction_coefficient, set.point.values);
         for (const int j : set.modes)
           modes.lambda.push_back(set.chart->lambda[j]);
         modes.right = padded(orthonormal_in_clusters(selected_columns(set.chart->right, set.modes), modes.lambda), model.size());
         modes.left  = padded(orthonormal_in_clusters(selected_columns(set.chart->left, set.modes), modes.lambda), model.size());
         std::vector<int> all(set.modes.size());
         std::iota(all.begin(), all.end(), 0);
-        const CoupledSystem here = with_contact_damping(system, set.point.damping);
-        directions.push_back(residual_directions(residual_vectors(here, inverse, model, modes), modes, all));
+        directions.push_back(residual_directions(residual_vectors(system, inverse, model, modes), modes, all));
       }
     if (directions.empty())
       return {};
@@ -131,7 +129,7 @@ namespace Squeal
 
   MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance) const
   {
-    const SparseMatrix &M = *system.frictionless.mass;
+    const SparseMatrix &M = *system.mass;
     const MultiVector  &T = model.basis();
     DenseMatrix         Y;
     for (const ChartPoint &chart : charts)
@@ -141,7 +139,7 @@ namespace Squeal
     Y                   = add(Y, multiply(R, multiply(R, Y, true)), -1.);
 
     // Strain energy: K_r = V diag(w) Vᵀ, the squares of Y are those of √w VᵀY
-    DenseMatrix V = add(model.blocks().stiffness, model.blocks().mass, shift * shift);
+    DenseMatrix V = add(model.stiffness(), model.mass(), shift * shift);
     auto        w = symmetric_eigenvalues(V);
     agree(T.Comm(), V, w);
     DenseMatrix Y_w = multiply(V, Y, true);

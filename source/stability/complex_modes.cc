@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace Squeal
@@ -87,48 +88,25 @@ namespace Squeal
   } // namespace
 
   MultiVector force_residuals(const CoupledSystem                     &system,
-                              const double                             mu,
+                              const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
                               const MultiVector                       &real_part,
                               const MultiVector                       &imaginary_part,
                               const bool                               left)
   {
-    const MultiVector        X        = join({&real_part, &imaginary_part});
-    const SecondOrderSystem &matrices = system.frictionless;
-    std::vector<std::complex<double>> square(lambda.size());
-    std::transform(lambda.begin(), lambda.end(), square.begin(), [](const auto &l) { return l * l; });
-
-    // Frictionless part
-    MultiVector R = *matrices.stiffness * X;
-    add_scaled(R, square, *matrices.mass * X);
-    if (system.has_damping())
-      add_scaled(R, lambda, system.damping_times(X));
-
-    // Friction: −μ A (V_K + λ V_C + λ² V_M) φ, or its transpose −μ (V_K + λ V_C + λ² V_M)ᵀ Aᵀ φ
-    if (mu != 0.)
+    const MultiVector                 X = join({&real_part, &imaginary_part});
+    MultiVector                       R = times(system.terms, values, 0, X, left);
+    std::vector<std::complex<double>> factors(lambda.size(), 1.);
+    for (const int power : {1, 2})
       {
-        if (left)
-          {
-            const MultiVector a = transpose_times(*system.friction_forces, X);
-            MultiVector       F = transpose_times(*system.normal_stiffness, a);
-            add_scaled(F, square, transpose_times(*system.normal_mass, a));
-            if (system.normal_damping)
-              add_scaled(F, lambda, transpose_times(*system.normal_damping, a));
-            R.Update(-mu, F, 1.);
-          }
-        else
-          {
-            MultiVector r = *system.normal_stiffness * X;
-            add_scaled(r, square, *system.normal_mass * X);
-            if (system.normal_damping)
-              add_scaled(r, lambda, *system.normal_damping * X);
-            R.Update(-mu, *system.friction_forces * r, 1.);
-          }
+        std::transform(factors.begin(), factors.end(), lambda.begin(), factors.begin(), std::multiplies<>());
+        if (!terms_of(system.terms, values, power).empty())
+          add_scaled(R, factors, times(system.terms, values, power, X, left));
       }
     return R;
   }
 
-  void finish_modes(const CoupledSystem &system, const double mu, const UpdatedInverse &inverse, ComplexModes &modes)
+  void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes)
   {
     const int k = modes.lambda.size();
     if (k == 0)
@@ -161,14 +139,14 @@ namespace Squeal
           modes.estimated_errors[j] = errors[order[j]];
       }
 
-    normalize(*system.frictionless.mass, *modes.real_part, *modes.imaginary_part);
+    normalize(*system.mass, *modes.real_part, *modes.imaginary_part);
     if (modes.left_real_part)
-      normalize(*system.frictionless.mass, *modes.left_real_part, *modes.left_imaginary_part);
+      normalize(*system.mass, *modes.left_real_part, *modes.left_imaginary_part);
 
     // Residuals
     const MultiVector X  = join({modes.real_part.get(), modes.imaginary_part.get()});
-    const MultiVector KX = *system.frictionless.stiffness * X;
-    const MultiVector R  = force_residuals(system, mu, modes.lambda, *modes.real_part, *modes.imaginary_part);
+    const MultiVector KX = *system.stiffness * X;
+    const MultiVector R  = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
     MultiVector       U(R.Map(), R.NumVectors());
     inverse.apply_frictionless(R, U);
     const auto R_R = column_products(R, R), KX_KX = column_products(KX, KX), U_R = column_products(U, R), X_KX = column_products(X, KX);

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/stability/condensed_determinant.h>
@@ -21,8 +20,6 @@ namespace Squeal
     /// More terms than this mean that the series does not converge.
     constexpr int most_terms = 400;
 
-    const Decision outside("square of a mode with damping of its own outside of the summed modes / whole", 1e-6);
-
     /// (1 − r) / (1 + r) and r of the series at λ.
     struct Ratio
     {
@@ -43,17 +40,28 @@ namespace Squeal
       return values.empty() ? 0. : std::sqrt(std::max(0., 0.5 * values.back()));
     }
 
-    double largest_modulus(const std::vector<double> &values)
+    DenseMatrix ones(const int n)
     {
-      double largest = 0.;
-      for (const double value : values)
-        largest = std::max(largest, std::abs(value));
-      return largest;
+      DenseMatrix result(n, 1);
+      std::fill(result.column(), result.column(1), 1.);
+      return result;
     }
 
-    bool vanish(const std::vector<double> &values)
+    /// Largest modulus of diag(d); 1 without weights.
+    double largest_weight(const Term &term, const ParameterValues &values)
     {
-      return largest_modulus(values) == 0.;
+      return max_norm(term.weighted(ones(term.right->rank()), values));
+    }
+
+    /// Calls @p action with each factor and its first column in E.
+    void for_columns(const std::vector<const LowRankFactor *> &factors, const std::function<void(const LowRankFactor &, int)> &action)
+    {
+      int first = 0;
+      for (const LowRankFactor *factor : factors)
+        {
+          action(*factor, first);
+          first += factor->rank();
+        }
     }
 
     /// Copies A into B, from @p first_row and @p first_column on.
@@ -93,27 +101,6 @@ namespace Squeal
 
 
 
-  // ------------------------------------------------------------------- blocks
-
-  DenseMatrix CondensedDeterminant::Block::operator*(const MultiVector &X) const
-  {
-    return replicate(transposed ? transpose_times(*factor, X) : *factor * X);
-  }
-
-  MultiVector CondensedDeterminant::Block::transpose_times_units(const int first, const int n) const
-  {
-    const MultiVector units = unit_vectors(transposed ? factor->DomainMap() : factor->RangeMap());
-    const MultiVector chosen(view(units, first, n));
-    return transposed ? *factor * chosen : transpose_times(*factor, chosen);
-  }
-
-  Complex CondensedDeterminant::Block::scale(const Complex lambda, const double mu) const
-  {
-    return (friction ? -mu : 1.) * (power == 0 ? 1. : power == 1 ? lambda : lambda * lambda);
-  }
-
-
-
   // -------------------------------------------------------------- preparation
 
   CondensedDeterminant::CondensedDeterminant(const CoupledSystem               &system,
@@ -122,96 +109,67 @@ namespace Squeal
                                              const LinearOperator              &inverse,
                                              const double                       shift,
                                              const CondensedDeterminantRequest &request)
-    : deflation_square(deflation_end * deflation_end)
+    : system(system)
+    , deflation_square(deflation_end * deflation_end)
     , shift(shift)
   {
-    if (system.body_damping)
-      throw SolverError("damping of the bodies is not confined to the contact",
-                        "determinant condensed to the contact nodes",
-                        "take sparse LU factors instead (small systems), or leave out the Rayleigh damping");
     for (const double eigenvalue : modes.eigenvalues)
       omega.push_back(std::sqrt(std::max(0., eigenvalue)));
-    const MultiVector      *Phi = omega.empty() ? nullptr : modes.vectors.get();
-    const SparseMatrix     &M   = *system.frictionless.mass;
+    const MultiVector      *Phi     = omega.empty() ? nullptr : modes.vectors.get();
+    const int               n_modes = omega.size();
+    const SparseMatrix     &M       = *system.mass;
     const ComplementInverse complement_inverse(M, Phi, inverse);
 
-    // ------------------------------------------------------------------ blocks
-    const auto               &c = system.contact_damping;
-    const int                 n_contact = system.normal_stiffness->NumGlobalRows();
-    const std::vector<double> ones(n_contact, 1.);
-    const auto                block = [&](const auto &factor, const bool transposed, const auto &coefficients, const bool friction, const int power) {
-      Block result;
-      result.factor       = factor;
-      result.transposed   = transposed;
-      result.coefficients = coefficients;
-      result.friction     = friction;
-      result.power        = power;
-      return result;
-    };
-    blocks = {block(system.normal_stiffness, false, ones, true, 0), block(system.normal_mass, false, ones, true, 2)};
-    if (!vanish(c.sliding))
-      blocks.push_back(block(system.friction_forces, true, c.sliding, false, 1));
-    std::vector<Block> forces = {block(system.friction_forces, true, ones, false, 0)};
-    if (!vanish(c.radial))
-      {
-        blocks.push_back(block(system.radial_motion, false, c.radial, false, 1));
-        blocks.back().first_row = n_contact;
-        forces.push_back(blocks.back());
-      }
-    n_columns = forces.size() * n_contact;
-
-    // ------------------------------------------------------------ on the modes
-    const int   n_modal = system.modal_damping ? system.modal_damping->coefficients.size() : 0;
-    const int   n_modes = omega.size();
-    DenseMatrix on_forces(n_modes, n_columns + n_modal);
-    n_rows = n_columns + n_modal;
-    if (n_modes > 0)
-      {
-        for (Block &part : blocks)
-          part.on_modes = part * *Phi;
-        for (const Block &part : forces)
-          insert(transpose(part * *Phi), 0, part.first_row, on_forces);
-      }
-    modal = DenseMatrix(n_modal, n_modes);
-    if (n_modal > 0)
-      {
-        if (n_modes > 0)
-          modal = gram(system.modal_damping->mass_times_modes, *Phi);
-        insert(transpose(modal), 0, n_columns, on_forces);
-        for (int i = 0; i < n_modal; ++i)
-          {
-            double square = 0.;
-            for (int j = 0; j < n_modes; ++j)
-              square += modal(i, j) * modal(i, j);
-            if (outside.exceeded_by(std::abs(square - 1.)))
-              throw SolverError("a mode with damping of its own lies above the modes that are taken as they are",
-                                "determinant condensed to the contact nodes",
-                                "give such damping to modes of the band only, or take more real modes");
-            for (int j = 0; j < n_modes; ++j)
-              modal(i, j) *= system.modal_damping->coefficients[i];
-          }
-      }
+    // ---------------------------------------- terms of low rank, and their factors
+    std::vector<const LowRankFactor *> factors;
+    for (const Term &term : system.terms)
+      if (term.matrix == system.mass || term.matrix == system.stiffness || term.vanishes(system.at(1.)))
+        continue;
+      else if (term.matrix)
+        throw SolverError("the term `" + term.name + "` is not confined to the contact", "determinant condensed to the contact nodes",
+                          "take sparse LU factors instead (small systems), or leave the term out: Rayleigh damping, say");
+      else
+        {
+          auto known = std::find(factors.begin(), factors.end(), term.left.get());
+          if (known == factors.end())
+            known = factors.insert(known, term.left.get());
+          int first_row = 0;
+          for (auto factor = factors.begin(); factor != known; ++factor)
+            first_row += (*factor)->rank();
+          blocks.push_back({&term, first_row, n_modes > 0 ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
+        }
+    for (const LowRankFactor *factor : factors)
+      n_rows += factor->rank();
     modes_forces = ComplexDenseMatrix(n_modes, n_rows);
-    std::copy(on_forces.column(), on_forces.column() + static_cast<std::size_t>(n_modes) * n_rows, modes_forces.column());
+    if (n_modes > 0)
+      for_columns(factors, [&](const LowRankFactor &factor, const int first) {
+        const DenseMatrix on_modes = transpose(factor.transpose_times(*Phi));
+        std::copy(on_modes.column(), on_modes.column(on_modes.n_columns()), modes_forces.column(first));
+      });
 
     // ------------------------------------------- norms, and how many terms to take
-    const auto for_chunks = [&](const std::function<void(int, int)> &action) {
-      for (int first = 0; first < n_contact; first += chunk_size)
-        action(first, std::min(chunk_size, n_contact - first));
+    const auto for_chunks = [](const LowRankFactor &factor, const std::function<void(int, int)> &action) {
+      for (int first = 0; first < factor.rank(); first += chunk_size)
+        action(first, std::min(chunk_size, factor.rank() - first));
     };
-    for (Block &part : blocks)
+    for (Block &block : blocks)
       {
-        DenseMatrix flexibility(n_contact, n_contact);
-        for_chunks([&](const int first, const int n) { insert(part * (complement_inverse * part.transpose_times_units(first, n)), 0, first, flexibility); });
-        part.norm = largest_modulus(part.coefficients) * root_of_largest(M.Comm(), flexibility);
+        const LowRankFactor &R = *block.term->right;
+        DenseMatrix          flexibility(R.rank(), R.rank());
+        for_chunks(R, [&](const int first, const int n) {
+          insert(R.transpose_times(complement_inverse * R.columns(first, n)), 0, first, flexibility);
+        });
+        block.norm = largest_weight(*block.term, system.values) * root_of_largest(M.Comm(), flexibility);
       }
-    DenseMatrix flexibility(n_columns, n_columns);
-    for (const Block &part : forces)
-      for_chunks([&](const int first, const int n) {
-        const MultiVector X = complement_inverse * part.transpose_times_units(first, n);
-        for (const Block &other : forces)
-          insert(other * X, other.first_row, part.first_row + first, flexibility);
+    DenseMatrix flexibility(n_rows, n_rows);
+    for_columns(factors, [&](const LowRankFactor &factor, const int first_column) {
+      for_chunks(factor, [&](const int first, const int n) {
+        const MultiVector X = complement_inverse * factor.columns(first, n);
+        for_columns(factors, [&](const LowRankFactor &other, const int first_row) {
+          insert(other.transpose_times(X), first_row, first_column + first, flexibility);
+        });
       });
+    });
     forces_norm = root_of_largest(M.Comm(), flexibility);
 
     const auto sufficient = [&](const int n) {
@@ -226,23 +184,23 @@ namespace Squeal
                           "take more real modes");
 
     // ----------------------------------------------------------------- moments
-    for (Block &part : blocks)
-      part.moments.assign(n_terms, DenseMatrix(n_contact, n_columns));
+    for (Block &block : blocks)
+      block.moments.assign(n_terms, DenseMatrix(block.term->right->rank(), n_rows));
     const double w = deflation_square + shift;
-    for (const Block &part : forces)
-      for_chunks([&](const int first, const int n) {
+    for_columns(factors, [&](const LowRankFactor &factor, const int first_column) {
+      for_chunks(factor, [&](const int first, const int n) {
         const auto keep = [&](const int k, const MultiVector &T) {
-          for (Block &row : blocks)
-            insert(row * T, 0, part.first_row + first, row.moments[k]);
+          for (Block &block : blocks)
+            insert(block.term->right->transpose_times(T), 0, first_column + first, block.moments[k]);
         };
         // T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H blows up what rounding leaves of the modes: it is taken out in every step.
-        MultiVector T = complement_inverse * part.transpose_times_units(first, n), previous(T);
+        MultiVector T = complement_inverse * factor.columns(first, n), previous(T);
         keep(0, T);
         for (int k = 1; k < n_terms; ++k)
           {
-            MultiVector  next   = complement_inverse * (M * T);
-            const double factor = k == 1 ? 1. : 2.;
-            next.Update(-factor, T, 2. * w * factor);
+            MultiVector  next = complement_inverse * (M * T);
+            const double two  = k == 1 ? 1. : 2.;
+            next.Update(-two, T, 2. * w * two);
             if (k > 1)
               next.Update(-1., previous, 1.);
             previous = T;
@@ -250,11 +208,19 @@ namespace Squeal
             keep(k, T);
           }
       });
+    });
   }
 
 
 
   // --------------------------------------------------------------- evaluation
+
+  Complex CondensedDeterminant::Block::scale(const Complex lambda, const ParameterValues &values) const
+  {
+    return term->coefficient.at(values) * (term->power == 0 ? 1. : term->power == 1 ? lambda : lambda * lambda);
+  }
+
+
 
   ComplexDenseMatrix CondensedDeterminant::complement(const Complex lambda, const double mu) const
   {
@@ -267,23 +233,24 @@ namespace Squeal
     std::vector<double> real, imaginary;
     for (const Block &block : blocks)
       {
-        const Complex scale     = block.scale(lambda, mu);
-        const int     n_contact = block.coefficients.size();
-        for (int j = 0; j < n_columns; ++j)
+        const int           n_here  = block.term->right->rank();
+        const DenseMatrix   weights = block.term->weighted(ones(n_here), system.values);
+        const Complex       scale   = block.scale(lambda, system.at(mu));
+        for (int j = 0; j < n_rows; ++j)
           {
-            real.assign(n_contact, 0.);
-            imaginary.assign(n_contact, 0.);
+            real.assign(n_here, 0.);
+            imaginary.assign(n_here, 0.);
             for (int k = 0; k < n_terms; ++k)
               {
                 const double *moment = block.moments[k].column(j), re = series[k].real(), im = series[k].imag();
-                for (int i = 0; i < n_contact; ++i)
+                for (int i = 0; i < n_here; ++i)
                   {
                     real[i] += re * moment[i];
                     imaginary[i] += im * moment[i];
                   }
               }
-            for (int i = 0; i < n_contact; ++i)
-              N(block.first_row + i, j) += scale * block.coefficients[i] * Complex(real[i], imaginary[i]);
+            for (int i = 0; i < n_here; ++i)
+              N(block.first_row + i, j) += scale * weights(i, 0) * Complex(real[i], imaginary[i]);
           }
       }
     for (int i = 0; i < n_rows; ++i)
@@ -304,14 +271,12 @@ namespace Squeal
     ComplexDenseMatrix X(n_rows, n_modes);
     for (const Block &block : blocks)
       {
-        const Complex scale = block.scale(lambda, mu);
+        const Complex     scale    = block.scale(lambda, system.at(mu));
+        const DenseMatrix on_modes = block.term->weighted(block.on_modes, system.values);
         for (int j = 0; j < n_modes; ++j)
-          for (int i = 0; i < block.on_modes.n_rows(); ++i)
-            X(block.first_row + i, j) += scale * block.coefficients[i] * block.on_modes(i, j);
+          for (int i = 0; i < on_modes.n_rows(); ++i)
+            X(block.first_row + i, j) += scale * on_modes(i, j);
       }
-    for (int j = 0; j < n_modes; ++j)
-      for (int i = 0; i < modal.n_rows(); ++i)
-        X(n_columns + i, j) = lambda * modal(i, j);
     const ComplexDenseLU factors(complement(lambda, mu));
     factors.solve(X);
 
@@ -336,7 +301,7 @@ namespace Squeal
     const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n) / (1. - u) / std::abs(ratio.r);
     double       rows = 0.;
     for (const Block &block : blocks)
-      rows += std::abs(block.scale(lambda, mu)) * block.norm;
+      rows += std::abs(block.scale(lambda, system.at(mu))) * block.norm;
     return rows * tail * forces_norm;
   }
 

@@ -342,7 +342,7 @@ namespace Squeal
     int n_frictionless_modes(const CoupledSystem &system, const Contour &contour)
     {
       const auto below = [&](const double omega) {
-        return count_modes(*system.frictionless.stiffness, *system.frictionless.mass, omega * omega, "real modes of the coupled system");
+        return count_modes(*system.stiffness, *system.mass, omega * omega, "real modes of the coupled system");
       };
       return below(contour.high) - below(contour.low);
     }
@@ -352,7 +352,7 @@ namespace Squeal
     std::vector<ContourCount>
     count_condensed(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
     {
-      const SparseMatrix &K = *system.frictionless.stiffness, &M = *system.frictionless.mass;
+      const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
       // The real modes, and the inverse that gives both them and the series
       progress.update("real modes beyond the band");
@@ -444,8 +444,6 @@ namespace Squeal
     std::vector<ContourCount>
     count_sparse(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
     {
-      if (system.modal_damping)
-        throw SolverError("modal damping has no sparse matrix", place, "take the determinant condensed to the contact nodes");
       const int                 n_frictionless = n_frictionless_modes(system, contour);
       std::vector<ContourCount> results;
       for (const double friction : mu)
@@ -461,6 +459,16 @@ namespace Squeal
       return results;
     }
   } // namespace
+
+
+
+  ContourMethod contour_method(const CoupledSystem &system)
+  {
+    const bool confined = std::all_of(system.terms.begin(), system.terms.end(), [&system](const Term &term) {
+      return !term.matrix || term.matrix == system.mass || term.matrix == system.stiffness || term.vanishes(system.values);
+    });
+    return confined ? ContourMethod::condensed : ContourMethod::sparse_lu;
+  }
 
 
 

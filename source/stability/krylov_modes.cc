@@ -9,31 +9,35 @@ namespace Squeal
 {
   namespace
   {
-    /// C_c − μ A V_C + C_m, of which either part may be null.
+    /// A sparse matrix, which may be null, and terms in λ without sparse form.
     class DampingOperator : public LinearOperator
     {
     public:
-      DampingOperator(std::shared_ptr<const SparseMatrix> matrix, const CoupledSystem &system)
-        : matrix(std::move(matrix))
-        , system(system)
+      DampingOperator(const Epetra_Map &rows, std::shared_ptr<const SparseMatrix> matrix, std::vector<Term> others, const ParameterValues &values)
+        : rows(rows)
+        , matrix(std::move(matrix))
+        , others(std::move(others))
+        , values(values)
       {}
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
         if (matrix)
           matrix->Multiply(false, X, Y);
-        if (system.modal_damping)
-          Y.Update(1., *system.modal_damping * X, matrix ? 1. : 0.);
+        if (!others.empty())
+          Y.Update(1., times(others, values, 1, X), matrix ? 1. : 0.);
       }
 
       const Epetra_Map &map() const override
       {
-        return system.map();
+        return rows;
       }
 
     private:
+      const Epetra_Map                   &rows;
       std::shared_ptr<const SparseMatrix> matrix;
-      const CoupledSystem                &system;
+      std::vector<Term>                   others;
+      ParameterValues                     values;
     };
 
     /// Q(s)⁻¹ at friction coefficient @p mu, by @p inverse or by factors kept in @p lu.
@@ -76,18 +80,23 @@ namespace Squeal
                             const SolverParameters &parameters,
                             Progress               &progress)
   {
-    // Its inverse would hold the dense C_m
-    if (shift != 0. && system.modal_damping)
+    const ParameterValues values = system.at(mu);
+    std::vector<Term>     sparse, others;
+    for (const Term &term : system.terms)
+      (term.is_sparse() ? sparse : others).push_back(term);
+    const bool has_full_terms = !terms_of(others, values, 1).empty();
+    // The inverse would hold them
+    if (shift != 0. && has_full_terms)
       throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver",
                         "complex modes",
                         "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
     // The pencil: sparse matrices, but for modal damping
-    const SecondOrderSystem matrices = with_friction(system, mu);
+    const SecondOrderSystem matrices = sparse_matrices(sparse, values);
     const MatrixOperator    mass(matrices.mass), stiffness(matrices.stiffness);
-    const DampingOperator   damping(matrices.damping, system);
-    const QuadraticPencil   pencil{&mass, system.has_damping() ? &damping : nullptr, &stiffness};
+    const DampingOperator   damping(system.map(), matrices.damping, has_full_terms ? others : std::vector<Term>(), values);
+    const QuadraticPencil   pencil{&mass, matrices.damping || has_full_terms ? &damping : nullptr, &stiffness};
 
     QuadraticModesOptions options;
     options.shift             = shift;
@@ -108,14 +117,14 @@ namespace Squeal
       {
         // Near the friction coefficient where a mode begins to diverge K̃ is almost singular, and its inverse magnifies rounding
         // errors: a shift helps. If the reason was another one, the next attempt says so.
-        if (shift != 0. || system.modal_damping)
+        if (shift != 0. || has_full_terms)
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
         modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, shifted, lu), options));
         modes.summary += ", shifted";
       }
-    finish_modes(system, mu, inverse, modes);
+    finish_modes(system, values, inverse, modes);
     return modes;
   }
 } // namespace Squeal

@@ -92,18 +92,16 @@ namespace Squeal
     }
 
     /// Every eigenvalue that dense_quadratic_modes() gives.
-    ReducedModes all_modes(const ReducedModel   &model,
-                           const double          mu,
-                           const ContactDamping &damping,
-                           const double          largest_frequency,
-                           const RealVectors     real_vectors)
+    ReducedModes all_modes(const ReducedModel    &model,
+                           const ParameterValues &values,
+                           const double           largest_frequency,
+                           const RealVectors      real_vectors)
     {
       ReducedModes modes;
-      modes.friction_coefficient = mu;
-      modes.contact_damping      = damping;
-      modes.pencil               = model.at(mu, damping);
-      modes.mass                 = model.blocks().mass;
-      modes.stiffness            = model.blocks().stiffness;
+      modes.values    = values;
+      modes.pencil    = model.at(values);
+      modes.mass      = model.mass();
+      modes.stiffness = model.stiffness();
 
       DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
                                                         modes.pencil.stiffness, largest_frequency, real_vectors);
@@ -165,20 +163,19 @@ namespace Squeal
     }
   } // namespace
 
-  ReducedModes local_reduced_modes(const ReducedModel   &model,
-                                   const double          mu,
-                                   const ContactDamping &damping,
-                                   const double          largest_frequency,
-                                   const BandEnd         end)
+  ReducedModes local_reduced_modes(const ReducedModel    &model,
+                                   const ParameterValues &values,
+                                   const double           largest_frequency,
+                                   const BandEnd          end)
   {
-    ReducedModes modes = all_modes(model, mu, damping, band_limit(largest_frequency, end), RealVectors::none);
+    ReducedModes modes = all_modes(model, values, band_limit(largest_frequency, end), RealVectors::none);
     separate_real(modes, largest_frequency);
     return modes;
   }
 
   ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_frequency, const BandEnd end)
   {
-    ReducedModes modes = local_reduced_modes(model, mu, model.contact_damping(), largest_frequency, end);
+    ReducedModes modes = local_reduced_modes(model, model.full_order().at(mu), largest_frequency, end);
     agree_on_modes(model.basis().Comm(), modes);
     return modes;
   }
@@ -186,7 +183,7 @@ namespace Squeal
   ReducedModes
   real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_frequency, const double radius)
   {
-    ReducedModes     modes = all_modes(model, mu, model.contact_damping(), largest_frequency, RealVectors::wanted);
+    ReducedModes     modes = all_modes(model, model.full_order().at(mu), largest_frequency, RealVectors::wanted);
     std::vector<int> real;
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
       if (const double size = std::abs(modes.lambda[j]);
@@ -200,11 +197,10 @@ namespace Squeal
   ReducedModes reduced_real_modes(const ReducedModel &model, const double largest_frequency, const BandEnd end)
   {
     ReducedModes modes;
-    modes.pencil             = model.at(0.);
-    modes.pencil.damping     = DenseMatrix();
-    modes.pencil.has_damping = false;
-    modes.mass               = modes.pencil.mass;
-    modes.stiffness          = modes.pencil.stiffness;
+    modes.values    = model.full_order().values;
+    modes.mass      = model.mass();
+    modes.stiffness = model.stiffness();
+    modes.pencil    = {modes.mass, DenseMatrix(), modes.stiffness, false};
 
     DenseMatrix               vectors = modes.stiffness;
     const std::vector<double> squares = symmetric_eigenvalues(vectors, modes.mass);
@@ -242,7 +238,7 @@ namespace Squeal
   {
     const MultiVector &T     = model.basis();
     const auto         force = [&](const ComplexDenseMatrix &vectors, const bool left) {
-      return force_residuals(system, modes.friction_coefficient, modes.lambda, T * real_part(vectors), T * imaginary_part(vectors), left);
+      return force_residuals(system, modes.values, modes.lambda, T * real_part(vectors), T * imaginary_part(vectors), left);
     };
     const MultiVector R = force(modes.right, false), L = force(modes.left, true);
     return {R, L, solve(inverse, R), solve(inverse, L)};
@@ -339,7 +335,7 @@ namespace Squeal
     result.n_rigid_body        = modes.n_zeros / 2;
     if (estimates != nullptr)
       result.estimated_errors = estimates->errors;
-    finish_modes(system, modes.friction_coefficient, inverse, result);
+    finish_modes(system, modes.values, inverse, result);
     return result;
   }
 } // namespace Squeal

@@ -160,7 +160,7 @@ namespace Squeal
 
     // Inner products in the mass of the reference modes, of the reduced ones, and of both
     const MultiVector        X  = join({reference.real_part.get(), reference.imaginary_part.get()});
-    const MultiVector        MX = *system.frictionless.mass * X;
+    const MultiVector        MX = *system.mass * X;
     const ComplexDenseMatrix A  = hermitian_products(gram(X, MX));
     const ComplexDenseMatrix B  = multiply(modes.right, multiply(to_complex(modes.mass), modes.right), true);
     const DenseMatrix        XT = gram(MX, model.basis());

@@ -19,8 +19,8 @@ namespace Squeal
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
 
-    /// Φ_R with its static responses to friction and damping of first order. That to modal damping, K_c⁻¹ C_m Φ_R, lies in
-    /// the span of Φ_R, which are eigenvectors; that to friction from the reactions to damping, μ A V_C, is of second order.
+    /// Φ_R with its static responses to friction and damping of first order. That to
+    /// friction from the reactions to damping, μ A V_C, is of second order.
     MultiVector starting_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &Phi, const bool friction)
     {
       // Epetra vectors cannot be assigned in another size: parts are collected first.
@@ -28,7 +28,7 @@ namespace Squeal
       if (friction)
         for (const Side side : {Side::right, Side::left})
           parts.push_back(friction_response(system, inverse, Phi, side));
-      if (system.frictionless.damping)
+      if (system.has_damping())
         parts.push_back(damping_response(system, inverse, Phi));
 
       std::vector<const MultiVector *> pointers;
@@ -151,7 +151,7 @@ namespace Squeal
   starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, const bool friction)
   {
     ReducedModel model(system);
-    model.extend(orthonormalize(*system.frictionless.mass, nullptr, starting_vectors(system, inverse, real_modes, friction), dependence_tolerance));
+    model.extend(orthonormalize(*system.mass, nullptr, starting_vectors(system, inverse, real_modes, friction), dependence_tolerance));
     return model;
   }
 
@@ -180,7 +180,7 @@ namespace Squeal
 
   std::optional<MultiVector> new_vectors(const CoupledSystem &system, const ReducedModel &model, const MultiVector &directions)
   {
-    const SparseMatrix &M = *system.frictionless.mass;
+    const SparseMatrix &M = *system.mass;
     return orthonormalize_if_any(M, &model.basis(), compress(M, model.basis(), directions), dependence_tolerance);
   }
 

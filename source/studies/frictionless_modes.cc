@@ -18,7 +18,7 @@ namespace Squeal
     void check_number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
     {
       run.progress.begin("Mode count");
-      const int n = count_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass,
+      const int n = count_modes(*coupled.stiffness, *coupled.mass,
                                 largest_circular_frequency * largest_circular_frequency, "real modes of the coupled system");
       const unsigned int allowed   = run.parameters.solvers.maximum_modes;
       const double       frequency = hertz(largest_circular_frequency);
@@ -55,8 +55,7 @@ namespace Squeal
     eigenvalues.resize(n_in_band(eigenvalues, omega_max * omega_max));
     for (const double eigenvalue : eigenvalues)
       ratios.push_back(parameters.damping.modal_ratio(hertz(std::sqrt(eigenvalue))));
-    linearisation.coupled.modal_damping =
-      modal_damping(*linearisation.coupled.frictionless.mass, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues, ratios);
+    Squeal::add_modal_damping(linearisation.coupled, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues, ratios);
   }
 
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
@@ -120,9 +119,9 @@ namespace Squeal
     options.what  = "real modes of the coupled system";
     options.shift = result.shift * result.shift;
     // The factor at hand serves here too, unless the shift brought damping into it.
-    if (result.shift == 0. || !coupled.frictionless.damping)
+    if (result.shift == 0. || !coupled.has_damping())
       options.inverse = &result.inverse->frictionless();
-    result.real = symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, (1. + margin) * (1. + margin) * limit, options);
+    result.real = symmetric_modes(*coupled.stiffness, *coupled.mass, (1. + margin) * (1. + margin) * limit, options);
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");

@@ -503,7 +503,7 @@ namespace Squeal
         options.what      = "real modes of the coupled system for reduced bases";
         options.shift     = frictionless.shift * frictionless.shift;
         const SymmetricModes modes =
-          larder.compute("real modes", [&] { return symmetric_modes(*coupled.frictionless.stiffness, *coupled.frictionless.mass, omega * omega, options); });
+          larder.compute("real modes", [&] { return symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options); });
         if (modes.eigenvalues.empty())
           throw SolverError("no mode of the coupled system lies below " + text(reduction.coupled_frequency) + " Hz",
                             "parameter Reduction/Coupled frequency", "raise it, or give 0 for the modes of the band");

@@ -73,7 +73,9 @@ namespace Squeal
   void assemble_scene(Scene &scene, Run &run)
   {
     run.progress.begin("Assembly");
-    scene.system = assemble(*scene.model, run.parameters.materials);
+    const BodyTerms bodies = body_terms(*scene.model, run.parameters.materials);
+    scene.bodies           = merged(bodies.terms, bodies.values);
+    scene.system           = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->NumGlobalNonzeros(), " entries in K"));
   }
 
@@ -114,9 +116,8 @@ namespace Squeal
       }
     const bool all         = result.closed.size() == scene.interface.size();
     result.contact         = all ? scene.contact : contact_operators(*scene.model, result.interface);
-    result.coupled         = couple(
-      scene.system, result.contact,
-      {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)});
+    result.damping         = {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    result.coupled         = couple(scene.bodies, result.contact, result.damping);
     return result;
   }
 

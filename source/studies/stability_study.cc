@@ -67,7 +67,7 @@ namespace Squeal
       const ContactOperators  &contact   = linearisation.contact;
       const SecondOrderSystem &system    = scene.system;
       const ResultFolder      &folder    = run.folder();
-      const auto               damping   = contact_damping(contact, linearisation.coupled.contact_damping);
+      const auto               damping   = contact_damping(contact, linearisation.damping);
       run.progress.begin("Matrix files");
       const auto write = [&](const SparseMatrix &matrix, const char *name, const MatrixMarketSymmetry symmetry) {
         write_matrix_market(matrix, folder.path(text("matrices/", name, ".mtx")), symmetry);

@@ -249,7 +249,7 @@ namespace Squeal
     private:
       OperatingPoint operating_point(const int line, const double mu, const ContactStateAt &contact) const
       {
-        return {mu, selected(contact.damping, regime.closed), line};
+        return {mu, selected(contact.damping, regime.closed).values(), line};
       }
 
       void certify()
@@ -551,12 +551,12 @@ namespace Squeal
             if (contact.closed != regime.closed)
               continue;
             run.progress.begin("Argument principle");
-            const CoupledSystem here = with_contact_damping(linearisation.coupled, selected(contact.damping, regime.closed));
+            const CoupledSystem here = with_values(linearisation.coupled, selected(contact.damping, regime.closed).values());
             ContourOptions      options;
             options.largest_frequency  = omega_max;
             options.lowest_frequency   = 1e-3 * omega_max;
             options.largest_growth     = 0.1 * omega_max;
-            options.method             = here.body_damping ? ContourMethod::sparse_lu : ContourMethod::condensed;
+            options.method             = contour_method(here);
             options.real_modes.solver  = run.parameters.solvers.real_solver;
             options.real_modes.library = run.parameters.solvers.library;
             options.real_modes.shift   = frictionless.shift * frictionless.shift;
@@ -599,7 +599,7 @@ namespace Squeal
               const auto [re, im]     = shapes(point, {mode});
               const std::string label = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im)).front();
               Linearisation     here  = linearisation;
-              here.coupled            = with_contact_damping(linearisation.coupled, selected(states.at(operation_at(lines[0], mu)).damping, regime.closed));
+              here.coupled            = with_values(linearisation.coupled, selected(states.at(operation_at(lines[0], mu)).damping, regime.closed).values());
               const ModeField field   = mode_field(scene, here, text("mu_", mu, "_", file_label(label)), point.lambda[mode], re, im);
               writer.write_mode(field);
               if (run.parameters.output.animation_frames > 0)

@@ -316,13 +316,13 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   const auto sliding = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
   EXPECT_EQ(std::count(sliding.labels.begin(), sliding.labels.end(), "RB"), 3);
 
-  const auto coupled = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega * omega, options);
+  const auto coupled = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega * omega, options);
   EXPECT_EQ(coupled.n_rigid_body, 3);
 
   // Motions: x, y and about z meet no resistance, the others that of the pins.
-  const MultiVector X = rigid_disc_motions(s.model, s.coupled), KX = *s.coupled.frictionless.stiffness * X;
+  const MultiVector X = rigid_disc_motions(s.model, s.coupled), KX = *s.coupled.stiffness * X;
   const auto        size = column_norms(X), force = column_norms(KX);
-  const double      K = max_norm(*s.coupled.frictionless.stiffness);
+  const double      K = max_norm(*s.coupled.stiffness);
   for (const int j : {0, 1, 5})
     EXPECT_LT(force[j], 1e-13 * K * size[j]) << j;
   for (const int j : {2, 3, 4})

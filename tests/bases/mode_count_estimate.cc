@@ -33,7 +33,7 @@ namespace
   {
     const Scene  scene(mesh, materials, operating());
     const double omega = circular_frequency(frequency);
-    const int    n     = count_modes(*scene.coupled.frictionless.stiffness, *scene.coupled.frictionless.mass, omega * omega, "a scene");
+    const int    n     = count_modes(*scene.coupled.stiffness, *scene.coupled.mass, omega * omega, "a scene");
     return expected_number_of_modes(mesh, materials, omega).coupled() / n;
   }
 

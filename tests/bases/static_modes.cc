@@ -212,7 +212,7 @@ TEST(CoupledResponses, SolveWithTheirForces)
   const UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
   const MultiVector    Phi = random_vectors(s.coupled.map(), 4);
   const double         mu  = 0.37;
-  const auto          &K   = *s.coupled.frictionless.stiffness;
+  const auto          &K   = *s.coupled.stiffness;
 
   // Forces from the matrices with friction: K_c − μ A V_K at μ = 1 and its transpose
   const auto        with = with_friction(s.coupled, 1.);
@@ -227,7 +227,7 @@ TEST(CoupledResponses, SolveWithTheirForces)
   left.Update(-1., transpose_times(*with.stiffness, Phi), 1.);
   check(friction_response(s.coupled, inverse, Phi, Side::right), right);
   check(friction_response(s.coupled, inverse, Phi, Side::left), left);
-  check(damping_response(s.coupled, inverse, Phi), *s.coupled.frictionless.damping * Phi);
+  check(damping_response(s.coupled, inverse, Phi), *with_friction(s.coupled, 0.).damping * Phi);
   check(damping_response(s.coupled, inverse, Phi, mu), *with_friction(s.coupled, mu).damping * Phi);
 
   const Scene          undamped = scene({"flat", 0., 1, held}, mounted(held));

@@ -428,10 +428,10 @@ TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
   const SymmetricModes real = real_modes(s.coupled);
   ContactDamping       damping{{}, {}};
   damping.radial.assign(s.interface.size(), 40.);
-  const CoupledSystem         system = with_contact_damping(s.coupled, damping);
+  const CoupledSystem         system = with_values(s.coupled, damping.values());
   std::vector<OperatingPoint> points;
   for (int i = 0; i <= 4; ++i)
-    points.push_back({0.2 * i, damping, 0});
+    points.push_back({0.2 * i, damping.values(), 0});
   const auto sweep = [&](ChartStore *store) {
     Progress   progress;
     ChartModel model(system, inverse, 0., *real.vectors, omega_max, 0.05);

@@ -24,9 +24,8 @@ namespace
   /// The system with 3 % damping of its modes below 15 kHz.
   CoupledSystem with_modal_damping(CoupledSystem system)
   {
-    const auto real = symmetric_modes(*system.frictionless.stiffness, *system.frictionless.mass, std::pow(2. * M_PI * 15000., 2));
-    system.modal_damping =
-      modal_damping(*system.frictionless.mass, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.03));
+    const auto real = symmetric_modes(*system.stiffness, *system.mass, std::pow(2. * M_PI * 15000., 2));
+    add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.03));
     return system;
   }
 
@@ -56,7 +55,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
                                                {RadialDissipation::consistent, damped(mounted())}})
     {
       const Scene s = tiny_scene(dissipation, materials);
-      const auto &M = *s.coupled.frictionless.mass;
+      const auto &M = *s.coupled.mass;
 
       // A basis of all directions, grown in uneven parts, not that of the dofs
       const int         n = s.coupled.map().NumGlobalElements();
@@ -77,7 +76,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
           if (matrices.damping)
             C = to_dense(*matrices.damping);
           const auto full = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness), limit);
-          const auto pencil = reduced.at(mu);
+          const auto pencil = reduced.at(s.coupled.at(mu));
           EXPECT_EQ(pencil.has_damping, matrices.damping != nullptr);
           const auto small = dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, limit);
           EXPECT_GT(full.values.size(), 20u);
@@ -105,7 +104,7 @@ TEST(ReducedModel, ProjectsEveryBlock)
           const DenseMatrix       M = gram(X, *matrices.mass * X), C = gram(X, *matrices.damping * X), K = gram(X, *matrices.stiffness * X);
           for (const ReducedModel *model : {&at_once, &grown})
             {
-              const ReducedPencil pencil = model->at(mu);
+              const ReducedPencil pencil = model->at(s.coupled.at(mu));
               EXPECT_LT(max_norm(add(pencil.mass, M, -1.)), 1e-13 * max_norm(M));
               EXPECT_LT(max_norm(add(pencil.damping, C, -1.)), 1e-13 * max_norm(C));
               EXPECT_LT(max_norm(add(pencil.stiffness, K, -1.)), 1e-13 * max_norm(K));
@@ -125,18 +124,18 @@ TEST(ReducedModel, ModalDamping)
     {
       const Scene             s        = tiny_scene(RadialDissipation::none, materials);
       const CoupledSystem     system   = with_modal_damping(s.coupled);
-      const SecondOrderSystem matrices = with_friction(system, mu);
+      const SecondOrderSystem matrices = with_friction(s.coupled, mu);
       const int               n        = system.map().NumGlobalElements();
       const MultiVector       units    = unit_vectors(system.map());
-      DenseMatrix             C        = replicate(*system.modal_damping * units);
+      DenseMatrix             C        = replicate(times({system.terms.back()}, system.values, 1, units));
       if (matrices.damping)
         C = add(C, to_dense(*matrices.damping));
       const auto all = dense_quadratic_modes(to_dense(*matrices.mass), &C, to_dense(*matrices.stiffness), limit);
 
-      const MultiVector T = orthonormalize(*system.frictionless.mass, nullptr, random_vectors(system.map(), n), 1e-13);
+      const MultiVector T = orthonormalize(*system.mass, nullptr, random_vectors(system.map(), n), 1e-13);
       ReducedModel      full(system), grown(system);
       full.extend(T);
-      const ReducedPencil pencil = full.at(mu);
+      const ReducedPencil pencil = full.at(system.at(mu));
       ASSERT_TRUE(pencil.has_damping);
       EXPECT_GT(all.values.size(), 20u);
       EXPECT_LT(largest_difference(all.values, dense_quadratic_modes(pencil.mass, &pencil.damping, pencil.stiffness, limit).values), 1e-9);
@@ -144,7 +143,7 @@ TEST(ReducedModel, ModalDamping)
       grown.extend(view(T, 0, 4));
       grown.extend(view(T, 4, 3));
       const DenseMatrix X = replicate(view(T, 0, 7)), expected = multiply(X, multiply(C, X), true);
-      EXPECT_LT(max_norm(add(grown.at(mu).damping, expected, -1.)), 1e-12 * max_norm(expected));
+      EXPECT_LT(max_norm(add(grown.at(system.at(mu)).damping, expected, -1.)), 1e-12 * max_norm(expected));
     }
 }
 
@@ -160,7 +159,7 @@ TEST(ReducedModel, LessThanAFullBasisIsNotExact)
   ReducedModel      full(s.coupled), less(s.coupled);
   full.extend(T);
   less.extend(view(T, 0, n - 1));
-  const auto all = full.at(mu), some = less.at(mu);
+  const auto all = full.at(s.coupled.at(mu)), some = less.at(s.coupled.at(mu));
   EXPECT_GT(largest_difference(dense_quadratic_modes(all.mass, nullptr, all.stiffness, limit).values,
                                dense_quadratic_modes(some.mass, nullptr, some.stiffness, limit).values),
             1e-6);

@@ -79,9 +79,9 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
       const Scene s = scene(losses);
       for (const ComplexModes &modes : {krylov(s.coupled, mu), iterated(s.coupled, mu, 1e-8)})
         {
-          const auto       &M = *s.coupled.frictionless.mass;
+          const auto       &M = *s.coupled.mass;
           const MultiVector M_re = M * *modes.real_part, M_im = M * *modes.imaginary_part;
-          const MultiVector R = force_residuals(s.coupled, mu, modes.lambda, *modes.real_part, *modes.imaginary_part);
+          const MultiVector R = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.real_part, *modes.imaginary_part);
 
           // Q(λ)φ with the sparse matrices at this μ
           const SecondOrderSystem matrices = with_friction(s.coupled, mu);
@@ -93,7 +93,7 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
 
               const Complex l = modes.lambda[j], l2 = l * l;
               MultiVector   Q_re = *matrices.stiffness * re, Q_im = *matrices.stiffness * im;
-              const double  size = std::hypot(column_norms(*s.coupled.frictionless.stiffness * re)[0], column_norms(*s.coupled.frictionless.stiffness * im)[0]);
+              const double  size = std::hypot(column_norms(*s.coupled.stiffness * re)[0], column_norms(*s.coupled.stiffness * im)[0]);
               Q_re.Update(l2.real(), *matrices.mass * re, -l2.imag(), *matrices.mass * im, 1.);
               Q_im.Update(l2.real(), *matrices.mass * im, l2.imag(), *matrices.mass * re, 1.);
               if (const auto &C = matrices.damping)
@@ -174,10 +174,10 @@ TEST(ComplexModes, UndampedSpectrumIsSymmetric)
   // λ → -λ; with a damping matrix of zeros, so that the solver cannot know
   Scene      s = scene();
   const auto without = krylov(s.coupled, mu);
-  auto       zero    = std::make_shared<SparseMatrix>(*s.coupled.frictionless.mass);
+  auto       zero    = std::make_shared<SparseMatrix>(*s.coupled.mass);
   zero->PutScalar(0.);
-  s.coupled.frictionless.damping = s.coupled.body_damping = zero;
-  const auto modes               = krylov(s.coupled, mu);
+  s.coupled.terms.push_back(sparse_term("zeros", 1, {}, zero));
+  const auto modes = krylov(s.coupled, mu);
   ASSERT_GT(n_unstable(modes), 0);
   std::vector<Complex> reflected;
   for (const Complex &l : modes.lambda)
@@ -226,8 +226,8 @@ TEST(ComplexModes, GrowthIsThePowerBalance)
       const auto  modes = krylov(s.coupled, mu);
       DenseMatrix r_re, r_im;
       normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part, r_re, r_im);
-      const DenseMatrix a_re = replicate(transpose_times(*s.coupled.friction_forces, *modes.real_part));
-      const DenseMatrix a_im = replicate(transpose_times(*s.coupled.friction_forces, *modes.imaginary_part));
+      const DenseMatrix a_re = s.coupled.friction_forces->transpose_times(*modes.real_part);
+      const DenseMatrix a_im = s.coupled.friction_forces->transpose_times(*modes.imaginary_part);
       int               n_checked = 0;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
         if (const Complex l = modes.lambda[j]; std::abs(l.real()) > 1e-4 * l.imag())
@@ -238,7 +238,7 @@ TEST(ComplexModes, GrowthIsThePowerBalance)
               p += mu * std::conj(Complex(a_re(c, j), a_im(c, j))) * Complex(r_re(c, j), r_im(c, j));
             const MultiVector re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
             double            c = 0.;
-            if (const auto &C = s.coupled.frictionless.damping)
+            if (const auto &C = with_friction(s.coupled, 0.).damping)
               c = product(re, *C, re) + product(im, *C, im);
             EXPECT_NEAR((p.imag() / l.imag() - c) / (2. * l.real()), 1., 1e-6) << "mode " << j;
           }
@@ -298,7 +298,7 @@ TEST(ComplexModes, ADiscThatMovesFreely)
   ASSERT_GT(shift, 0.);
   SymmetricModesOptions real_options;
   real_options.shift = shift * shift;
-  const auto real    = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, real_options);
+  const auto real    = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
   EXPECT_EQ(real.n_rigid_body, 3);
 
   SolverParameters solvers;

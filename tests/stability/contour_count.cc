@@ -2,7 +2,6 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
-#include <squeal/contact/modal_damping.h>
 #include <squeal/stability/condensed_determinant.h>
 #include <squeal/stability/contour_count.h>
 
@@ -73,15 +72,9 @@ namespace
     CoupledSystem system() const
     {
       const Epetra_Map map = rows(2), contact = rows(1);
-      CoupledSystem    result;
-      result.frictionless.mass      = Testing::diagonal(map, [](int) { return 1.; });
-      result.frictionless.stiffness = sparse(map, map, [](const int i) { return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}}; });
-      result.friction_forces        = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
-      result.radial_motion          = sparse(contact, map, [](int) { return Row{}; });
-      result.normal_stiffness       = sparse(contact, map, [](int) { return Row{{1, 1.3}}; });
-      result.normal_mass            = sparse(contact, map, [](int) { return Row{}; });
-      result.kernel                 = Testing::diagonal(map, [](int) { return 1.; });
-      return result;
+      return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
+                        sparse(map, map, [](const int i) { return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}}; })},
+                       sparse(contact, map, [](int) { return Row{{0, 1.}}; }), sparse(contact, map, [](int) { return Row{{1, 1.3}}; }));
     }
 
     /// The mode that grows or, below the threshold, the higher one.
@@ -248,11 +241,8 @@ TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
     {
       if (modal)
         {
-          const auto real      = real_modes(system);
-          system.modal_damping = modal_damping(*system.frictionless.mass,
-                                               *real.vectors,
-                                               real.eigenvalues,
-                                               std::vector<double>(real.eigenvalues.size(), 0.02));
+          const auto real = real_modes(system);
+          add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.02));
         }
       const auto modes = krylov(system, 0.6);
       // Wide, and between the growth rates
@@ -333,10 +323,10 @@ TEST(CondensedDeterminant, DoesNotDependOnHowManyModesAreTakenOut)
   const Scene                       s(mesh_of(skewed_pins), mounted(), operating(RadialDissipation::consistent));
   const double                      a = 0.1 * omega_max;
   const CondensedDeterminantRequest rough{{{0., omega_max}, {a, omega_max}}, 0.4, 1e-3}, fine{rough.lambda, 0.4, 1e-11};
-  const auto                        factor = factorize_positive_definite(*s.coupled.frictionless.stiffness, FactorizationLibrary::automatic, "test");
+  const auto                        factor = factorize_positive_definite(*s.coupled.stiffness, FactorizationLibrary::automatic, "test");
   const auto                        make   = [&](const double deflation, const CondensedDeterminantRequest &request) {
     const double         end   = deflation * omega_max;
-    const SymmetricModes modes = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, end * end);
+    const SymmetricModes modes = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, end * end);
     return CondensedDeterminant(s.coupled, modes, end, *factor, 0., request);
   };
   const CondensedDeterminant few = make(1.2, fine), many = make(1.8, fine), short_series = make(1.2, rough);

@@ -51,8 +51,14 @@ namespace
   /// The system with damping of its real modes.
   CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
   {
-    system.modal_damping = modal_damping(*system.frictionless.mass, *real.vectors, real.eigenvalues, ratios_of(real));
+    add_modal_damping(system, *real.vectors, real.eigenvalues, ratios_of(real));
     return system;
+  }
+
+  /// C_m X of a system to which modal damping was added last.
+  MultiVector modal_forces(const CoupledSystem &system, const MultiVector &X)
+  {
+    return times({system.terms.back()}, system.values, 1, X);
   }
 
   /// λ with Im λ > 0 of real modes, each damped by itself: λ² + c(ω) λ + ω² = 0.
@@ -176,7 +182,7 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
   ASSERT_GT(shift, 0.);
   SymmetricModesOptions real_options;
   real_options.shift = shift * shift;
-  const auto real    = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, real_options);
+  const auto real    = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
   ASSERT_EQ(real.n_rigid_body, 3);
   const auto expected = damped_oscillators(real, [](const double omega) { return alpha + beta * omega * omega; });
 
@@ -223,7 +229,8 @@ TEST(RayleighDamping, TwoBodiesFromTheEquations)
   EXPECT_TRUE(stable && unstable);
 
   // The reaction to the damping matters.
-  coupled.normal_damping = nullptr;
+  auto &terms = coupled.terms;
+  terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.name == "friction, damping of the bodies"; }), terms.end());
   EXPECT_GT(largest(distances(solutions(coupled, 0.9).front(), two.lambda(0.9))), 1e-3);
 }
 
@@ -234,7 +241,7 @@ TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
   const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent));
   const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
   const MultiVector          X = random_vectors(s.coupled.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
-  const MultiVector          L = force_residuals(s.coupled, mu, lambda, re, im, true);
+  const MultiVector          L = force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, true);
   const auto                 matrices = with_friction(s.coupled, mu);
   const MultiVector          K = transpose_times(*matrices.stiffness, X), C = transpose_times(*matrices.damping, X), M = transpose_times(*matrices.mass, X);
   for (int j = 0; j < 2; ++j)
@@ -293,7 +300,7 @@ TEST(ModalDamping, IsDiagonalInTheModes)
   const auto        real   = real_modes(s.coupled);
   const MultiVector Phi    = *real.vectors;
   const auto        system = with_modal_damping(s.coupled, real);
-  DenseMatrix       D      = gram(Phi, *system.modal_damping * Phi);
+  DenseMatrix       D      = gram(Phi, modal_forces(system, Phi));
   double            size   = 0.;
   for (int j = 0; j < D.n_columns(); ++j)
     {
@@ -305,17 +312,19 @@ TEST(ModalDamping, IsDiagonalInTheModes)
 
   // Symmetric, and without effect on what is M-orthogonal to the modes
   const MultiVector X = random_vectors(system.map(), 3);
-  const DenseMatrix S = gram(X, *system.modal_damping * X);
+  const DenseMatrix S = gram(X, modal_forces(system, X));
   EXPECT_LT(max_norm(add(S, transpose(S), -1.)), 1e-13 * max_norm(S));
-  const MultiVector Y = orthonormalize(*system.frictionless.mass, &Phi, X, 1e-10);
-  EXPECT_LT(max_norm(gram(Y, *system.modal_damping * Y)), 1e-11 * size);
+  const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
+  EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * size);
 
   // Rigid-body modes get none; no ratios, no damping.
   std::vector<double> eigenvalues = real.eigenvalues;
   eigenvalues.front()             = 0.;
-  const auto free                 = modal_damping(*system.frictionless.mass, Phi, eigenvalues, ratios_of(real));
-  EXPECT_LT(column_norms(*free * view(Phi, 0, 1))[0], 1e-10 * column_norms(*free * view(Phi, 1, 1))[0]);
-  EXPECT_EQ(modal_damping(*system.frictionless.mass, Phi, real.eigenvalues, std::vector<double>(eigenvalues.size(), 0.)), nullptr);
+  CoupledSystem free = s.coupled, none = s.coupled;
+  add_modal_damping(free, Phi, eigenvalues, ratios_of(real));
+  EXPECT_LT(column_norms(modal_forces(free, view(Phi, 0, 1)))[0], 1e-10 * column_norms(modal_forces(free, view(Phi, 1, 1)))[0]);
+  add_modal_damping(none, Phi, real.eigenvalues, std::vector<double>(eigenvalues.size(), 0.));
+  EXPECT_FALSE(none.has_damping());
   EXPECT_FALSE(s.coupled.has_damping());
 }
 
@@ -361,12 +370,12 @@ TEST(ModalDamping, AddsItsForcesOnBothSides)
   const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
   const std::vector<Complex> lambda = {{-300., 9000.}};
   const MultiVector          X = random_vectors(system.map(), 2), re = view(X, 0, 1), im = view(X, 1, 1);
-  const MultiVector          C = *system.modal_damping * X;
+  const MultiVector          C = modal_forces(system, X);
   for (const bool left : {false, true})
     {
-      MultiVector  difference = force_residuals(system, mu, lambda, re, im, left);
+      MultiVector  difference = force_residuals(system, system.at(mu), lambda, re, im, left);
       const double size       = column_norms(difference)[0];
-      difference.Update(-1., force_residuals(s.coupled, mu, lambda, re, im, left), 1.);
+      difference.Update(-1., force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, left), 1.);
       MultiVector expected(C);
       expected(0)->Update(-lambda[0].imag(), *C(1), lambda[0].real());
       expected(1)->Update(lambda[0].imag(), *C(0), lambda[0].real());
@@ -385,7 +394,7 @@ TEST(ModalDamping, OfADiscThatMovesFreely)
   const double          shift = stabilizing_shift(s.model, s.coupled, omega_max);
   SymmetricModesOptions real_options;
   real_options.shift    = shift * shift;
-  const auto     real   = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, real_options);
+  const auto     real   = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
   const auto     system = with_modal_damping(s.coupled, real);
   UpdatedInverse inverse(system, shift, FactorizationLibrary::automatic);
   Progress       progress;

@@ -43,22 +43,17 @@ namespace
       return result;
     }
 
-    CoupledSystem system() const
+    /// With a damping matrix of its own in place of α M + β K, if there is one.
+    CoupledSystem system(std::shared_ptr<const SparseMatrix> C = nullptr) const
     {
       const Epetra_Map map = rows(2), contact = rows(1);
-      CoupledSystem    result;
-      result.frictionless.mass = Testing::diagonal(map, [](int) { return 1.; });
-      result.frictionless.stiffness = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
-      if (damping != 0. || beta != 0.)
-        result.frictionless.damping = result.body_damping = add(damping, *result.frictionless.mass, beta, *result.frictionless.stiffness);
-      if (beta != 0.)
-        result.normal_damping = sparse(contact, map, [this](int) { return Row{{1, beta * k_c}}; });
-      result.friction_forces        = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
-      result.radial_motion          = sparse(contact, map, [](int) { return Row{}; });
-      result.normal_stiffness       = sparse(contact, map, [this](int) { return Row{{1, k_c}}; });
-      result.normal_mass            = sparse(contact, map, [](int) { return Row{}; });
-      result.kernel                 = Testing::diagonal(map, [](int) { return 1.; });
-      return result;
+      const auto       M   = Testing::diagonal(map, [](int) { return 1.; });
+      const auto       K   = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
+      if (!C && (damping != 0. || beta != 0.))
+        C = add(damping, *M, beta, *K);
+      return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{{0, 1.}}; }),
+                       sparse(contact, map, [this](int) { return Row{{1, k_c}}; }),
+                       sparse(contact, map, [this](int) { return Row{{1, beta * k_c}}; }));
     }
   };
 
@@ -123,8 +118,7 @@ TEST(Flutter, UnequalDampingLowersTheThreshold)
       else
         EXPECT_LT(threshold, 0.99 * flutter.threshold());
 
-      CoupledSystem system = flutter.system();
-      system.frictionless.damping = system.body_damping = Testing::diagonal(system.map(), [d1 = d1, d2 = d2](const int i) { return i == 0 ? d1 : d2; });
+      const CoupledSystem system = flutter.system(Testing::diagonal(rows(2), [d1 = d1, d2 = d2](const int i) { return i == 0 ? d1 : d2; }));
       for (const double side : {-1., 1.})
         for (const auto &values : Testing::solutions(system, threshold * (1. + 1e-4 * side)))
           {

@@ -60,7 +60,7 @@ namespace
   MultiVector exact_basis(const Reference &r)
   {
     const MultiVector noise = random_vectors(r.s.coupled.map(), 5);
-    return orthonormalize(*r.s.coupled.frictionless.mass, nullptr, join({r.complex.real_part.get(), r.complex.imaginary_part.get(), &noise}),
+    return orthonormalize(*r.s.coupled.mass, nullptr, join({r.complex.real_part.get(), r.complex.imaginary_part.get(), &noise}),
                           1e-10);
   }
 
@@ -73,18 +73,12 @@ namespace
   flutter(const double k11, const double k22, const double k12, const double k_c, const double c, const double k33, const double damping)
   {
     const Epetra_Map map = rows(3), contact = rows(1);
-    CoupledSystem    result;
-    result.frictionless.mass      = Testing::diagonal(map, [](const int i) { return i == 2 ? 1e-6 : 1.; });
-    result.frictionless.stiffness = sparse(map, map, [=](const int i) {
+    const auto       M = Testing::diagonal(map, [](const int i) { return i == 2 ? 1e-6 : 1.; });
+    const auto       K = sparse(map, map, [=](const int i) {
       return i == 0 ? Row{{0, k11 + c * c / k33}, {1, k12}, {2, c}} : i == 1 ? Row{{0, k12}, {1, k22}} : Row{{0, c}, {2, k33}};
     });
-    if (damping != 0.)
-      result.frictionless.damping = result.body_damping = Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; });
-    result.friction_forces  = sparse(map, contact, [](const int i) { return i == 0 ? Row{{0, 1.}} : Row{}; });
-    result.normal_stiffness = sparse(contact, map, [k_c](int) { return Row{{1, k_c}}; });
-    result.normal_mass = result.radial_motion = sparse(contact, map, [](int) { return Row{}; });
-    result.kernel           = Testing::diagonal(map, [](int) { return 1.; });
-    return result;
+    const auto C = damping != 0. ? Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; }) : nullptr;
+    return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{{0, 1.}}; }), sparse(contact, map, [k_c](int) { return Row{{1, k_c}}; }));
   }
 
   /// The basis without the third degree of freedom.
@@ -140,7 +134,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
       EXPECT_NEAR(found.energy_residuals.front(), error.residual, 1e-6 * error.residual + 1e-14);
 
       const int         j = &error - errors.data();
-      const auto       &M = *r.s.coupled.frictionless.mass;
+      const auto       &M = *r.s.coupled.mass;
       const MultiVector X   = join({&*found.real_part, &*found.imaginary_part});
       const MultiVector re  = view(*r.complex.real_part, j, 1), im = view(*r.complex.imaginary_part, j, 1), Y = join({&re, &im});
       const DenseMatrix G   = gram(Y, M * X);
@@ -190,8 +184,8 @@ TEST(ReductionErrors, OfFrictionlessModes)
 
   // Real modes disturbed: frequencies are known to the square of the error of the vectors, and from above
   MultiVector T = *r.real.vectors;
-  T.Update(1e-3, orthonormalize(*r.s.coupled.frictionless.mass, &T, random_vectors(r.s.coupled.map(), T.NumVectors()), 1e-8), 1.);
-  for (const ModeError &error : errors(orthonormalize(*r.s.coupled.frictionless.mass, nullptr, T, 1e-8)))
+  T.Update(1e-3, orthonormalize(*r.s.coupled.mass, &T, random_vectors(r.s.coupled.map(), T.NumVectors()), 1e-8), 1.);
+  for (const ModeError &error : errors(orthonormalize(*r.s.coupled.mass, nullptr, T, 1e-8)))
     {
       EXPECT_GE(error.reduced.imag(), error.reference.imag() * (1. - 1e-10));
       EXPECT_LT(error.corrected.imag(), error.reduced.imag());
@@ -206,13 +200,10 @@ TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
 {
   // The same mode twice, a third nearby, one apart: turned vectors have no counterpart of their own, their span has.
   const Epetra_Map map = rows(6), contact = rows(1);
-  CoupledSystem    system;
-  system.frictionless.mass      = Testing::diagonal(map, [](int) { return 1.; });
-  const std::vector<double> k   = {1., 1., 1.0005, 4., 9., 16.};
-  system.frictionless.stiffness = Testing::diagonal(map, [k](const int i) { return k[i]; });
-  system.friction_forces        = sparse(map, contact, [](int) { return Row{}; });
-  system.normal_stiffness = system.normal_mass = system.radial_motion = sparse(contact, map, [](int) { return Row{}; });
-  system.kernel                                = Testing::diagonal(map, [](int) { return 1.; });
+  const std::vector<double> k       = {1., 1., 1.0005, 4., 9., 16.};
+  const auto                nothing = sparse(contact, map, [](int) { return Row{}; });
+  const CoupledSystem       system =
+    system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr, Testing::diagonal(map, [k](const int i) { return k[i]; })}, nothing, nothing);
   const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
 
   SymmetricModes turned;
@@ -391,7 +382,7 @@ TEST(GrownBasis, IsAccurateAtAllItsFrictionCoefficients)
   Progress                  progress;
   const std::vector<double> coefficients = {0., 0.3, 0.6};
   const GrownBasis          grown        = grow_residual_basis(r.s.coupled, r.inverse, *r.real.vectors, coefficients, options, progress);
-  EXPECT_LT(orthonormality_defect(*r.s.coupled.frictionless.mass, grown.model.basis()), 1e-12);
+  EXPECT_LT(orthonormality_defect(*r.s.coupled.mass, grown.model.basis()), 1e-12);
   EXPECT_LE(grown.worst_error, options.tolerance);
   for (const double friction : coefficients)
     EXPECT_LT(Testing::largest(distances(reduced_modes(grown.model, friction, omega_max).lambda, krylov(r.s.coupled, friction).lambda)), 3e-6);
@@ -415,11 +406,11 @@ TEST(GrownBasis, LeftModesAreThoseOfTheTransposedProblem)
     {
       const Scene s(mesh_of(skewed_pins), mounted(), operating(dissipation));
       const auto  modes = iterated(s.coupled, mu, 1e-10);
-      const auto &M     = *s.coupled.frictionless.mass;
+      const auto &M     = *s.coupled.mass;
       ASSERT_NE(modes.left_real_part, nullptr);
-      const MultiVector L  = force_residuals(s.coupled, mu, modes.lambda, *modes.left_real_part, *modes.left_imaginary_part, true),
-                        KX = *s.coupled.frictionless.stiffness * *modes.left_real_part,
-                        KY = *s.coupled.frictionless.stiffness * *modes.left_imaginary_part;
+      const MultiVector L  = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.left_real_part, *modes.left_imaginary_part, true),
+                        KX = *s.coupled.stiffness * *modes.left_real_part,
+                        KY = *s.coupled.stiffness * *modes.left_imaginary_part;
       const auto residual = column_norms(L), re = column_norms(KX), im = column_norms(KY);
       const int  k = modes.lambda.size();
       const DenseMatrix m_re = gram(*modes.left_real_part, M * *modes.left_real_part),

@@ -19,27 +19,27 @@ namespace
   Deviation deviation(const CoupledSystem &system, const double shift, const double friction, const ContactDamping &damping, const MultiVector &real)
   {
     const UpdatedInverse inverse(shift > 0. ? undamped(system) : system, shift, FactorizationLibrary::automatic);
-    ProjectedResiduals   projected(system, inverse, shift, damping);
+    ProjectedResiduals   projected(system, inverse, shift, damping.values());
     ReducedModel         model(system);
     // In two steps, as a basis grows
-    const SparseMatrix &M     = *system.frictionless.mass;
+    const SparseMatrix &M     = *system.mass;
     const MultiVector   first = orthonormalize(M, nullptr, real, 1e-10);
     model.extend(first);
     projected.extend(model);
-    const auto at      = with_contact_damping(system, damping);
-    const auto vectors = [&](const ReducedModes &modes) { return residual_vectors(at, inverse, model, modes); };
-    ReducedModes modes = local_reduced_modes(model, friction, damping, omega_max);
+    const ParameterValues values  = system.at(friction, damping.values());
+    const auto            vectors = [&](const ReducedModes &modes) { return residual_vectors(system, inverse, model, modes); };
+    ReducedModes modes = local_reduced_modes(model, values, omega_max);
     std::vector<int> all(modes.lambda.size());
     std::iota(all.begin(), all.end(), 0);
     model.extend(*new_vectors(system, model, residual_directions(vectors(modes), modes, all)));
     projected.extend(model);
 
-    modes               = local_reduced_modes(model, friction, damping, omega_max);
+    modes               = local_reduced_modes(model, values, omega_max);
     const auto direct   = vectors(modes).products();
-    const auto products = projected.products(friction, damping, modes.lambda, modes.right, modes.left);
+    const auto products = projected.products(values, modes.lambda, modes.right, modes.left);
     const int  k        = static_cast<int>(modes.lambda.size());
     EXPECT_GT(k, 3);
-    const DenseMatrix  K      = model.blocks().stiffness;
+    const DenseMatrix  K      = model.stiffness();
     const auto         energy = [&](const ComplexDenseMatrix &X, const int j) {
       const ComplexDenseMatrix KX = multiply(K, X);
       Complex                  sum = 0.;
@@ -115,7 +115,7 @@ TEST(ProjectedResiduals, KnowEveryDamping)
   auto        system = s.coupled;
   expect_agreement(system, 0., uneven(s.interface.size(), 60., 0.), *real.vectors);
   const MultiVector &vectors = *real.vectors;
-  system.modal_damping       = modal_damping(*system.frictionless.mass, vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.01));
+  add_modal_damping(system, vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.01));
   expect_agreement(system, 0., {}, vectors);
   expect_agreement(system, 0., uneven(s.interface.size(), 60., -20.), vectors);
 }
@@ -129,7 +129,7 @@ TEST(ProjectedResiduals, OfAFreeDiscUseTheShiftedStiffness)
   ASSERT_GT(shift, 0.);
   SymmetricModesOptions options;
   options.shift   = shift * shift;
-  const auto real = symmetric_modes(*s.coupled.frictionless.stiffness, *s.coupled.frictionless.mass, omega_max * omega_max, options);
+  const auto real = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, options);
   ASSERT_GT(real.n_rigid_body, 0);
   expect_agreement(s.coupled, shift, {}, *real.vectors);
   expect_agreement(s.coupled, shift, uneven(s.interface.size(), 60., 0.), *real.vectors);

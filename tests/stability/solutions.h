@@ -45,7 +45,7 @@ namespace Squeal::Testing
     SymmetricModesOptions options;
     options.solver    = solver;
     options.tolerance = 1e-12;
-    return symmetric_modes(*system.frictionless.stiffness, *system.frictionless.mass, omega_max * omega_max, options);
+    return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
   }
 
   inline ComplexModes krylov(const CoupledSystem &system,
@@ -95,6 +95,27 @@ namespace Squeal::Testing
       C = to_dense(*matrices.damping);
     const auto dense = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness));
     return {krylov.lambda, iterated.lambda, dense.values};
+  }
+
+  /**
+   * A system with friction at some contact nodes from its matrices, of which that of damping may be null.
+   *
+   * @param tangential Aᵀ, n_c × n
+   * @param V_K, V_C   reactions to stiffness and damping, n_c × n; those to mass vanish
+   */
+  inline CoupledSystem system_of(const SecondOrderSystem                   &matrices,
+                                 const std::shared_ptr<const SparseMatrix> &tangential,
+                                 const std::shared_ptr<const SparseMatrix> &V_K,
+                                 const std::shared_ptr<const SparseMatrix> &V_C = nullptr)
+  {
+    const Epetra_Map        &map    = matrices.mass->RowMap();
+    std::vector<CoupledTerm> bodies = {{sparse_term("stiffness", 0, {}, matrices.stiffness), V_K},
+                                       {sparse_term("mass", 2, {}, matrices.mass), nullptr}};
+    if (matrices.damping)
+      bodies.push_back({sparse_term("damping of the bodies", 1, {}, matrices.damping), V_C});
+    CoupledSystem result = coupled_system(bodies, tangential, sparse(tangential->RowMap(), map, [](int) { return Row{}; }));
+    result.kernel        = diagonal(map, [](int) { return 1.; });
+    return result;
   }
 
   // ------------------------------------------------------------- comparisons

@@ -1,23 +1,32 @@
 #pragma once
 
-#include <squeal/assembly/second_order_system.h>
 #include <squeal/model/model.h>
 #include <squeal/parameters/materials.h>
+#include <squeal/system/terms.h>
 
 namespace Squeal
 {
+  /// The uncoupled bodies as a list of terms, with values of their parameters.
+  struct BodyTerms
+  {
+    std::vector<Term> terms;
+    ParameterValues   values;
+  };
+
   /**
-   * Mass, damping and stiffness of the bodies on the free dofs:
+   * Terms of disc and pins on the free dofs, sparse and symmetric, at unit coefficients:
    *
-   *   K_ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV + Σ_mounts ∫ φ_i · S φ_j dA
-   *   C_ij = ∫ α ρ φ_i · φ_j + β (2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j) dV
-   *   M_ij = ∫ ρ φ_i · φ_j dV
+   *   E K_b,   K_b,ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV for E = 1
+   *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
+   *   λ β E K_b + λ α ρ M_b
+   *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * C is null if no material is damped; mounts have no damping.
-   * S = k_r e_r⊗e_r + k_θ e_θ⊗e_θ + k_z e_z⊗e_z [N/m³] about the disc's axis z.
-   * Full Gauss quadrature, degree + 1 points per direction.
+   * Mounts have no damping. Full Gauss quadrature, degree + 1 points per direction.
    *
-   * Throws MeshError if a mounted surface does not exist.
+   * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */
+  BodyTerms body_terms(const Model &model, const MaterialParameters &materials);
+
+  /// M, C and K of the bodies, the sum of body_terms(); C is null if no material is damped.
   SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials);
 } // namespace Squeal

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/assembly/second_order_system.h>
+#include <squeal/system/second_order_system.h>
 #include <squeal/bases/mode_labels.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/eigen/symmetric_modes.h>

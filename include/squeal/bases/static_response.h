@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/assembly/second_order_system.h>
+#include <squeal/system/second_order_system.h>
 #include <squeal/bases/inertia_relief.h>
 #include <squeal/model/model.h>
 

@@ -1,22 +1,30 @@
 #pragma once
 
-#include <squeal/assembly/second_order_system.h>
 #include <squeal/contact/contact_operators.h>
-#include <squeal/contact/modal_damping.h>
+#include <squeal/system/terms.h>
 
 #include <complex>
 #include <vector>
 
 namespace Squeal
 {
+  /// Parameters of a coupled system that stay free; those of the bodies have their values.
+  namespace SystemParameter
+  {
+    inline constexpr const char *friction        = "mu";                           ///< μ [-]
+    inline constexpr const char *radial_damping  = "damping along b of the contact"; ///< c_b of each contact node [N s/m]
+    inline constexpr const char *sliding_damping = "damping along t of the contact"; ///< c_t of each contact node [N s/m]
+    inline constexpr const char *modal_damping   = "modal damping";                  ///< 2 ζ ω of each damped mode [1/s]
+  } // namespace SystemParameter
+
   /// Viscous damping of the contact nodes, one coefficient for each [N s/m]; an empty list means zeros.
   struct ContactDamping
   {
     std::vector<double> radial;  ///< c_b, along b
     std::vector<double> sliding; ///< c_t, along t
 
-    /// Whether all coefficients vanish.
-    bool is_zero() const;
+    /// As values of the parameters of a coupled system.
+    ParameterValues values() const;
   };
 
   /**
@@ -24,40 +32,37 @@ namespace Squeal
    * affine in μ (eqs. (5) to (8) of the paper, with the sign of r_n ≤ 0 in
    * compression and t the direction of the disc's motion relative to the pin):
    *
-   *   (λ² (M_c − μ A V_M) + λ (C_c + C_m − μ A V_C) + K_c − μ A V_K) φ_c = 0
+   *   (λ² (M_c − μ A V_M) + λ (C_c − μ A V_C) + K_c − μ A V_K) φ_c = 0
    *
-   *   M_c = T_cᵀ M T_c, K_c = T_cᵀ K T_c, C_c = T_cᵀ (C + C_f) T_c
-   *   A = T_cᵀ P_tᵀ,  V_K = ½ P_n K T_c,  V_C = ½ P_n C T_c,  V_M = ½ P_n M T_c
+   * as a list of terms. Of each term X of the bodies, such as K, it has
    *
-   * C is the damping of the bodies, C_f that of the contact (contact_damping()),
-   * which has no part in V_C because P_n P_bᵀ = P_n P_tᵀ = 0. With R = P_b T_c
+   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = ½ P_n X T_c,
    *
-   *   C_c = T_cᵀ C T_c + Rᵀ diag(c_b) R + A diag(c_t) Aᵀ.
+   * and of the contact's own damping, which has no part in the reactions because P_n P_bᵀ = P_n P_tᵀ = 0,
    *
-   * Modal damping C_m joins C_c. It is known in coupled coordinates only and takes no part in the
-   * reactions: what C of the bodies it stands for, the ratios do not tell.
+   *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
+   *
+   * add_modal_damping() appends a term of its own.
    */
   struct CoupledSystem
   {
-    SecondOrderSystem                   frictionless;      ///< M_c, C_c (null: no damping), K_c; n × n
-    std::shared_ptr<const SparseMatrix> body_damping;      ///< T_cᵀ C T_c, n × n; null: the bodies have no damping
-    ContactDamping                      contact_damping;   ///< c_b and c_t
-    std::shared_ptr<const SparseMatrix> friction_forces;   ///< A, n × n_c
-    std::shared_ptr<const SparseMatrix> radial_motion;     ///< R = P_b T_c, n_c × n
-    std::shared_ptr<const SparseMatrix> normal_stiffness;  ///< V_K, n_c × n
-    std::shared_ptr<const SparseMatrix> normal_damping;    ///< V_C, n_c × n; null: the bodies have no damping
-    std::shared_ptr<const SparseMatrix> normal_mass;       ///< V_M, n_c × n
-    std::shared_ptr<const SparseMatrix> kernel;            ///< T_c, n_uncoupled × n
-    std::shared_ptr<const ModalDamping> modal_damping;     ///< C_m; null: none
+    std::vector<Term>                    terms;
+    ParameterValues                      values;          ///< of all parameters, with μ = 0
+    std::shared_ptr<const SparseMatrix>  mass, stiffness; ///< M_c and K_c, n × n: the symmetric terms without friction
+    std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
+    std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
 
     /// Distribution of the coupled dofs.
     const Epetra_Map &map() const;
 
-    /// Whether there is C_c or C_m.
-    bool has_damping() const;
+    /// n_c
+    int n_contact() const;
 
-    /// (C_c + C_m) X; only if has_damping().
-    MultiVector damping_times(const MultiVector &X) const;
+    /// The values with a friction coefficient, and with others in place of those that are given.
+    ParameterValues at(double friction_coefficient, const ParameterValues &others = {}) const;
+
+    /// Whether there is damping without friction.
+    bool has_damping() const;
   };
 
   /**
@@ -67,25 +72,65 @@ namespace Squeal
    */
   std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping);
 
-  /// Couples the @p system.
-  CoupledSystem couple(const SecondOrderSystem &system, const ContactOperators &contact, const ContactDamping &damping = {});
+  /// A term of the coupled bodies, and its part V in the normal reactions, n_c × n; null: none.
+  struct CoupledTerm
+  {
+    Term                                term;
+    std::shared_ptr<const SparseMatrix> reaction;
+  };
 
-  /// The same system with other contact damping.
-  CoupledSystem with_contact_damping(const CoupledSystem &system, const ContactDamping &damping);
+  /**
+   * The list of terms from those of the coupled bodies, with those of friction and of damping of the contact.
+   *
+   * @param tangential Aᵀ = P_t T_c, n_c × n
+   * @param radial     R = P_b T_c, n_c × n
+   */
+  CoupledSystem coupled_system(const std::vector<CoupledTerm>      &bodies,
+                               std::shared_ptr<const SparseMatrix>  tangential,
+                               std::shared_ptr<const SparseMatrix>  radial,
+                               const ContactDamping                &damping = {});
 
-  /// The system without any damping and without friction's share in it.
-  CoupledSystem undamped(const CoupledSystem &system);
+  /// Couples bodies, given by merged() terms.
+  CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 
-  /// M_c − μ A V_M, C_c − μ A V_C (without C_m) and K_c − μ A V_K as sparse matrices, at friction coefficient @p mu.
+  /// The same of symmetric matrices.
+  CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
+
+  /// The same system with other values of some parameters.
+  CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
+
+  /// The system without its terms in λ.
+  CoupledSystem undamped(CoupledSystem system);
+
+  /**
+   * Damping of the real coupled modes Φ (n × k, M_c-orthonormal), each by its own ratio ζ_j of the critical one,
+   *
+   *   C_m = M_c Φ diag(2 ζ_j ω_j) Φᵀ M_c     n × n, symmetric, of rank k, never formed
+   *
+   * so that Φᵀ C_m Φ = diag(2 ζ_j ω_j) and, without friction and other damping,
+   * λ_j = −ζ_j ω_j ± i ω_j √(1 − ζ_j²). Known in coupled coordinates only, it takes no part in the
+   * reactions: what damping of the bodies it stands for, the ratios do not tell.
+   *
+   * @param eigenvalues ω² [rad²/s²], one for each mode; a mode with ω = 0 gets no damping
+   * @param ratios      ζ [-], one for each mode
+   */
+  void add_modal_damping(CoupledSystem             &system,
+                         const MultiVector         &modes,
+                         const std::vector<double> &eigenvalues,
+                         const std::vector<double> &ratios);
+
+  /// M_c − μ A V_M, C_c − μ A V_C and K_c − μ A V_K as sparse matrices; see sparse_matrices().
   SecondOrderSystem with_friction(const CoupledSystem &system, double mu);
 
   /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
   std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, double shift);
 
+  /// V_K, V_C or V_M, of the terms with λ to this power, n_c × n; null: none.
+  std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, int power);
+
   /**
    * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
-   * contact reactions [N] (compression negative) of complex modes, n_c × k each
-   * part. Modal damping has no part in them.
+   * contact reactions [N] (compression negative) of complex modes, n_c × k each part.
    */
   void normal_reactions(const CoupledSystem                     &system,
                         const std::vector<std::complex<double>> &lambda,

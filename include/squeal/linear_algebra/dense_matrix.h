@@ -100,8 +100,8 @@ namespace Squeal
   /// [X Y]; X may be empty.
   DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
 
-  /// Extends a symmetric matrix to the size of its new last columns, r × k.
-  void border(DenseMatrix &matrix, const DenseMatrix &new_columns);
+  /// Extends a matrix with Aᵀ = sign A, symmetric or skew, to the size of its new last columns, r × k.
+  void border(DenseMatrix &matrix, const DenseMatrix &new_columns, double sign = 1.);
 
   /**
    * XᵀY, no conjugate, of complex matrices X, Y with real and imaginary halves

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Squeal
@@ -17,6 +18,9 @@ namespace Squeal
 
   /// alpha A + beta B for matrices of the same shape and distribution; the patterns may differ.
   std::shared_ptr<SparseMatrix> add(double alpha, const SparseMatrix &A, double beta, const SparseMatrix &B);
+
+  /// Σ factor A of one matrix at least, all of the same shape and distribution.
+  std::shared_ptr<SparseMatrix> linear_combination(const std::vector<std::pair<double, const SparseMatrix *>> &summands);
 
   /// Largest absolute entry.
   double max_norm(const SparseMatrix &A);

@@ -2,6 +2,7 @@
 
 #include <squeal/contact/coupled_system.h>
 
+#include <map>
 #include <memory>
 
 namespace Squeal
@@ -15,11 +16,8 @@ namespace Squeal
 
   /**
    * Galerkin projection of the coupled system on a basis T, n × r (eqs. (12)
-   * and (13) of the paper). Friction being affine in μ and contact damping in its
-   * coefficients, blocks projected once serve every friction coefficient, load
-   * and speed:
-   *
-   *   Tᵀ M_c T,  Tᵀ (T_cᵀ C T_c + C_m) T,  Tᵀ K_c T,  Aᵀ T,  R T,  V_M T,  V_C T,  V_K T
+   * and (13) of the paper). The terms A of the system, TᵀAT or LᵀT and RᵀT of those of low rank, are
+   * projected once and serve every value of their coefficients: friction, load and speed.
    *
    * A basis grows by extend(), which projects only what is new.
    */
@@ -38,28 +36,26 @@ namespace Squeal
     /// T, n × r.
     const MultiVector &basis() const;
 
-    /// M_r − μ A_r V_Mr, C_r − μ A_r V_Cr, K_r − μ A_r V_Kr with the system's contact damping.
-    ReducedPencil at(double friction_coefficient) const;
+    const CoupledSystem &full_order() const;
 
-    /// Contact damping of the system.
-    const ContactDamping &contact_damping() const;
+    /// Σ θ TᵀAT by powers of λ.
+    ReducedPencil at(const ParameterValues &values) const;
 
-    /// The same with other contact damping: C_r = Tᵀ (T_cᵀ C T_c + C_m) T + (R T)ᵀ diag(c_b) R T + TᵀA diag(c_t) AᵀT.
-    ReducedPencil at(double friction_coefficient, const ContactDamping &damping) const;
+    /// TᵀM_cT and TᵀK_cT.
+    const DenseMatrix &mass() const;
+    const DenseMatrix &stiffness() const;
 
-    /// The parts of the projection, each with r columns. Empty where the system has no such part.
-    struct Blocks
-    {
-      DenseMatrix mass, body_damping, stiffness;                    ///< TᵀM_cT, Tᵀ(T_cᵀCT_c + C_m)T, TᵀK_cT
-      DenseMatrix friction_forces, radial_motion;                   ///< AᵀT and R T, n_c × r
-      DenseMatrix normal_stiffness, normal_damping, normal_mass;    ///< V T, n_c × r
-    };
-    const Blocks &blocks() const;
+    /// TᵀAT of a sparse term of the system, by its number.
+    const DenseMatrix &projected(std::size_t term) const;
+
+    /// FᵀT of a factor of a term of low rank, m × r.
+    const DenseMatrix &motions(const LowRankFactor &factor) const;
 
   private:
-    const CoupledSystem         *system;
-    std::unique_ptr<MultiVector> T;
-    Blocks                       parts;
-    DenseMatrix                  friction_K, friction_C, friction_M; ///< (Tᵀ A)(V T), r × r
+    const CoupledSystem                         *system;
+    std::unique_ptr<MultiVector>                 T;
+    std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
+    std::map<const LowRankFactor *, DenseMatrix> factors;
+    DenseMatrix                                  mass_matrix, stiffness_matrix;
   };
 } // namespace Squeal

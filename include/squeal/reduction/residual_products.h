@@ -4,6 +4,7 @@
 #include <squeal/reduction/reduced_model.h>
 
 #include <complex>
+#include <map>
 #include <vector>
 
 namespace Squeal
@@ -17,32 +18,31 @@ namespace Squeal
   };
 
   /**
-   * The products of residuals from small matrices: residuals are affine in μ, λ,
-   * λ² and the coefficients of contact damping,
+   * The products of residuals from small matrices: residuals are sums over the terms θ A of the system,
    *
-   *   Q(λ) T φ_r  = S T φ_r + W y,   W = [V_Kᵀ, V_Mᵀ, V_Cᵀ, M_c T, C T, Rᵀ, A]
-   *   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   C = T_cᵀ C T_c + C_m
+   *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
-   * with S = K_c + s² M_c and short y, z (the first three parts of y are zero,
-   * and the last one of z without damping along t). Reduced modes make residuals orthogonal to T, so that the
+   * with short y, z. The columns of W are A T of the sparse terms but K_c, with the rows (θ λ^p − σ) φ_r of y, σ = s² for
+   * M_c and zero for others; and of terms θ L diag(d) Rᵀ the factors: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with
+   * θ λ^p diag(d) LᵀT ψ_r of z. Reduced modes make residuals orthogonal to T, so that the
    * part along S T is known to cancel that of W y along it, and
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
    * What is left of cancellation is that of the bracket, about 10⁻¹⁵ of φᴴKφ:
-   * errors |δλ|/|λ| are reliable well below 10⁻¹². Each product costs
-   * (2 r + 5 n_c)² operations instead of block solves at full order.
+   * errors |δλ|/|λ| are reliable well below 10⁻¹². Each product costs as many
+   * operations as the square of the number of columns of W instead of block solves at full order.
    */
   class ProjectedResiduals
   {
   public:
     /**
      * @param inverse factor of S, of a system without damping if the @p shift s [rad/s] is positive
-     * @param damping of the contact where there is most of it: what vanishes there must vanish in products(), too
+     * @param values  of the parameters: terms that vanish there, friction apart, must vanish in products(), too
      *
      * The arguments must outlive it.
      */
-    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ContactDamping &damping);
+    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ParameterValues &values);
 
     /// Takes over the vectors by which the basis of @p model has grown.
     void extend(const ReducedModel &model);
@@ -50,42 +50,57 @@ namespace Squeal
     /// Forgets the basis; the next extend() begins another one.
     void clear();
 
-    /// Products for reduced modes λ, φ_r and ψ_r (r × k) at a friction coefficient and contact damping.
-    ResidualProducts products(double                                   friction_coefficient,
-                              const ContactDamping                    &damping,
+    /// Products for reduced modes λ, φ_r and ψ_r (r × k).
+    ResidualProducts products(const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
                               const ComplexDenseMatrix                &right,
                               const ComplexDenseMatrix                &left) const;
 
   private:
-    /// Coefficients y or z of the residuals, real and imaginary halves.
-    DenseMatrix coefficients(double                                   mu,
-                             const ContactDamping                    &damping,
+    /// Coefficients y, or z of the transposed problem, real and imaginary halves.
+    DenseMatrix coefficients(const ParameterValues                   &values,
                              const std::vector<std::complex<double>> &lambda,
                              const ComplexDenseMatrix                &vectors,
-                             bool                                     left) const;
+                             bool                                     transposed) const;
 
-    /// Products of the fixed columns of W with a block of vectors.
-    DenseMatrix fixed_products(const MultiVector &X) const;
+    /// Products of the factors with a block of vectors.
+    DenseMatrix factor_products(const MultiVector &X) const;
 
-    /// One sparse part of W: n × n_c, or n_c × n of which the transpose is meant.
-    struct FixedPart
+    /// The bracket from its parts.
+    void assemble(const ReducedModel &model);
+
+    /// A T of a sparse term.
+    struct Sparse
     {
-      const SparseMatrix *matrix;
-      bool                transposed;
+      const Term              *term;
+      std::size_t              number; ///< among the terms of the system
+      double                   sign;   ///< Aᵀ = sign A
+      double                   sigma;  ///< part of the term in S
+      DenseMatrix              factor_products; ///< of the factors with S⁻¹ A T
+      std::vector<DenseMatrix> products;        ///< (A' T)ᵀ S⁻¹ A T with each sparse term A'
     };
 
-    const CoupledSystem   &system;
-    const UpdatedInverse  &inverse;
-    double                 shift;
-    bool                   has_body_damping, has_radial_damping, has_sliding_damping;
-    int                    n_c;
-    std::vector<FixedPart> fixed;           ///< V_Kᵀ, V_Mᵀ, V_Cᵀ, Rᵀ, A
-    int                    n_reactions = 0; ///< columns V_Kᵀ, V_Mᵀ, V_Cᵀ, which only left residuals have
-    ReducedModel::Blocks   blocks;          ///< of the model as far as it is known
-    DenseMatrix            fixed_gram;      ///< of the fixed columns among themselves
-    DenseMatrix            fixed_mass, fixed_damping; ///< of the fixed columns with M T and C T
-    DenseMatrix            mass_mass, mass_damping, damping_damping;
-    DenseMatrix            left_columns, right_block; ///< of the bracket: what left and right residuals need
+    /// A factor of terms of low rank.
+    struct Factor
+    {
+      const LowRankFactor *factor;
+      int                  first = 0;      ///< among the columns of all factors
+      bool                 in_left, in_right; ///< whether left or right residuals have it
+    };
+
+    /// First column in W.
+    int column_of(const Factor &factor) const;
+
+    const CoupledSystem                         &system;
+    const UpdatedInverse                        &inverse;
+    double                                       shift;
+    std::vector<Sparse>                          sparse;
+    std::vector<const Term *>                    low_rank;
+    std::vector<Factor>                          factors; ///< those of left residuals only come first, those of right residuals only last
+    int                                          n_left = 0, n_shared = 0, n_right = 0; ///< columns of these three kinds
+    DenseMatrix                                  factor_gram;               ///< Fᵀ S⁻¹ F of all factors
+    std::map<const LowRankFactor *, DenseMatrix> motions;                   ///< FᵀT
+    int                                          r = 0;                     ///< size of the basis
+    DenseMatrix                                  left_columns, right_block; ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal

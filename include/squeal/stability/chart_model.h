@@ -10,9 +10,9 @@ namespace Squeal
   /// Where a chart is evaluated.
   struct OperatingPoint
   {
-    double         friction_coefficient = 0.;
-    ContactDamping damping;
-    int            line = 0; ///< of the chart: points of one line differ in the friction coefficient, with all that follows from it
+    double          friction_coefficient = 0.;
+    ParameterValues values;   ///< of other parameters of the system, where they differ from its own
+    int             line = 0; ///< of the chart: points of one line differ in the friction coefficient, with all that follows from it
   };
 
   /**
@@ -26,7 +26,7 @@ namespace Squeal
     /**
      * Starts from real modes Φ_R and their responses of first order, see starting_model().
      *
-     * @param system            with contact damping as it is somewhere on the chart
+     * @param system            with parameters as they are somewhere on the chart: no term may vanish that the chart has elsewhere
      * @param inverse           factor of K_c, or of K_c + s² M_c without damping if the @p shift s [rad/s] is positive
      * @param real_modes        M_c-orthonormal, somewhat beyond the band
      * @param largest_frequency end of the band [rad/s]

@@ -30,7 +30,7 @@ namespace Squeal
 
   /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.
   MultiVector force_residuals(const CoupledSystem                     &system,
-                              double                                   mu,
+                              const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
                               const MultiVector                       &real_part,
                               const MultiVector                       &imaginary_part,
@@ -44,5 +44,5 @@ namespace Squeal
    *
    * (eqs. (14) to (16) of the paper). Where K_c is singular R_U uses the shifted stiffness of @p inverse.
    */
-  void finish_modes(const CoupledSystem &system, double mu, const UpdatedInverse &inverse, ComplexModes &modes);
+  void finish_modes(const CoupledSystem &system, const ParameterValues &values, const UpdatedInverse &inverse, ComplexModes &modes);
 } // namespace Squeal

@@ -18,16 +18,13 @@ namespace Squeal
   };
 
   /**
-   * The pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the contact:
+   * The pencil with friction, Q(λ) = S(λ) + E G(λ) with S = K_c + λ² M_c, condensed to the
+   * terms θ λ^p L diag(d) Rᵀ of low rank, those of the contact above all:
    *
    *   det Q(λ) = det S(λ) det N(λ),   N(λ) = I + G(λ) S(λ)⁻¹ E
    *
-   *       [ −μ (V_K + λ² V_M) + λ diag(c_t) Aᵀ ]
-   *   G = [ λ diag(c_b) R                      ],   E = [A  Rᵀ  M_c Φ_m]
-   *       [ λ diag(2ζω) Φ_mᵀ M_c               ]
-   *
-   * without the second block where c_b vanishes and without the third where no
-   * mode Φ_m has damping of its own.
+   * E has the factors L as columns; G has for each of them the rows Σ θ λ^p diag(d) Rᵀ of its terms. Friction makes
+   * −μ (V_K + λ² V_M) of those for A.
    *
    * S(λ)⁻¹ is summed over the real modes up to ω_d, Φ with Φᵀ S Φ = D = diag(ω_j² + λ²); on
    * their M-orthogonal complement it is a Chebyshev series in H = (K_c + s M_c)⁻¹ M_c, whose
@@ -56,8 +53,8 @@ namespace Squeal
      * @param inverse        (K_c + s M_c)⁻¹
      * @param shift          s ≥ 0 [rad²/s²]
      *
-     * Throws SolverError if the bodies have damping of their own, which is of full rank, or if a mode with damping of its
-     * own is not among @p modes.
+     * Throws SolverError if there are sparse terms but K_c and M_c, such as damping of the bodies. The system must outlive
+     * it.
      */
     CondensedDeterminant(const CoupledSystem               &system,
                          const SymmetricModes              &modes,
@@ -89,33 +86,27 @@ namespace Squeal
     int n_moments() const;
 
   private:
-    /// Rows of G that stem from one sparse matrix.
+    /// Rows of G that stem from one term.
     struct Block
     {
-      std::shared_ptr<const SparseMatrix> factor;              ///< n_c × n, or its transpose
-      bool                                transposed = false;
-      std::vector<double>                 coefficients;        ///< of the rows
-      bool                                friction  = false;   ///< times −μ
-      int                                 power     = 0;       ///< times λ to this power
-      int                                 first_row = 0;       ///< in N
-      DenseMatrix                         on_modes;            ///< times Φ
-      std::vector<DenseMatrix>            moments;             ///< times T_k P (K + s M)⁻¹ E
-      double                              norm = 0.;           ///< of its product with (K + s M)^−½ on the complement
+      const Term              *term;
+      int                      first_row; ///< in N
+      DenseMatrix              on_modes;  ///< RᵀΦ
+      std::vector<DenseMatrix> moments;   ///< Rᵀ T_k P (K + s M)⁻¹ E
+      double                   norm;      ///< of diag(d) Rᵀ (K + s M)^−½ on the complement
 
-      DenseMatrix operator*(const MultiVector &X) const;
-      MultiVector transpose_times_units(int first, int n) const;
-      std::complex<double> scale(std::complex<double> lambda, double mu) const;
+      std::complex<double> scale(std::complex<double> lambda, const ParameterValues &values) const;
     };
 
     double truncation(std::complex<double> lambda, double mu, int n_terms) const;
 
-    double              deflation_square, shift;
-    std::vector<double> omega;
-    std::vector<Block>  blocks;
-    int                 n_rows = 0, n_columns = 0; ///< of N; of those columns that the complement contributes to
-    int                 n_terms = 0;
-    double              forces_norm = 0.;         ///< ‖(K + s M)^−½ E‖ on the complement
-    ComplexDenseMatrix  modes_forces;             ///< ΦᵀE
-    DenseMatrix         modal;                    ///< diag(2ζω) Φ_mᵀ M_c Φ
+    const CoupledSystem &system;
+    double               deflation_square, shift;
+    std::vector<double>  omega;
+    std::vector<Block>   blocks;
+    int                  n_rows = 0;       ///< of N
+    int                  n_terms = 0;
+    double               forces_norm = 0.; ///< ‖(K + s M)^−½ E‖ on the complement
+    ComplexDenseMatrix   modes_forces;     ///< ΦᵀE
   };
 } // namespace Squeal

@@ -23,6 +23,9 @@ namespace Squeal
       {{ContourMethod::condensed, "condensed"}, {ContourMethod::sparse_lu, "sparse LU"}}};
   };
 
+  /// Condensed where all terms but K_c and M_c are of low rank.
+  ContourMethod contour_method(const CoupledSystem &system);
+
   /// The rectangle −a ≤ Re λ ≤ a, ω_low ≤ Im λ ≤ ω_high, and how its boundary is followed.
   struct ContourOptions
   {

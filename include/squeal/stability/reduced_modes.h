@@ -12,10 +12,9 @@ namespace Squeal
   /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
   struct ReducedModes
   {
-    double         friction_coefficient = 0.;
-    ContactDamping contact_damping;
-    ReducedPencil  pencil;          ///< at that friction coefficient and contact damping
-    DenseMatrix    mass, stiffness; ///< TᵀM_cT and TᵀK_cT: the norms
+    ParameterValues values;          ///< of the parameters of the system
+    ReducedPencil   pencil;          ///< there
+    DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT: the norms
 
     std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
     ComplexDenseMatrix                right;  ///< φ_r, r × k
@@ -40,14 +39,13 @@ namespace Squeal
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_frequency, BandEnd end = BandEnd::cut);
 
   /**
-   * The same with other contact damping, on this process alone: vectors of a
+   * The same at any values of the parameters, on this process alone: vectors of a
    * multiple eigenvalue may differ from those that another process finds.
    */
-  ReducedModes local_reduced_modes(const ReducedModel   &model,
-                                   double                mu,
-                                   const ContactDamping &damping,
-                                   double                largest_frequency,
-                                   BandEnd               end = BandEnd::cut);
+  ReducedModes local_reduced_modes(const ReducedModel    &model,
+                                   const ParameterValues &values,
+                                   double                 largest_frequency,
+                                   BandEnd                end = BandEnd::cut);
 
   /**
    * The real eigenvalues of @p model with their vectors, zeros excluded, |λ| ≤ @p radius [1/s]: static divergence and
@@ -99,7 +97,6 @@ namespace Squeal
     ResidualProducts products() const;
   };
 
-  /// @param system with the contact damping of the @p modes
   ResidualVectors
   residual_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
 

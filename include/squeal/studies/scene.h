@@ -18,7 +18,8 @@ namespace Squeal
     std::unique_ptr<Model>       model;
     ContactInterface             interface; ///< all pairs of contact nodes
     ContactOperators             contact;   ///< of all pairs
-    SecondOrderSystem            system;    ///< M, C, K of the uncoupled bodies
+    std::vector<Term>            bodies;    ///< merged terms of the uncoupled bodies
+    SecondOrderSystem            system;    ///< M, C, K: their sum
 
     unsigned int n_pins() const;
   };
@@ -34,6 +35,7 @@ namespace Squeal
     std::vector<unsigned int>           closed;    ///< numbers of the closed pairs: S_0
     ContactInterface                    interface; ///< S_0
     ContactOperators                    contact;   ///< of S_0
+    ContactDamping                      damping;   ///< of S_0
     CoupledSystem                       coupled;
 
     /// Values of the closed pairs, set among those of all pairs; the others are zero.

@@ -1,0 +1,180 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/system/terms.h>
+
+#include <Epetra_Vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Matrix = std::shared_ptr<const SparseMatrix>;
+
+    /// L diag(d) Rᵀ as a sparse matrix.
+    Matrix product(const Term &term, const ParameterValues &values)
+    {
+      const SparseMatrix &R = *term.right->sparse_transpose(), &L = *term.left->sparse_transpose();
+      if (term.weights.empty())
+        return multiply(L, R, true, false);
+      const std::vector<double> &d = values.at(term.weights);
+      Epetra_Vector              scale(R.RowMap());
+      for (int i = 0; i < scale.MyLength(); ++i)
+        scale[i] = d[R.RowMap().GID(i)];
+      SparseMatrix scaled(R);
+      scaled.LeftScale(scale);
+      return multiply(L, scaled, true, false);
+    }
+
+  } // namespace
+
+  Matrix sum(const std::vector<std::pair<double, Matrix>> &summands)
+  {
+    if (summands.empty())
+      return nullptr;
+    // What is not changed need not be copied
+    if (summands.size() == 1 && summands.front().first == 1.)
+      return summands.front().second;
+    std::vector<std::pair<double, const SparseMatrix *>> parts;
+    for (const auto &[factor, matrix] : summands)
+      parts.emplace_back(factor, matrix.get());
+    return linear_combination(parts);
+  }
+
+  double Monomial::at(const ParameterValues &values) const
+  {
+    double result = factor;
+    for (const auto &[parameter, power] : powers)
+      result *= std::pow(values.at(parameter).front(), power);
+    return result;
+  }
+
+  bool Monomial::contains(const std::string &parameter) const
+  {
+    return powers.count(parameter) > 0;
+  }
+
+  Monomial operator*(const Monomial &a, const Monomial &b)
+  {
+    Monomial result = a;
+    result.factor *= b.factor;
+    for (const auto &[parameter, power] : b.powers)
+      result.powers[parameter] += power;
+    return result;
+  }
+
+  bool Term::vanishes(const ParameterValues &values) const
+  {
+    if (coefficient.at(values) == 0.)
+      return true;
+    if (weights.empty())
+      return false;
+    const std::vector<double> &d = values.at(weights);
+    return std::all_of(d.begin(), d.end(), [](const double x) { return x == 0.; });
+  }
+
+  bool Term::is_sparse() const
+  {
+    return matrix || (left->sparse_transpose() != nullptr && right->sparse_transpose() != nullptr);
+  }
+
+  Term sparse_term(std::string name, const int power, Monomial coefficient, Matrix matrix, const Symmetry symmetry)
+  {
+    Term term;
+    term.name        = std::move(name);
+    term.power       = power;
+    term.coefficient = std::move(coefficient);
+    term.matrix      = std::move(matrix);
+    term.symmetry    = symmetry;
+    return term;
+  }
+
+  Term low_rank_term(std::string                          name,
+                     const int                            power,
+                     Monomial                             coefficient,
+                     std::shared_ptr<const LowRankFactor> left,
+                     std::shared_ptr<const LowRankFactor> right,
+                     std::string                          weights)
+  {
+    Term term;
+    term.name        = std::move(name);
+    term.power       = power;
+    term.coefficient = std::move(coefficient);
+    term.left        = std::move(left);
+    term.right       = std::move(right);
+    term.weights     = std::move(weights);
+    return term;
+  }
+
+  std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, const int power)
+  {
+    std::vector<const Term *> result;
+    for (const Term &term : terms)
+      if (term.power == power && !term.vanishes(values))
+        result.push_back(&term);
+    return result;
+  }
+
+  MultiVector times(const std::vector<Term> &terms, const ParameterValues &values, const int power, const MultiVector &X, const bool transposed)
+  {
+    MultiVector                                                 result(X.Map(), X.NumVectors());
+    std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // what each factor maps, once for all of its terms
+    for (const Term *term : terms_of(terms, values, power))
+      {
+        const double theta = term->coefficient.at(values);
+        if (term->matrix)
+          result.Update(transposed && term->symmetry == Symmetry::skew ? -theta : theta, *term->matrix * X, 1.);
+        else
+          {
+            const DenseMatrix    Y      = term->weighted(term->source(transposed).transpose_times(X), values);
+            const LowRankFactor *target = &term->target(transposed);
+            auto found = std::find_if(onto.begin(), onto.end(), [target](const auto &entry) { return entry.first == target; });
+            if (found == onto.end())
+              found = onto.insert(found, {target, DenseMatrix(Y.n_rows(), Y.n_columns())});
+            found->second = add(found->second, Y, theta);
+          }
+      }
+    for (const auto &[factor, Y] : onto)
+      result.Update(1., *factor * Y, 1.);
+    return result;
+  }
+
+  SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values)
+  {
+    std::array<Matrix, 3> matrices;
+    for (int power = 0; power < 3; ++power)
+      {
+        std::vector<std::pair<double, Matrix>> summands;
+        for (const Term *term : terms_of(terms, values, power))
+          {
+            if (!term->is_sparse())
+              throw SolverError("the term `" + term->name + "` has no sparse matrix", "system matrices",
+                                "choose a solver that takes such terms as products, or leave the term out");
+            summands.emplace_back(term->coefficient.at(values), term->matrix ? term->matrix : product(*term, values));
+          }
+        matrices[power] = sum(summands);
+      }
+    return {matrices[2], matrices[1], matrices[0]};
+  }
+
+  std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values)
+  {
+    const std::array<std::array<const char *, 3>, 2> names = {{{{"stiffness of the bodies", "damping of the bodies", "mass of the bodies"}},
+       {{"skew stiffness of the bodies", "gyroscopic forces", "skew mass of the bodies"}}}};
+    std::vector<Term>                                result;
+    for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::skew})
+      for (int power = 0; power < 3; ++power)
+        {
+          std::vector<std::pair<double, Matrix>> summands;
+          for (const Term *term : terms_of(terms, values, power))
+            if (term->symmetry == symmetry)
+              summands.emplace_back(term->coefficient.at(values), term->matrix);
+          if (const Matrix matrix = sum(summands))
+            result.push_back(sparse_term(names[symmetry == Symmetry::skew][power], power, {}, matrix, symmetry));
+        }
+    return result;
+  }
+} // namespace Squeal

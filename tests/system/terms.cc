@@ -1,0 +1,117 @@
+#include "matrices.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse.h>
+#include <squeal/system/terms.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// θ = 2 a b² of a symmetric matrix, −3 a of a skew one, and terms of low rank with and without weights, all with λ.
+  struct Terms
+  {
+    Epetra_Map                           map = rows(4), short_map = rows(2);
+    std::shared_ptr<const SparseMatrix>  S   = sparse(map, map, [](const int i) { return Row{{i, 1. + i}, {3 - i, 0.5}}; });
+    std::shared_ptr<const SparseMatrix>  G   = sparse(map, map, [](const int i) { return i < 2 ? Row{{i + 2, 1.5 - i}} : Row{{i - 2, i - 3.5}}; });
+    std::shared_ptr<const SparseMatrix>  L   = sparse(short_map, map, [](const int i) { return Row{{i, 2.}, {3, -1.}}; });
+    std::shared_ptr<const SparseMatrix>  R   = sparse(short_map, map, [](const int i) { return Row{{2 - i, 1.}, {3, 0.3}}; });
+    std::shared_ptr<const LowRankFactor> left = std::make_shared<LowRankFactor>(L), right = std::make_shared<LowRankFactor>(R);
+    ParameterValues                      values = {{"a", {0.7}}, {"b", {1.3}}, {"d", {4., -2.}}};
+    std::vector<Term>                    terms = {sparse_term("symmetric", 1, {2., {{"a", 1}, {"b", 2}}}, S),
+                                                  sparse_term("skew", 1, {-3., {{"a", 1}}}, G, Symmetry::skew),
+                                                  low_rank_term("of low rank", 1, {}, left, right),
+                                                  low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
+                                                  sparse_term("of another power", 2, {}, S)};
+
+    /// The sum of those with λ.
+    DenseMatrix expected() const
+    {
+      DenseMatrix weighted = to_dense(*R);
+      for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 2; ++i)
+          weighted(i, j) *= 1. + 0.5 * values.at("d")[i];
+      DenseMatrix result = multiply(to_dense(*L), weighted, true);
+      result             = add(result, to_dense(*S), 2. * 0.7 * 1.3 * 1.3);
+      return add(result, to_dense(*G), -3. * 0.7);
+    }
+  };
+
+  double deviation(const DenseMatrix &A, const DenseMatrix &B)
+  {
+    return max_norm(add(A, B, -1.)) / max_norm(B);
+  }
+} // namespace
+
+
+
+TEST(Terms, SumAndItsTransposeOnVectors)
+{
+  const Terms t;
+  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
+  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), transpose(t.expected())), 1e-15);
+}
+
+
+
+TEST(Terms, SumAsASparseMatrix)
+{
+  Terms      t;
+  const auto matrices = sparse_matrices(t.terms, t.values);
+  EXPECT_LT(deviation(to_dense(*matrices.damping), t.expected()), 1e-15);
+  EXPECT_EQ(matrices.mass, t.S); // what is not changed is not copied
+  EXPECT_EQ(matrices.stiffness, nullptr);
+
+  t.terms.push_back(low_rank_term("full columns", 1, {}, std::make_shared<LowRankFactor>(unit_vectors(t.map)),
+                                  std::make_shared<LowRankFactor>(unit_vectors(t.map))));
+  EXPECT_THROW(sparse_matrices(t.terms, t.values), SolverError);
+}
+
+
+
+TEST(Terms, VanishWithTheirParametersOrWeights)
+{
+  Terms      t;
+  const auto names = [&t] {
+    std::string result;
+    for (const Term *term : terms_of(t.terms, t.values, 1))
+      result += term->name + ", ";
+    return result;
+  };
+  EXPECT_EQ(names(), "symmetric, skew, of low rank, weighted, ");
+  t.values["d"] = {0., 0.};
+  t.values["b"] = {0.};
+  EXPECT_EQ(names(), "skew, of low rank, ");
+  t.values["d"] = {}; // zeros, too
+  t.values["a"] = {0.};
+  EXPECT_EQ(names(), "of low rank, ");
+}
+
+
+
+TEST(Terms, MergedTermsHaveTheSameSum)
+{
+  const Terms             t;
+  const std::vector<Term> sparse = {t.terms[0], t.terms[1], t.terms[0], t.terms[4]};
+  const std::vector<Term> few    = merged(sparse, t.values);
+  ASSERT_EQ(few.size(), 3u); // symmetric and skew with λ, symmetric with λ²
+  for (const int power : {1, 2})
+    EXPECT_LT(deviation(replicate(times(few, {}, power, unit_vectors(t.map))), replicate(times(sparse, t.values, power, unit_vectors(t.map)))), 1e-15);
+}
+
+
+
+TEST(Terms, FactorsAreTheSameSparseOrInFull)
+{
+  const Terms         t;
+  const LowRankFactor full(t.left->columns(0, 2));
+  const MultiVector   X = random_vectors(t.map, 3);
+  EXPECT_LT(deviation(full.transpose_times(X), t.left->transpose_times(X)), 1e-15);
+  const DenseMatrix Y = t.left->transpose_times(X);
+  EXPECT_LT(deviation(replicate(full * Y), replicate(*t.left * Y)), 1e-15);
+  EXPECT_EQ(max_norm(add(replicate(full.columns(1, 1)), replicate(t.left->columns(1, 1)), -1.)), 0.);
+}
