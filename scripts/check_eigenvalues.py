@@ -29,6 +29,7 @@ import scipy.optimize
 import scipy.sparse.linalg
 
 import exported_matrices
+import parameter_file
 import slepc_toar
 
 STRUCTURE_TOLERANCE = 1e-10
@@ -161,7 +162,7 @@ def main():
     listed = exported_matrices.in_band(eigenvalues, band)
     labels, eigenvalues = [label for label, keep in zip(labels, listed) if keep], eigenvalues[listed]
     file = pathlib.Path(arguments.directory) / "parameters.prm"
-    parameters = exported_matrices.read_parameters(file) if file.is_file() else {}
+    parameters = parameter_file.read_parameters(file) if file.is_file() else {}
     if parameters.get("Damping/Modal damping ratio"):
         sys.exit("The run has modal damping, which no exported matrix holds; repeat it without Damping/Modal damping ratio.")
     matrices = exported_matrices.read_matrices(arguments.directory)

@@ -19,7 +19,6 @@ Nothing here is taken from the program but these matrices, so that what follows 
 import dataclasses
 import math
 import pathlib
-import re
 import sys
 
 import numpy as np
@@ -27,6 +26,8 @@ import scipy.io
 import scipy.linalg
 import scipy.sparse as sparse
 import scipy.sparse.linalg
+
+from parameter_file import read_parameters
 
 
 @dataclasses.dataclass
@@ -97,20 +98,6 @@ def structure_errors(matrices):
         matrix = matrices[name]
         errors[f"{name} - {name}^T"] = largest(matrix - matrix.T) / (largest(matrix) or 1.0)
     return errors
-
-
-def read_parameters(path):
-    """Values of a parameter file as a dictionary "Section/Name" -> text."""
-    values, sections = {}, []
-    for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines():
-        line = line.split("#", 1)[0].strip()
-        if match := re.fullmatch(r"subsection\s+(.+)", line):
-            sections.append(match[1])
-        elif line == "end":
-            sections.pop()
-        elif match := re.fullmatch(r"set\s+(.+?)\s*=\s*(.*)", line):
-            values["/".join([*sections, match[1]])] = match[2]
-    return values
 
 
 def run_parameter(directory, name, given=None):

@@ -16,7 +16,7 @@ import sys
 
 import numpy as np
 
-from exported_matrices import read_parameters
+from parameter_file import read_parameters
 from pictures import (INK, RED_BLUE, SIZE, YELLOW_BLUE, add_array, colour_bar, colour_table, ensure_display, line_actor, new_window,
                       nice_range, read, save, sharp_edges, surface_of, text_actor, values_of)
 
