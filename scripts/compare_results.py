@@ -7,7 +7,8 @@ Every CSV file below OLD is held against the one of the same name below NEW, cel
 difference relative to the largest number of their column in OLD, so that a column of rounding errors beside zero
 does not count, texts letter by letter. Columns of what varies from run to run (times, memory, residuals, the
 eps_ estimates at the level of rounding) are left out unless --all is given. The exit status is 1 when a table or
-a column is missing, a text differs or a number differs by more than the tolerance.
+a column is missing, a text differs or a number differs by more than the tolerance; columns that only NEW has do not
+count.
 """
 
 import argparse
@@ -52,17 +53,25 @@ def compare_columns(name, old, new, tolerance):
     return largest, complaints
 
 
+def with_occurrence(names):
+    """Names of columns, of which some may be equal, each with the number of equal ones before it."""
+    return [(name, names[:column].count(name)) for column, name in enumerate(names)]
+
+
 def compare_tables(old_file, new_file, tolerance, ignored, everything):
     (old_names, old), (new_names, new) = read_table(old_file), read_table(new_file)
-    if old_names != new_names:
-        return 0.0, [f"the columns differ: {', '.join(sorted(set(old_names) ^ set(new_names))) or 'their order'}"]
+    places = dict(zip(with_occurrence(new_names), range(len(new_names))))
+    missing = [name for name, occurrence in with_occurrence(old_names) if (name, occurrence) not in places]
+    if missing:
+        return 0.0, [f"columns are missing: {', '.join(missing)}"]
     if len(old) != len(new):
         return 0.0, [f"{len(old)} rows became {len(new)}"]
     largest, complaints = 0.0, []
-    for column, name in enumerate(old_names):
+    for column, (name, occurrence) in enumerate(with_occurrence(old_names)):
         if name in ignored or (not everything and VARYING.search(name)):
             continue
-        difference, found = compare_columns(name, [row[column] for row in old], [row[column] for row in new], tolerance)
+        place = places[name, occurrence]
+        difference, found = compare_columns(name, [row[column] for row in old], [row[place] for row in new], tolerance)
         largest = max(largest, difference)
         complaints += found
     return largest, complaints

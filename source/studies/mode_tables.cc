@@ -36,8 +36,9 @@ namespace Squeal
     return table;
   }
 
-  Table complex_table(const ComplexModes &modes, const std::vector<std::string> &labels, const std::vector<ModeIdentity> &identities)
+  Table complex_table(const FrictionModes &friction)
   {
+    const ComplexModes &modes   = friction.modes;
     std::vector<Column> columns = {{"label", ""},
                                    {"share", "-", 3},
                                    {"frequency", "Hz", 3},
@@ -45,22 +46,24 @@ namespace Squeal
                                    {"divergence rate", "%", 4},
                                    {"damping ratio", "%", 4},
                                    {"residual", "-", 1, true},
-                                   {"eps_res", "-", 1, true}};
+                                   {"eps_res", "-", 1, true},
+                                   {"unstable", "-"}};
     const bool has_estimates = !modes.estimated_errors.empty();
     if (has_estimates)
       columns.push_back({"estimated error of lambda", "-", 1, true});
     Table table(columns);
-    for (std::size_t j = 0; j < labels.size(); ++j)
+    for (std::size_t j = 0; j < friction.labels.size(); ++j)
       {
-        const ModalQuantities   mode = modal_quantities(modes.lambda[j]);
-        std::vector<Cell> cells = {labels[j],
-                                   identities[j].share,
-                                   mode.frequency,
-                                   mode.growth_rate,
-                                   100. * mode.divergence_rate,
-                                   100. * mode.damping_ratio,
-                                   modes.residuals[j],
-                                   modes.energy_residuals[j]};
+        const ModalQuantities mode  = modal_quantities(modes.lambda[j]);
+        std::vector<Cell>     cells = {friction.labels[j],
+                                       friction.identities[j].share,
+                                       mode.frequency,
+                                       mode.growth_rate,
+                                       100. * mode.divergence_rate,
+                                       100. * mode.damping_ratio,
+                                       modes.residuals[j],
+                                       modes.energy_residuals[j],
+                                       static_cast<long>(friction.unstable[j])};
         if (has_estimates)
           cells.emplace_back(modes.estimated_errors[j]);
         table.add_row(std::move(cells));

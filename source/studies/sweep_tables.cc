@@ -17,7 +17,8 @@ namespace Squeal
                  {"eps_res left", "-", 1, true},
                  {"estimated error of lambda", "-", 1, true},
                  {"verdict", ""},
-                 {"refinement", "-"}});
+                 {"refinement", "-"},
+                 {"growing", "-"}});
     for (std::size_t i = 0; i < chart.points.size(); ++i)
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
         {
@@ -28,7 +29,7 @@ namespace Squeal
           const ModalQuantities mode = modal_quantities(point.lambda[j]);
           table.add_row({point.friction_coefficient, static_cast<long>(b + 1), labels[b], mode.frequency, mode.growth_rate,
                          100. * mode.divergence_rate, point.right_residuals[j], point.left_residuals[j], point.errors[j],
-                         to_string(point.verdicts[j]), static_cast<long>(chart.is_refinement[i])});
+                         to_string(point.verdicts[j]), static_cast<long>(chart.is_refinement[i]), static_cast<long>(is_growing(point.lambda[j]))});
         }
     return table;
   }

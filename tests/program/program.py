@@ -34,7 +34,7 @@ end
 """
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "damping ratio [%]",
-                   "residual [-]", "eps_res [-]"]
+                   "residual [-]", "eps_res [-]", "unstable [-]"]
 
 # Of the same eigenvalue found in another way [-]
 SAME = 1e-9

@@ -68,6 +68,7 @@ class Results(ProgramTest):
         rows = read_table(self.results / "complex_modes.csv")
         unstable = [number for number, row in enumerate(rows, start=1) if float(row["divergence rate [%]"]) > 1e-6]
         self.assertEqual(len(unstable), self.record["counts"]["unstable modes"])
+        self.assertEqual([number for number, row in enumerate(rows, start=1) if row["unstable [-]"] == "1"], unstable)
         self.assertGreater(len(unstable), 0)
         for number in unstable:
             fields = sorted((self.results / "modes").glob(f"complex_{number:03d}_*.vtu"))

@@ -24,7 +24,7 @@ DEFAULT_ACCURACY = 2 * TOLERANCE
 GROWING, PRINTED = 1e-8, 1e-10
 
 BRANCHES = ("mu [-],branch [-],label,frequency [Hz],growth rate [1/s],divergence rate [%],eps_res right [-],eps_res left [-],"
-            "estimated error of lambda [-],verdict,refinement [-]")
+            "estimated error of lambda [-],verdict,refinement [-],growing [-]")
 THRESHOLDS = "mu [-],uncertainty [-],event,mechanism,branch [-],label,partner [-],label of partner,frequency [Hz]"
 COUNTS = "mu [-],modes [-],expected [-],overdamped pairs [-]"
 CROSSINGS = "mu [-],uncertainty [-],branch [-],label,direction,edge"
@@ -149,6 +149,7 @@ class Sweep(SweepTest):
                     for name in ("eps_res right [-]", "eps_res left [-]"):
                         self.assertGreaterEqual(float(row[name]), 0)
                     self.assertIn(row["verdict"], ("stable", "unstable", "undecided"))
+                    self.assertEqual(row["growing [-]"], "1" if divergence(value) > GROWING else "0", row)
                     if row["verdict"] == "unstable":
                         self.assertGreater(divergence(value), 0)
                     # Close to where modes meet even larger rates are undecided.

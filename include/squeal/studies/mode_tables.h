@@ -18,8 +18,11 @@ namespace Squeal
   /// Real coupled modes: label, share, frequency, residual.
   Table real_table(const FrictionlessModes &modes);
 
-  /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, and estimates where there are any.
-  Table complex_table(const ComplexModes &modes, const std::vector<std::string> &labels, const std::vector<ModeIdentity> &identities);
+  /**
+   * Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are
+   * unstable, and estimates where there are any.
+   */
+  Table complex_table(const FrictionModes &friction);
 
   /**
    * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most
