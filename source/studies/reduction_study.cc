@@ -3,7 +3,6 @@
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/bases/static_modes.h>
 #include <squeal/linear_algebra/sparse.h>
-#include <squeal/output/plot.h>
 #include <squeal/stability/krylov_modes.h>
 #include <squeal/stability/reduction_errors.h>
 #include <squeal/stability/residual_iteration.h>
@@ -14,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
-#include <functional>
 #include <map>
 #include <ostream>
 #include <set>
@@ -344,79 +342,6 @@ namespace Squeal
         }
       return table;
     }
-
-    // ------------------------------------------------------------------- plots
-
-    /// One panel for each group and truncation, one mark for each basis, the four criteria beside each other.
-    Plot error_plot(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups, const std::vector<std::string> &order)
-    {
-      Plot                     plot{"Errors of reduced bases: largest of each group of modes", {}, static_cast<int>(order.size())};
-      std::vector<std::string> truncations, names;
-      for (const Candidate &candidate : candidates)
-        {
-          if (!candidate.truncation.empty() && std::find(truncations.begin(), truncations.end(), candidate.truncation) == truncations.end())
-            truncations.push_back(candidate.truncation);
-          if (std::find(names.begin(), names.end(), candidate.name) == names.end())
-            names.push_back(candidate.name);
-        }
-      if (truncations.empty())
-        truncations.push_back("");
-      for (const std::string &truncation : truncations)
-        for (std::size_t group = 0; group < order.size(); ++group)
-          {
-            PlotPanel panel{order[group] + (truncations.size() > 1 ? ", component modes to " + truncation : ""), "", "largest error", false, true,
-                            {"res", "mac", "frq", "div"}, {}};
-            for (const Candidate &candidate : candidates)
-              if (candidate.truncation.empty() || candidate.truncation == truncation)
-                {
-                  const GroupError m      = largest_errors(candidate.errors, groups)[group];
-                  const int        number = std::find(names.begin(), names.end(), candidate.name) - names.begin();
-                  // Marks beside each other, so that equal values stay visible
-                  const double offset = names.size() > 1 ? 0.7 * (number / (names.size() - 1.) - 0.5) : 0.;
-                  PlotSeries   series{candidate.name, {}, {}, PlotSeries::Style::points, number, number};
-                  for (const double value : {m.residual, m.shape, m.frequency, m.divergence})
-                    {
-                      series.x.push_back(series.x.size() + 1. + offset);
-                      series.y.push_back(value);
-                    }
-                  panel.series.push_back(series);
-                }
-            plot.panels.push_back(panel);
-          }
-      return plot;
-    }
-
-    /// Error over cost, with the bases that none beats in both joined by a line.
-    PlotPanel cost_panel(const std::vector<Candidate>                     &candidates,
-                         const bool                                        friction,
-                         const char                                       *what,
-                         const std::function<double(const Candidate &)> &seconds)
-    {
-      PlotPanel panel{std::string("Error over ") + what, std::string(what) + " [s of CPU]",
-                      friction ? "largest eps_div" : "largest eps_frq", true, true, {}, {}};
-      std::vector<std::pair<double, double>> points;
-      int                                    number = 0;
-      for (const Candidate &candidate : candidates)
-        {
-          double largest = 0.;
-          for (const ModeError &e : candidate.errors)
-            largest = std::max(largest, friction ? e.divergence : e.frequency);
-          points.emplace_back(seconds(candidate), largest);
-          panel.series.push_back({candidate.name + (candidate.truncation.empty() ? "" : " " + candidate.truncation), {points.back().first},
-                                  {largest}, PlotSeries::Style::points, number, number});
-          ++number;
-        }
-      std::sort(points.begin(), points.end());
-      PlotSeries front{"Pareto front", {}, {}, PlotSeries::Style::lines, 1, 0};
-      for (const auto &[cost, error] : points)
-        if (front.y.empty() || error < front.y.back())
-          {
-            front.x.push_back(cost);
-            front.y.push_back(error);
-          }
-      panel.series.push_back(front);
-      return panel;
-    }
   } // namespace
 
   void run_reduction_study(Run &run)
@@ -467,10 +392,6 @@ namespace Squeal
         groups = frictionless_groups(labels);
         full_seconds += step_seconds(run, "Real modes");
       }
-    std::vector<std::string> order;
-    for (const std::string &group : groups)
-      if (std::find(order.begin(), order.end(), group) == order.end())
-        order.push_back(group);
 
     // ------------------------------------------------------------- ingredients
     Larder larder;
@@ -644,18 +565,7 @@ namespace Squeal
     run.write_table("reduction_errors", error_table(candidates, groups));
     run.write_table("reduction_estimates", estimate_table(candidates, unstable));
     run.store_table("reduction_modes", mode_table(candidates, labels, groups));
-    const bool errors_are_drawn = write_plot("reduction_errors", error_plot(candidates, groups, order), run.folder());
-    const bool is_drawn =
-      write_plot("reduction_cost",
-                 {"Cost and accuracy of reduced bases",
-                  {cost_panel(candidates, friction, friction ? "time per friction coefficient" : "time of solving", [](const Candidate &c) { return c.solve_seconds; }),
-                   cost_panel(candidates, friction, "time of building", [](const Candidate &c) { return c.build_seconds; })},
-                  2},
-                 run.folder()) &&
-      errors_are_drawn;
     run.screen << '\n';
-    if (!is_drawn)
-      run.progress.note("  note: gnuplot is not installed; plots/*.gp draw the plots");
     run.progress.note(text("  full order: ", full_seconds, " s of CPU for ", labels.size(), " modes"));
     run.finish();
   }

@@ -10,7 +10,6 @@
 #include <squeal/studies/contact_states.h>
 #include <squeal/studies/frictionless_modes.h>
 #include <squeal/studies/mode_fields.h>
-#include <squeal/studies/sweep_plots.h>
 #include <squeal/studies/sweep_study.h>
 #include <squeal/studies/sweep_tables.h>
 
@@ -126,6 +125,29 @@ namespace Squeal
       double       friction_coefficient;
       int          n_found; ///< in the rectangle
       ContourCount count;
+    };
+
+    /// Modes over the friction coefficient at one load and speed, with the names of the branches.
+    struct ChartLine
+    {
+      StabilityChart           chart;
+      std::vector<std::string> labels; ///< one for each branch: "A0-4 -", "F1", ...
+    };
+
+    /// What is known about stability at one friction coefficient and one load or speed.
+    struct MapCell
+    {
+      double      friction_coefficient = 0.;    ///< [-]
+      double      value                = 0.;    ///< load [N] or speed [rad/s]
+      double      growth_rate          = 0.;    ///< of the most unstable mode [1/s]
+      double      divergence_rate      = 0.;    ///< of the most unstable mode [-]
+      double      frequency            = 0.;    ///< of the most unstable mode [Hz]
+      int         n_unstable           = 0;
+      int         n_undecided          = 0;     ///< modes whose growth is undecided
+      int         n_open               = 0;     ///< contact nodes that are lifted
+      std::string leader;                       ///< label of the most unstable mode
+      bool        is_known             = false; ///< whether it was computed
+      double      error                = 0.;    ///< largest estimated |δλ| / |λ| [-]
     };
 
     struct SweepResults
@@ -382,7 +404,7 @@ namespace Squeal
         coarse.maximum_refinements = 0;
         refinements = open_store(text("line_", line, "_from_", friction_coefficients.front()));
         sharpen(line, chart_of(coarse), friction_coefficients);
-        ChartLine result{title(line), chart_of(options), {}};
+        ChartLine result{chart_of(options), {}};
         refinements.reset();
         result.labels = labels(result.chart);
         const StabilityChart &chart = result.chart;
@@ -460,11 +482,6 @@ namespace Squeal
               result[branches[k]] = names[k];
           }
         return result;
-      }
-
-      std::string title(const int line) const
-      {
-        return lines[line].operation.radial_dissipation == RadialDissipation::none ? "without radial dissipation" : "with radial dissipation";
       }
 
       /// Label of the branch of the first chart that a mode resembles most, at the point of the chart nearest to its own.
@@ -765,7 +782,6 @@ namespace Squeal
     // ------------------------------------------------------------------ results
     if (const auto main = results.charts.find(0); main != results.charts.end())
       run.progress.note("\n" + verdict(main->second, lines[0].friction_coefficients.size(), omega_max));
-    std::vector<ChartLine> drawn;
     for (const auto &[l, stretches] : results.charts)
       for (std::size_t s = 0; s < stretches.size(); ++s)
         {
@@ -789,33 +805,6 @@ namespace Squeal
       }
     if (!results.map.empty())
       run.store_table("map", map_table(results, parameters.sweep.map_parameter));
-
-    // The paper's figures: without dissipation first, in black
-    bool is_drawn = true;
-    for (auto line = results.charts.rbegin(); line != results.charts.rend(); ++line)
-      drawn.insert(drawn.end(), line->second.begin(), line->second.end());
-    if (!drawn.empty())
-      {
-        std::vector<double> shown = parameters.sweep.mode_shapes;
-        if (shown.empty())
-          shown = {parameters.sweep.friction_coefficients.linear().back()};
-        std::vector<NamedPlot> plots = frequency_plots(drawn, omega_max);
-        plots.push_back({"complex_plane", complex_plane_plot(drawn, shown, omega_max)});
-        plots.push_back({"overview", overview_plot(drawn, omega_max)});
-        for (const NamedPlot &plot : plots)
-          is_drawn = write_plot(plot.name, plot.plot, run.folder()) && is_drawn;
-      }
-    if (!results.map.empty())
-      {
-        const bool   is_load = parameters.sweep.map_parameter == MapParameter::load;
-        StabilityMap map{"", parameters.sweep.map_grid(), parameters.sweep.map_values.geometric(), is_load ? "load per side" : "rotation speed",
-                         is_load ? "N" : "rad/s", {}};
-        for (const auto &[place, cell] : results.map)
-          map.cells.push_back(cell);
-        is_drawn = write_plot("map", map_plot(map), run.folder()) && is_drawn;
-      }
-    if (!is_drawn && run.is_root)
-      run.progress.note("  note: gnuplot is not installed or failed; `gnuplot NAME.gp` in plots/ draws the pictures");
     run.finish();
     if (run.is_root)
       std::filesystem::remove_all(checkpoint.folder);

@@ -1,7 +1,6 @@
-"""The study of reduced bases: sizes, errors, verdicts, plots, and what it refuses."""
+"""The study of reduced bases: sizes, errors, verdicts, and what it refuses."""
 
 import math
-import shutil
 import unittest
 
 from program import ProgramTest, header, numbers, read_table
@@ -32,12 +31,6 @@ class Friction(ProgramTest):
         self.assertEqual(header(self.results / "reduction_errors.csv").split(",")[:len(ERROR_COLUMNS)], ERROR_COLUMNS)
         for name in ("reduction_errors", "reduction_bases", "reduction_estimates", "reduction_modes"):
             self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / f"{name}.csv")), name)
-        for name in ("reduction_errors", "reduction_cost"):
-            for extension in ("dat", "gp"):
-                self.assertTrue((self.results / "plots" / f"{name}.{extension}").stat().st_size > 0)
-            if shutil.which("gnuplot"):
-                picture = (self.results / "plots" / f"{name}.svg").read_text(encoding="utf-8")
-                self.assertIn("residual-grown", picture)
 
     def test_sizes(self):
         """Tables 2, 4 and 5 of the paper: columns of T_r0 and of T_r."""

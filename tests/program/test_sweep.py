@@ -1,7 +1,6 @@
 """Runs that sweep the friction coefficient, held against runs at single friction coefficients."""
 
 import math
-import shutil
 import subprocess
 import time
 
@@ -118,21 +117,13 @@ class Sweep(SweepTest):
         names = {path.name for path in self.results.iterdir()}
         tables = {f"{name}{suffix}.csv" for name in ("branches", "thresholds", "counts", "band_crossings")
                   for suffix in ("", "_without_dissipation")}
-        self.assertEqual(names, tables | {"argument_counts.csv", "map.csv", "plots", "modes", "animations", "parameters.prm", "run.json"})
+        self.assertEqual(names, tables | {"argument_counts.csv", "map.csv", "modes", "animations", "parameters.prm", "run.json"})
         self.assertFalse((self.folder / "results.checkpoint").exists())
         for suffix in ("", "_without_dissipation"):
             for name, expected in (("branches", BRANCHES), ("thresholds", THRESHOLDS), ("counts", COUNTS), ("band_crossings", CROSSINGS)):
                 self.assertEqual(header(self.results / f"{name}{suffix}.csv"), expected)
         for path in self.results.glob("*.csv"):
             self.assertTrue(all(math.isfinite(number) for number in numbers(path)), path)
-
-    def test_plots(self):
-        plots = self.results / "plots"
-        stems = {path.stem for path in plots.iterdir()}
-        self.assertLessEqual({"complex_plane", "overview", "map"}, stems)
-        for stem in stems:
-            for ending in ("dat", "gp", *(["svg"] if shutil.which("gnuplot") else [])):
-                self.assertGreater((plots / f"{stem}.{ending}").stat().st_size, 0, stem)
 
     def test_values(self):
         for suffix in ("", "_without_dissipation"):
