@@ -7,7 +7,7 @@
 #   --modes N   modes to ask SLEPc for (66)
 #   --core N    the core to run on (0)
 #
-# Processor seconds: of squeal, the whole run from the mesh to tables and plots; of SLEPc, the solution from the
+# Processor seconds: of squeal, the whole run from the mesh to the tables; of SLEPc, the solution from the
 # assembled matrices at five of the friction coefficients, of which the mean stands for all. Both get the same BLAS kernels.
 
 set -euo pipefail

@@ -3,7 +3,8 @@
 #
 #   scripts/run.sh [PRM]... [-- OPTION...]
 #
-# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x. Options after -- are handed to squeal:
+# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots. Options after
+# -- are handed to squeal:
 #
 #   scripts/run.sh prm/disc_pins.prm -- --set "Operation/Friction coefficient=0.3"
 
@@ -31,10 +32,27 @@ done
 options=("$@")
 ((${#parameter_files[@]} > 0)) || parameter_files=("$squeal_root/prm/disc_pins.prm")
 
+# What tells the results of one run from those of another; nothing where there are none.
+state_of() { stat --format '%i %y' "$1/run.json" 2>/dev/null || true; }
+
+# Plots only add to the results: where they cannot be drawn, the run has succeeded all the same.
+draw_plots()
+{
+  local python
+  if python=$(command -v /usr/bin/python3 || command -v python3); then
+    "$python" scripts/plot_results.py "$1" || true
+  else
+    complain "No plots: Python is missing. Install python3-matplotlib, then: scripts/plot_results.py $1"
+  fi
+}
+
 setup squeal
 
 cd "$squeal_root"
 for parameter_file in "${parameter_files[@]}"; do
   name=$(basename "$parameter_file" .prm)
+  former=$(state_of "results/$name")
   build/release/squeal "${parameter_file#"$squeal_root/"}" --output "results/$name" "${options[@]}"
+  # Options such as --dry-run leave no results
+  [[ $(state_of "results/$name") == "$former" ]] || draw_plots "results/$name"
 done

@@ -3,7 +3,7 @@
 # run.sh and test.sh source this file; called by itself it builds the program and stops there:
 #
 #   scripts/setup.sh              what building, running and testing need
-#   scripts/setup.sh pictures     also what scripts/render_*.py and the plots need
+#   scripts/setup.sh pictures     also what scripts/render_*.py need
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.
@@ -17,7 +17,7 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev nlohmann-json3-dev
-          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy gnuplot-nox)
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 packages_peers=(python3-petsc4py python3-slepc4py)
 

@@ -1,0 +1,1 @@
+"""Plots of the tables that a run has left; scripts/plot_results.py draws them all."""

@@ -1,0 +1,106 @@
+"""Modes over the friction coefficient, as a sweep writes them: branches and their thresholds."""
+
+import dataclasses
+import re
+
+NO_LABEL = "unnamed"  # of modes that resemble no component mode
+WITHOUT, WITH = "without radial dissipation", "with radial dissipation"
+
+
+@dataclasses.dataclass
+class Mode:
+    """A mode with frequency [Hz] and divergence rate [%]."""
+
+    label: str
+    frequency: float
+    divergence: float
+    grows: bool
+    is_undecided: bool
+
+
+@dataclasses.dataclass
+class Threshold:
+    """Where a branch begins or ceases to grow: its divergence rate is zero there."""
+
+    mu: float
+    event: str
+    branch: int
+    partner: int  # None: no other branch takes part
+    frequency: float
+
+
+@dataclasses.dataclass
+class CurvePoint:
+    """A point of a branch with frequency [Hz] and divergence rate [%]; both None where the branch has no mode in the band."""
+
+    mu: float
+    frequency: float = None
+    divergence: float = None
+    grows: bool = False
+
+    @property
+    def is_shown(self):
+        return self.frequency is not None
+
+
+class Chart:
+    """Modes of the band over the friction coefficient at one load and speed, with one contact set.
+
+    `mus` are all values of the chart, ascending; `modes[branch][mu]` a mode; `labels[branch]` the name of a branch.
+    """
+
+    def __init__(self, title, branches, thresholds, counts, band_end):
+        self.title = title
+        self.mus = counts.numbers("mu [-]")
+        self.labels, self.modes = {}, {}
+        columns = (branches.numbers("branch [-]"), branches.numbers("mu [-]"), branches.texts("label"), branches.numbers("frequency [Hz]"),
+                   branches.numbers("divergence rate [%]"), branches.flags("growing [-]"), branches.texts("verdict"))
+        for branch, mu, label, frequency, divergence, grows, verdict in zip(*columns):
+            self.labels[int(branch)] = label
+            self.modes.setdefault(int(branch), {})[mu] = Mode(label, frequency, divergence, grows, verdict == "undecided")
+        columns = (thresholds.numbers("mu [-]"), thresholds.texts("event"), thresholds.numbers("branch [-]"), thresholds.texts("partner [-]"),
+                   thresholds.numbers("frequency [Hz]"))
+        self.thresholds = [Threshold(mu, event, int(branch), int(partner) if partner else None, frequency)
+                           for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]
+
+    def curve(self, branch):
+        """Points of a branch, with the thresholds at which it begins or ceases to grow, or to decay."""
+        points = []
+        events = [threshold for threshold in self.thresholds if branch in (threshold.branch, threshold.partner)]
+        for mu in self.mus:
+            while events and events[0].mu <= mu:
+                points.append(CurvePoint(events[0].mu, events[0].frequency, 0.0))
+                events.pop(0)
+            mode = self.modes[branch].get(mu)
+            points.append(CurvePoint(mu, mode.frequency, mode.divergence, mode.grows) if mode else CurvePoint(mu))
+        return points
+
+    def grows_somewhere(self, branch):
+        return any(mode.grows for mode in self.modes[branch].values())
+
+    def modes_at(self, mu):
+        return [modes[mu] for modes in self.modes.values() if mu in modes]
+
+
+def family(label):
+    """Label of a branch without the sign of its doublet: `A0-4` of `A0-4 -`."""
+    return label[:-2] if len(label) > 2 and label[-2:] in (" -", " +") else label
+
+
+def read_charts(results):
+    """The charts of a sweep: without radial dissipation first, each in stretches with one contact set."""
+    band_end = results.number("Band/Maximum frequency")
+    is_damped = results.parameter("Operation/Radial dissipation") != "none"
+    charts = []
+    for name in results.names():
+        if match := re.fullmatch(r"branches((_without_dissipation)?(?:_(\d+))?)", name):
+            suffix, is_bare, stretch = match[1], bool(match[2]) or not is_damped, int(match[3] or 1)
+            tables = [results.table(table + suffix) for table in ("branches", "thresholds", "counts")]
+            charts.append(((not is_bare, stretch), Chart(WITHOUT if is_bare else WITH, *tables, band_end)))
+    return [chart for _, chart in sorted(charts, key=lambda entry: entry[0])]
+
+
+def friction_range(charts):
+    """The first and the last friction coefficient of all charts."""
+    mus = [mu for chart in charts for mu in chart.mus]
+    return min(mus), max(mus)

@@ -1,0 +1,82 @@
+"""What all plots have in common: colours, marks, sizes, and the key below the panels."""
+
+import math
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+# Told apart with every kind of colour vision (Okabe and Ito); what they mean is said by marks, widths and dashes, too.
+BLACK, GREY, BLUE, VERMILLION, GREEN = "#000000", "#8c8c8c", "#0072b2", "#d55e00", "#009e73"
+PURPLE, ORANGE, SKY, BROWN = "#cc79a7", "#e69f00", "#56b4e9", "#7f5539"
+SERIES = (BLACK, BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY, BROWN)
+MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p", "*", "h")
+
+FONT_SIZE, SMALL = 10, 8  # [points]
+INCH = 72  # [points]
+KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # [inches]
+
+FRICTION, FREQUENCY, DIVERGENCE = "friction coefficient \u03bc [-]", "frequency [Hz]", "divergence rate R/\u03c9 [%]"
+
+
+def mark_of(number):
+    """Colour, marker and face colour of a series: another look for each of 2 * 12, first filled, then open."""
+    colour = SERIES[number % len(SERIES)]
+    return {"color": colour, "marker": MARKERS[number % len(MARKERS)],
+            "markerfacecolor": "white" if number // len(MARKERS) % 2 else colour}
+
+
+class Picture:
+    """Panels beside and below each other with a title above and one key below.
+
+    `size` is that of a panel with its labels [inches].
+    """
+
+    def __init__(self, title, n_panels, n_columns, size=(4.6, 3.4)):
+        self.size = size
+        n_columns = min(n_columns, n_panels)
+        n_rows = math.ceil(n_panels / n_columns)
+        self.figure = Figure(figsize=(n_columns * size[0], n_rows * size[1] + TITLE), layout="constrained")
+        FigureCanvasAgg(self.figure)
+        grid = self.figure.subplots(n_rows, n_columns, squeeze=False)
+        self.panels = list(grid.flat)[:n_panels]
+        for unused in list(grid.flat)[n_panels:]:
+            unused.set_axis_off()
+        self.figure.suptitle(title, fontsize=FONT_SIZE + 2)
+
+    def add_key(self):
+        """Every label once, in a strip of its own below the panels; call when all is drawn."""
+        entries = {}
+        for panel in self.panels:
+            for handle, label in zip(*panel.get_legend_handles_labels()):
+                entries.setdefault(label, handle)
+        width, height = self.figure.get_size_inches()
+        strip = 0.08
+        if entries:
+            entry_width = KEY_MARK + KEY_LETTER * max(len(label) for label in entries)
+            n_columns = min(len(entries), max(1, int(width / entry_width)))
+            strip += math.ceil(len(entries) / n_columns) * KEY_LINE
+            # To be read line by line, where matplotlib fills column after column
+            labels = list(entries)
+            labels = [label for column in range(n_columns) for label in labels[column::n_columns]]
+        self.figure.set_size_inches(width, height + strip)
+        share = strip / (height + strip)
+        if entries:
+            self.figure.legend([entries[label] for label in labels], labels, loc="lower center", ncol=n_columns, frameon=False,
+                               fontsize=FONT_SIZE - 1, borderaxespad=0.3, handlelength=2.6)
+        self.figure.get_layout_engine().set(rect=(0, share, 1, 1 - share))
+        return self.figure
+
+
+def prepare(panel, title, x_label, y_label):
+    """Title, labels and grid of a panel."""
+    panel.set_title(title, fontsize=FONT_SIZE + 1)
+    panel.set_xlabel(x_label)
+    panel.set_ylabel(y_label)
+    panel.grid(color="#dddddd", linewidth=0.6)
+    panel.set_axisbelow(True)
+    for side in ("top", "right"):
+        panel.spines[side].set_visible(False)
+
+
+def zero_line(panel):
+    panel.axhline(0, color="#555555", linewidth=0.9, zorder=1, gid="zero")

@@ -1,0 +1,312 @@
+"""Tests of scripts/plotting on small tables, where what has to be drawn is known; skipped where matplotlib is missing."""
+
+import math
+import pathlib
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+
+try:
+    from plotting import branches, charts, complex_plane, reduction, stability_map, style
+    from plotting.results import Results, ResultsError, Table
+except ModuleNotFoundError as missing:
+    if missing.name not in ("matplotlib", "numpy"):
+        raise
+    branches = None
+
+BAND = 100.0  # [Hz]
+PARAMETERS = {"Band": {"Maximum frequency": BAND}, "Operation": {"Radial dissipation": "none", "Friction coefficient": 0.4},
+              "Sweep": {"Mode shapes at": ""}, "Reduction": {"Problem": "friction"}}
+
+
+def line_of(axes, label):
+    """Points of the line of a label, (NaN, NaN) where it breaks; none if there is no such line."""
+    for line in axes.get_lines():
+        if line.get_label() == label:
+            return list(zip(line.get_xdata(), line.get_ydata()))
+    return []
+
+
+def points_and_parts(line):
+    """Number of points, and of parts between breaks."""
+    is_there = [not math.isnan(x) for x, _ in line]
+    return sum(is_there), sum(here and not before for before, here in zip([False, *is_there], is_there))
+
+
+@unittest.skipIf(branches is None, "python3-matplotlib is not installed")
+class PlotTest(unittest.TestCase):
+    """A folder with tables."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = pathlib.Path(temporary.name)
+        (self.folder / "run.json").write_text("{}", encoding="utf-8")
+        self.write_parameters(PARAMETERS)
+
+    def write_parameters(self, sections):
+        text = "".join(f"subsection {section}\n" + "".join(f"  set {name} = {value}\n" for name, value in values.items()) + "end\n"
+                       for section, values in sections.items())
+        (self.folder / "parameters.prm").write_text(text, encoding="utf-8")
+
+    def write(self, name, columns, rows):
+        lines = [",".join(columns), *(",".join(str(cell) for cell in row) for row in rows)]
+        (self.folder / f"{name}.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+    def write_chart(self, suffix="", label_of_second="A0-4 +", with_threshold=True, undecided=()):
+        """Two branches that coalesce at 0.25, and a third that is absent at 0.2."""
+        rows = []
+        for k in range(5):
+            mu, root = 0.1 * k, math.sqrt(abs(0.25 - 0.1 * k))
+            pair = [(10 - root, 0), (10 + root, 0)] if mu < 0.25 else [(10, root), (10, -root)]
+            for branch, (frequency, rate) in enumerate(pair, start=1):
+                label = "A0-4 -" if branch == 1 else label_of_second
+                verdict = "undecided" if (branch, k) in undecided else "unstable" if rate > 0 else "stable"
+                rows.append((mu, branch, label, frequency, rate, verdict, int(rate > 0)))
+            if k != 2:
+                rows.append((mu, 3, "F1", 50, -1, "undecided" if (3, k) in undecided else "stable", 0))
+        self.write("branches" + suffix, ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]"), rows)
+        events = [(0.25, "onset", 1, 2, 10), (0.3, "onset", 1, "", 2 * BAND)] if with_threshold else []
+        self.write("thresholds" + suffix, ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]"), events)
+        self.write("counts" + suffix, ("mu [-]",), [(0.1 * k,) for k in range(5)])
+
+    def charts(self):
+        return charts.read_charts(Results(self.folder))
+
+
+class Charts(PlotTest):
+    def test_families_have_no_signs(self):
+        for label, name in {"A0-4 -": "A0-4", "A0-4 +": "A0-4", "A0-4": "A0-4", "F1": "F1", " -": " -", "": ""}.items():
+            self.assertEqual(charts.family(label), name)
+
+    def test_curves_break_and_meet_at_thresholds(self):
+        self.write_chart()
+        upper, lower = branches.overview_figure(self.charts(), BAND).axes
+        # Both branches of the pair with the threshold between their five points; the third in two parts
+        everything = line_of(upper, charts.WITHOUT)
+        self.assertEqual(points_and_parts(everything), (6 + 6 + 4, 4))
+        self.assertEqual(max(y for _, y in everything if not math.isnan(y)), 50)
+        # One branch grows, from the threshold on
+        growing = line_of(lower, "growing, " + charts.WITHOUT)
+        self.assertEqual(points_and_parts(growing), (3, 1))
+        self.assertEqual(growing[0], (0.25, 0.0))
+        self.assertAlmostEqual(growing[2][1], math.sqrt(0.15))
+        # That beyond the band is none of the picture
+        self.assertEqual(line_of(upper, "onset"), [(0.25, 10)])
+        self.assertEqual(line_of(upper, "restabilisation"), [])
+
+    def test_families_that_grow(self):
+        self.write_chart()
+        figures = branches.family_figures(self.charts())
+        self.assertEqual(list(figures), ["sweep_families"])
+        upper, lower = figures["sweep_families"].axes
+        self.assertEqual([axes.get_title() for axes in (upper, lower)], ["A0-4", "A0-4"])
+        self.assertEqual(points_and_parts(line_of(upper, charts.WITHOUT)), (12, 2))
+        self.assertEqual([text.get_text() for text in upper.texts], ["A0-4 -", "A0-4 +"])
+
+    def test_a_partner_of_another_family_is_shown(self):
+        """In the other chart, too."""
+        self.write_parameters({**PARAMETERS, "Operation": {"Radial dissipation": "consistent"}})
+        self.write_chart("_without_dissipation", "R0-1")
+        self.write_chart("", "R0-1", with_threshold=False)
+        found = self.charts()
+        self.assertEqual([chart.title for chart in found], [charts.WITHOUT, charts.WITH])
+        upper = branches.family_figures(found)["sweep_families"].axes[0]
+        self.assertEqual(points_and_parts(line_of(upper, charts.WITHOUT)), (12, 2))
+        self.assertEqual(points_and_parts(line_of(upper, charts.WITH)), (10, 2))
+
+    def test_stretches_look_alike(self):
+        self.write_chart()
+        self.write_chart("_2")
+        axes = branches.overview_figure(self.charts(), BAND).axes[0]
+        colours = {line.get_color() for line in axes.get_lines() if line.get_label() == charts.WITHOUT}
+        self.assertEqual(colours, {style.BLACK})
+        self.assertEqual([line.get_label() for line in axes.get_lines()].count(charts.WITHOUT), 2)
+
+    def test_nothing_grows(self):
+        self.write_chart()
+        found = self.charts()
+        for modes in found[0].modes.values():
+            for mode in modes.values():
+                mode.grows = False
+        self.assertEqual(branches.family_figures(found), {})
+
+    def test_one_value(self):
+        """A line of one point would not be seen."""
+        self.write("branches", ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]"),
+                   [(0.4, 1, "F1", 50, 0.5, "unstable", 1)])
+        self.write("thresholds", ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]"), [])
+        self.write("counts", ("mu [-]",), [(0.4,)])
+        for figure in branches.figures(Results(self.folder)).values():
+            for line in figure.axes[0].get_lines():
+                self.assertTrue(line.get_gid() == "zero" or line.get_marker() not in ("", "None"), line)
+
+
+class ComplexPlane(PlotTest):
+    def test_rings_squares_and_names(self):
+        self.write_chart(undecided=[(3, 4)])
+        first, last = complex_plane.sweep_figure(self.charts(), [0.1, 1.0], BAND).axes
+        self.assertEqual(len(line_of(first, charts.WITHOUT)), 3)
+        self.assertEqual(line_of(first, "growing"), [])
+        # The point nearest to 1 is the last
+        self.assertIn("0.4", last.get_title())
+        (x, y), = line_of(last, "growing")
+        self.assertAlmostEqual(x, 0.010)
+        self.assertAlmostEqual(y, math.sqrt(0.15))
+        self.assertEqual(line_of(last, "undecided"), [(0.050, -1.0)])
+        self.assertEqual([text.get_text() for text in last.texts], ["A0-4 -"])
+
+    def test_faster_decay_lies_at_the_edge(self):
+        modes = [charts.Mode("F1", 50, 0.1, True, False), charts.Mode("T1", 60, -5, False, False)]
+        picture = style.Picture("", 1, 1)
+        complex_plane.draw(picture.panels[0], picture.size, "", [complex_plane.Series("run", modes)], BAND)
+        (x, y), = line_of(picture.panels[0], "faster decay, run")
+        self.assertAlmostEqual(x, 0.060)
+        self.assertAlmostEqual(y, -0.25)
+        self.assertEqual(len(line_of(picture.panels[0], "run")), 1)
+
+    def test_static_divergence_is_said(self):
+        self.write("complex_modes", ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]"), [("F1", 50, 0.1, 1), ("F1", 51, -0.1, 0)])
+        self.write("real_eigenvalues", ("growth rate [1/s]", "kind"), [(12.5, "static divergence"), (-3, "decay")])
+        axes, = complex_plane.run_figure(Results(self.folder)).axes
+        self.assertTrue(any("1 real" in text.get_text() and "12.5" in text.get_text() for text in axes.texts))
+
+    def test_names_do_not_overlap(self):
+        room = complex_plane.NameRoom(100)
+        found = [room.find(50, 50, "F1") for _ in range(6)]
+        self.assertEqual(len([place for place in found if place]), 4)
+        self.assertEqual(len(set(place for place in found if place)), 4)
+
+
+class Maps(PlotTest):
+    COLUMNS = ("mu [-]", "load per side [N]", "unstable modes [-]", "undecided modes [-]", "label", "divergence rate [%]", "open contact nodes [-]")
+
+    def read(self, change=lambda mu, load, row: row):
+        """Unstable from 0.2 on under the larger load alone, undecided before."""
+        rows = []
+        for load in (100, 1000):
+            for mu in (0, 0.1, 0.2, 0.3):
+                grows, is_loaded = load > 500 and mu > 0.15, load > 500 and mu > 0.05
+                rows.append(change(mu, load, (mu, load, 2 if grows else 0, int(is_loaded), "F1" if grows else "", 3 if grows else 0, 0)))
+        self.write("map", self.COLUMNS, rows)
+        return Table(self.folder / "map.csv")
+
+    def patches(self, axes, label):
+        return [patch.get_bbox().x0 + 0.5 * patch.get_width() for patch in axes.patches if patch.get_label() == label]
+
+    def test_cells_and_limits(self):
+        table = self.read()
+        panel, counts, *bars = stability_map.map_figure(table).axes
+        self.assertEqual([bar.get_ylabel() for bar in bars], [style.DIVERGENCE, "unstable modes [-]"])
+        for axes, value in ((panel, 3), (counts, 2)):
+            self.assertEqual(axes.get_ylabel(), "load per side [N]")
+            self.assertEqual([cell for cell in axes.collections[0].get_array().ravel().tolist() if cell is not None], [value, value])
+            undecided, = self.patches(axes, "undecided")
+            self.assertAlmostEqual(undecided, 0.1)
+            self.assertEqual(self.patches(axes, "not computed"), [])
+            self.assertEqual(len(self.patches(axes, "stable")), 5)
+            # The limit runs up beside one cell and along below two
+            self.assertEqual(points_and_parts(line_of(axes, "limit of stability")), (2 + 3, 2))
+            self.assertEqual(line_of(axes, "change of the contact set"), [])
+        self.assertEqual([text.get_text() for text in panel.texts], ["F1"])
+        self.assertEqual([text.get_text() for text in counts.texts], ["2", "2"])
+        # Half-way to the neighbours, on a logarithmic axis in their ratio
+        edges = stability_map.StabilityMap(table)
+        self.assertAlmostEqual(edges.x_edges[2], 0.15)
+        self.assertAlmostEqual(edges.y_edges[1], math.sqrt(1e5))
+        self.assertEqual(edges.x_edges[0], 0)
+
+    def test_contact_sets_and_missing_cells(self):
+        def opened(mu, load, row):
+            return (*row[:-1], 4) if (mu, load) == (0, 100) else row
+
+        axes = stability_map.map_figure(self.read(opened)).axes[0]
+        self.assertEqual(points_and_parts(line_of(axes, "change of the contact set")), (2 + 2, 2))
+
+        def missing(mu, load, row):
+            return (mu, load, "", "", "", "", 4) if (mu, load) == (0, 100) else row
+
+        axes = stability_map.map_figure(self.read(missing)).axes[0]
+        self.assertEqual(line_of(axes, "change of the contact set"), [])
+        self.assertEqual(len(self.patches(axes, "not computed")), 1)
+
+    def test_one_cell(self):
+        self.write("map", self.COLUMNS, [(0.4, 1000, 0, 0, "", 0, 0)])
+        self.assertEqual(len(stability_map.map_figure(Table(self.folder / "map.csv")).axes), 4)
+
+    def test_ticks(self):
+        self.assertEqual(stability_map.logarithmic_ticks(80, 600), [100, 200, 500])
+        self.assertEqual(stability_map.logarithmic_ticks(0.8, 2e5), [1, 10, 100, 1e3, 1e4, 1e5])
+
+
+class Reduction(PlotTest):
+    def write_bases(self, errors):
+        """One group; rows of basis, component modes, solve time, and the four errors."""
+        self.write("reduction_bases", ("basis", "component modes", "build time [s]", "solve time [s]"),
+                   [(name, truncation, 10 * seconds, seconds) for name, truncation, seconds, *_ in errors])
+        self.write("reduction_errors", ("basis", "component modes", "group", "res [-]", "mac [-]", "frq [-]", "div [-]"),
+                   [(name, truncation, "disc", *values) for name, truncation, _, *values in errors])
+        return reduction.read_candidates(Results(self.folder))
+
+    def test_zero_lies_at_the_floor(self):
+        candidates = self.write_bases([("free", "", 1, 1e-3, 1e-3, 1e-5, 0), ("real", "", 2, 1e-3, 1e-3, 1e-4, 1e-6)])
+        axes, = reduction.error_figure(candidates).axes
+        self.assertEqual([y for _, y in line_of(axes, "free")], [1e-3, 1e-3, 1e-5, reduction.FLOOR])
+        self.assertEqual(line_of(axes, reduction.AT_FLOOR)[0][1], reduction.FLOOR)
+        self.assertEqual([text.get_text() for text in axes.get_xticklabels()], list(reduction.CRITERIA.values()))
+
+    def test_without_growth_there_is_no_error_of_it(self):
+        axes, = reduction.error_figure(self.write_bases([("free", "", 1, 1e-3, 1e-3, 1e-5, 0)])).axes
+        self.assertEqual([text.get_text() for text in axes.get_xticklabels()], list(reduction.CRITERIA.values())[:3])
+
+    def test_panels_of_truncations(self):
+        rows = [("free", "9/9/9", 1, 1e-3, 1e-3, 1e-5, 1e-4), ("free", "8/8/8", 1, 1e-3, 1e-3, 1e-5, 1e-4), ("real", "", 1, 1e-3, 1e-3, 1e-5, 1e-4)]
+        axes = reduction.error_figure(self.write_bases(rows)).axes
+        self.assertEqual([panel.get_title() for panel in axes], ["disc, component modes 9/9/9", "disc, component modes 8/8/8"])
+        for panel in axes:
+            self.assertTrue(line_of(panel, "free") and line_of(panel, "real"))
+
+    def test_pareto_front(self):
+        rows = [("a", "", 1, 1, 1, 1, 1e-2), ("b", "", 3, 1, 1, 1, 1e-5), ("c", "", 2, 1, 1, 1, 1e-1)]
+        axes = reduction.cost_figure(self.write_bases(rows), True).axes
+        self.assertEqual(line_of(axes[0], "Pareto front"), [(1, 1e-2), (3, 1e-5)])
+        self.assertEqual(line_of(axes[1], "b"), [(30, 1e-5)])
+
+    def test_bases_look_different(self):
+        looks = {tuple(style.mark_of(number).values()) for number in range(24)}
+        self.assertEqual(len(looks), 24)
+        # Without colours
+        self.assertEqual(len({(marker, face == "white") for _, marker, face in looks}), 24)
+
+
+class Refusals(PlotTest):
+    def refused(self, *words):
+        with self.assertRaises(ResultsError) as caught:
+            self.charts()
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+
+    def test_tables(self):
+        self.write_chart()
+        file = self.folder / "branches.csv"
+        text = file.read_text(encoding="utf-8")
+        file.write_text(text.replace("growing [-]", "other"), encoding="utf-8")
+        self.refused("no column `growing [-]`", "branches.csv")
+        file.write_text(text.replace("9.5,", "9.5x,", 1), encoding="utf-8")
+        self.refused("`9.5x` is no number", "line 2", "column `frequency [Hz]`")
+        file.write_text(text[:-4] + "\n", encoding="utf-8")
+        self.refused("one cell for each column", f"line {len(text.splitlines())}")
+
+    def test_parameters(self):
+        self.write_chart()
+        self.write_parameters({"Operation": {"Radial dissipation": "none"}})
+        self.refused("Band/Maximum frequency", "parameters.prm")
+        self.write_parameters({**PARAMETERS, "Band": {"Maximum frequency": "high"}})
+        self.refused("`high`", "Band/Maximum frequency")
+
+
+if __name__ == "__main__":
+    unittest.main()
