@@ -93,8 +93,8 @@ def draw(folder, ending, output):
         for name, content in pictures.items():
             replace(place / name, content)
     except OSError as problem:
-        raise ResultsError(f"the plots cannot be written: {problem}", f"folder {place}", "check permissions and free space, or give --output DIR") \
-            from problem
+        change = "check permissions and free space, or give --output DIR"
+        raise ResultsError(f"the plots cannot be written: {problem}", f"folder {place}", change) from problem
     return [place / name for name in pictures], remarks
 
 

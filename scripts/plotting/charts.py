@@ -58,8 +58,8 @@ class Chart:
         for branch, mu, label, frequency, divergence, grows, verdict in zip(*columns):
             self.labels[int(branch)] = label
             self.modes.setdefault(int(branch), {})[mu] = Mode(label, frequency, divergence, grows, verdict == "undecided")
-        columns = (thresholds.numbers("mu [-]"), thresholds.texts("event"), thresholds.numbers("branch [-]"), thresholds.texts("partner [-]"),
-                   thresholds.numbers("frequency [Hz]"))
+        columns = (thresholds.numbers("mu [-]"), thresholds.texts("event"), thresholds.numbers("branch [-]"),
+                   thresholds.texts("partner [-]"), thresholds.numbers("frequency [Hz]"))
         self.thresholds = [Threshold(mu, event, int(branch), int(partner) if partner else None, frequency)
                            for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]
 

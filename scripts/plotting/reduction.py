@@ -74,7 +74,8 @@ def error_figure(candidates):
     names = in_order(candidate.name for candidate in candidates)
     # Where nothing grows there is no error of growth
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
-    picture = style.Picture("Errors of reduced bases: largest of each group of modes", len(truncations) * len(groups), len(groups), (4.9, 3.6))
+    title = "Errors of reduced bases: largest of each group of modes"
+    picture = style.Picture(title, len(truncations) * len(groups), len(groups), (4.9, 3.6))
     panels = iter(picture.panels)
     for truncation in truncations:
         for group in groups:

@@ -47,11 +47,12 @@ class Table:
     def numbers(self, column):
         """Numbers of a column, NaN for an empty cell. Throws ResultsError if a cell holds something else."""
         result = []
-        for number, text in enumerate(self.texts(column), start=2):
+        for line, text in enumerate(self.texts(column), start=2):
             try:
                 result.append(float(text) if text else math.nan)
             except ValueError:
-                raise ResultsError(f"`{text}` is no number", f"file {self.path}, line {number}, column `{column}`", "run squeal again") from None
+                where = f"file {self.path}, line {line}, column `{column}`"
+                raise ResultsError(f"`{text}` is no number", where, "run squeal again") from None
         return result
 
     def flags(self, column):
@@ -75,8 +76,8 @@ class Results:
             self.record = dict(json.loads(self.record_text))
             self.parameters = read_parameters(self.folder / "parameters.prm")
         except (OSError, TypeError, ValueError) as problem:
-            raise ResultsError(f"the record of the run or its parameters cannot be read: {problem}", f"folder {folder}", "run squeal again") \
-                from problem
+            what = f"the record of the run or its parameters cannot be read: {problem}"
+            raise ResultsError(what, f"folder {folder}", "run squeal again") from problem
 
     @property
     def record_file(self):
@@ -111,5 +112,5 @@ class Results:
         try:
             return [float(word) for word in text.split(",")] if text.strip() else []
         except ValueError:
-            raise ResultsError(f"`{text}` is no list of numbers", f"file {self.folder / 'parameters.prm'}, parameter {name}",
-                               "run squeal again") from None
+            where = f"file {self.folder / 'parameters.prm'}, parameter {name}"
+            raise ResultsError(f"`{text}` is no list of numbers", where, "run squeal again") from None

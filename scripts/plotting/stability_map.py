@@ -145,17 +145,18 @@ def draw_cells(panel, stability, values, norm):
     for label, mask, colour, hatch in looks:
         for row, column in stability.cells():
             if mask[row, column]:
-                panel.add_patch(Rectangle((x[column], y[row]), x[column + 1] - x[column], y[row + 1] - y[row], facecolor=colour, hatch=hatch,
-                                          edgecolor="#999999", linewidth=0.3, label=label))
+                panel.add_patch(Rectangle((x[column], y[row]), x[column + 1] - x[column], y[row + 1] - y[row], facecolor=colour,
+                                          hatch=hatch, edgecolor="#999999", linewidth=0.3, label=label))
 
 
 def draw_limits(panel, stability, with_leaders):
-    lines = []
+    """Lines between cells that differ in stability, contact set or most unstable mode."""
+    is_unstable, leader, n_open = stability.is_unstable, stability.leader, stability.n_open
+    lines = [("change of the contact set", {"linewidth": 1.4, "linestyle": (0, (5, 3))}, lambda a, b: n_open[a] != n_open[b]),
+             ("limit of stability", {"linewidth": 2.8}, lambda a, b: is_unstable[a] != is_unstable[b])]
     if with_leaders:
-        lines.append(("change of the most unstable mode", {"linewidth": 0.9}, lambda a, b: stability.is_unstable[a] and stability.is_unstable[b]
-                      and stability.leader[a] != stability.leader[b]))
-    lines.append(("change of the contact set", {"linewidth": 1.4, "linestyle": (0, (5, 3))}, lambda a, b: stability.n_open[a] != stability.n_open[b]))
-    lines.append(("limit of stability", {"linewidth": 2.8}, lambda a, b: stability.is_unstable[a] != stability.is_unstable[b]))
+        lines.insert(0, ("change of the most unstable mode", {"linewidth": 0.9},
+                         lambda a, b: is_unstable[a] and is_unstable[b] and leader[a] != leader[b]))
     for label, look, differ in lines:
         if edges := limits(stability, differ):
             panel.plot(*zip(*edges), color=style.BLACK, label=label, **look)
@@ -208,10 +209,10 @@ def map_figure(table):
         prepare(panel, stability, title)
         draw_cells(panel, stability, values, norm)
         draw_limits(panel, stability, panel is rates)
-        bar = picture.figure.colorbar(ScalarMappable(norm, SCALE), ax=panel, label=label)
+        scale = picture.figure.colorbar(ScalarMappable(norm, SCALE), ax=panel, label=label)
         if norm is count_norm:
-            bar.set_ticks([tick for tick in range(1, n_largest + 1) if n_largest <= MOST_STEPS or tick % 2 == 0])
-            bar.ax.minorticks_off()
+            scale.set_ticks([tick for tick in range(1, n_largest + 1) if n_largest <= MOST_STEPS or tick % 2 == 0])
+            scale.ax.minorticks_off()
     draw_leaders(rates, stability)
     draw_counts(counts, stability, picture.size)
     return picture.add_key()

@@ -20,6 +20,8 @@ except ModuleNotFoundError as missing:
 BAND = 100.0  # [Hz]
 PARAMETERS = {"Band": {"Maximum frequency": BAND}, "Operation": {"Radial dissipation": "none", "Friction coefficient": 0.4},
               "Sweep": {"Mode shapes at": ""}, "Reduction": {"Problem": "friction"}}
+BRANCHES = ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]")
+THRESHOLDS = ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]")
 
 
 def line_of(axes, label):
@@ -68,9 +70,9 @@ class PlotTest(unittest.TestCase):
                 rows.append((mu, branch, label, frequency, rate, verdict, int(rate > 0)))
             if k != 2:
                 rows.append((mu, 3, "F1", 50, -1, "undecided" if (3, k) in undecided else "stable", 0))
-        self.write("branches" + suffix, ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]"), rows)
+        self.write("branches" + suffix, BRANCHES, rows)
         events = [(0.25, "onset", 1, 2, 10), (0.3, "onset", 1, "", 2 * BAND)] if with_threshold else []
-        self.write("thresholds" + suffix, ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]"), events)
+        self.write("thresholds" + suffix, THRESHOLDS, events)
         self.write("counts" + suffix, ("mu [-]",), [(0.1 * k,) for k in range(5)])
 
     def charts(self):
@@ -136,9 +138,8 @@ class Charts(PlotTest):
 
     def test_one_value(self):
         """A line of one point would not be seen."""
-        self.write("branches", ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]"),
-                   [(0.4, 1, "F1", 50, 0.5, "unstable", 1)])
-        self.write("thresholds", ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]"), [])
+        self.write("branches", BRANCHES, [(0.4, 1, "F1", 50, 0.5, "unstable", 1)])
+        self.write("thresholds", THRESHOLDS, [])
         self.write("counts", ("mu [-]",), [(0.4,)])
         for figure in branches.figures(Results(self.folder)).values():
             for line in figure.axes[0].get_lines():
@@ -169,7 +170,8 @@ class ComplexPlane(PlotTest):
         self.assertEqual(len(line_of(picture.panels[0], "run")), 1)
 
     def test_static_divergence_is_said(self):
-        self.write("complex_modes", ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]"), [("F1", 50, 0.1, 1), ("F1", 51, -0.1, 0)])
+        columns = ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]")
+        self.write("complex_modes", columns, [("F1", 50, 0.1, 1), ("F1", 51, -0.1, 0)])
         self.write("real_eigenvalues", ("growth rate [1/s]", "kind"), [(12.5, "static divergence"), (-3, "decay")])
         axes, = complex_plane.run_figure(Results(self.folder)).axes
         self.assertTrue(any("1 real" in text.get_text() and "12.5" in text.get_text() for text in axes.texts))
@@ -182,7 +184,8 @@ class ComplexPlane(PlotTest):
 
 
 class Maps(PlotTest):
-    COLUMNS = ("mu [-]", "load per side [N]", "unstable modes [-]", "undecided modes [-]", "label", "divergence rate [%]", "open contact nodes [-]")
+    COLUMNS = ("mu [-]", "load per side [N]", "unstable modes [-]", "undecided modes [-]", "label", "divergence rate [%]",
+               "open contact nodes [-]")
 
     def read(self, change=lambda mu, load, row: row):
         """Unstable from 0.2 on under the larger load alone, undecided before."""
@@ -263,7 +266,8 @@ class Reduction(PlotTest):
         self.assertEqual([text.get_text() for text in axes.get_xticklabels()], list(reduction.CRITERIA.values())[:3])
 
     def test_panels_of_truncations(self):
-        rows = [("free", "9/9/9", 1, 1e-3, 1e-3, 1e-5, 1e-4), ("free", "8/8/8", 1, 1e-3, 1e-3, 1e-5, 1e-4), ("real", "", 1, 1e-3, 1e-3, 1e-5, 1e-4)]
+        errors = (1e-3, 1e-3, 1e-5, 1e-4)
+        rows = [("free", "9/9/9", 1, *errors), ("free", "8/8/8", 1, *errors), ("real", "", 1, *errors)]
         axes = reduction.error_figure(self.write_bases(rows)).axes
         self.assertEqual([panel.get_title() for panel in axes], ["disc, component modes 9/9/9", "disc, component modes 8/8/8"])
         for panel in axes:
