@@ -5,6 +5,7 @@ import math
 from plotting import charts, complex_plane, style
 
 FAMILIES_PER_PICTURE = 3
+NAME_LENGTH = 0.2  # of a panel, beside which a curve must not cross its name
 NAME_MARGIN = 0.1  # room for names above and below the frequencies of a family, in shares of their range
 
 # Of the charts without and with dissipation; the first one lies on top, and the other one is wider, to be seen beside it
@@ -74,19 +75,20 @@ def draw_curves(panel, all_charts, chosen, quantity, width):
 
 
 def add_names(panel, chart, branches):
-    """Names where branches begin, the lowest one below its curve."""
+    """Names where branches begin, above their curves, the lowest one below."""
     labels = [chart.labels[branch] for branch in branches]
+    length = NAME_LENGTH * (chart.mus[-1] - chart.mus[0])
     starts = []
     for branch in branches:
         # A name that many branches share says no more than the title
         if labels.count(chart.labels[branch]) == 1:
-            point = next(point for point in chart.curve(branch) if point.is_shown)
-            starts.append((point.frequency, point.mu, chart.labels[branch]))
-    for i, (frequency, mu, label) in enumerate(sorted(starts)):
+            points = [point for point in chart.curve(branch) if point.is_shown]
+            beside = [point.frequency for point in points if point.mu <= points[0].mu + length]
+            starts.append((points[0].frequency, points[0].mu, beside, chart.labels[branch]))
+    for i, (_, mu, beside, label) in enumerate(sorted(starts)):
         is_below = i == 0 and len(starts) > 1
-        panel.annotate(label, (mu, frequency), xytext=(4, -4 if is_below else 4), textcoords="offset points", fontsize=style.SMALL,
-                       verticalalignment="top" if is_below else "bottom", zorder=8,
-                       bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.7, "pad": 0.5})
+        panel.annotate(label, (mu, min(beside) if is_below else max(beside)), xytext=(4, -4 if is_below else 4), textcoords="offset points",
+                       fontsize=style.SMALL, verticalalignment="top" if is_below else "bottom", zorder=8)
 
 
 def growing_families(all_charts):
