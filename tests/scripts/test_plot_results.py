@@ -160,6 +160,13 @@ class ComplexPlane(PlotTest):
         self.assertEqual(line_of(last, "undecided"), [(0.050, -1.0)])
         self.assertEqual([text.get_text() for text in last.texts], ["A0-4 -"])
 
+    def test_growth_that_is_undecided_has_no_ring(self):
+        self.write_chart(undecided=[(1, 4)])
+        axes, = complex_plane.sweep_figure(self.charts(), [0.4], BAND).axes
+        self.assertEqual(line_of(axes, "growing"), [])
+        self.assertEqual(len(line_of(axes, "undecided")), 1)
+        self.assertEqual(len(axes.texts), 0)
+
     def test_faster_decay_lies_at_the_edge(self):
         modes = [charts.Mode("F1", 50, 0.1, True, False), charts.Mode("T1", 60, -5, False, False)]
         picture = style.Picture("", 1, 1)
