@@ -69,7 +69,7 @@ namespace Squeal
     /// Name of the finished folder, as the user has it.
     const std::string &name() const;
 
-    /// File that marks a folder as the result of a run, and lists its files.
+    /// File that marks a folder as the result of a run, and lists its files; scripts add the pictures that they draw of them.
     static constexpr const char *run_record = "run.json";
 
   private:
