@@ -1,10 +1,9 @@
+#include <squeal/assembly/cell_integrals.h>
 #include <squeal/assembly/elasticity.h>
 #include <squeal/base/exceptions.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 
 #include <algorithm>
 #include <functional>
@@ -17,38 +16,6 @@ namespace Squeal
 
   namespace
   {
-    /// Numbers of a cell's free dofs; local positions of the clamped ones are left out.
-    struct FreeDofs
-    {
-      std::vector<TrilinosWrappers::types::int_type> numbers;
-      std::vector<unsigned int>                      local;
-
-      void reinit(const Model &model, const std::vector<types::global_dof_index> &cell_dofs)
-      {
-        numbers.clear();
-        local.clear();
-        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
-          if (const int number = model.free_dof(cell_dofs[i]); number >= 0)
-            {
-              numbers.push_back(number);
-              local.push_back(i);
-            }
-      }
-    };
-
-    void add_to(TrilinosWrappers::SparseMatrix &matrix, const FreeDofs &dofs, const FullMatrix<double> &cell_matrix)
-    {
-      const unsigned int               n = dofs.numbers.size();
-      std::vector<types::global_dof_index> columns(dofs.numbers.begin(), dofs.numbers.end());
-      std::vector<double>              values(n);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          for (unsigned int j = 0; j < n; ++j)
-            values[j] = cell_matrix(dofs.local[i], dofs.local[j]);
-          matrix.add(columns[i], columns, values);
-        }
-    }
-
     /// Refuses an element that is turned inside out, as curved edges can do where straight ones do not.
     void check_orientation(const FEValues<3> &values, const std::string &component)
     {
@@ -61,45 +28,6 @@ namespace Squeal
                             "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
                             "Geometry/Element size, or use Discretization/Degree = 1");
           }
-    }
-
-    using Cell      = DoFHandler<3>::active_cell_iterator;
-    using Predicate = std::function<bool(const Cell &)>;
-    using Integral  = std::function<void(const Cell &, FullMatrix<double> &)>;
-
-    /// The sum of an integral over those cells that contribute.
-    std::shared_ptr<const SparseMatrix> assemble_cells(const Model &model, const Predicate &contributes, const Integral &integral)
-    {
-      IndexSet owned(model.free_map().NumGlobalElements());
-      if (model.free_map().NumMyElements() > 0)
-        owned.add_range(model.free_map().MinMyGID(), model.free_map().MaxMyGID() + 1);
-      TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator());
-      TrilinosWrappers::SparseMatrix       matrix;
-      const unsigned int                   n = model.dof_handler().get_fe().n_dofs_per_cell();
-      std::vector<types::global_dof_index> cell_dofs(n);
-      FullMatrix<double>                   cell_matrix(n, n);
-      FreeDofs                             free;
-      const auto                           for_cells = [&](const std::function<void(const Cell &)> &action) {
-        for (const auto &cell : model.dof_handler().active_cell_iterators())
-          if (cell->is_locally_owned() && contributes(cell))
-            {
-              cell->get_dof_indices(cell_dofs);
-              free.reinit(model, cell_dofs);
-              action(cell);
-            }
-      };
-      for_cells([&](const Cell &) {
-        for (const auto row : free.numbers)
-          pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
-      });
-      pattern.compress();
-      matrix.reinit(pattern);
-      for_cells([&](const Cell &cell) {
-        integral(cell, cell_matrix);
-        add_to(matrix, free, cell_matrix);
-      });
-      matrix.compress(VectorOperation::add);
-      return std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(matrix.trilinos_matrix()));
     }
 
     /// ∫ 2 G ε:ε + Λ div div over one cell for E = 1.
@@ -173,7 +101,7 @@ namespace Squeal
     {
       FEValues<3> values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
                          update_values | update_gradients | update_JxW_values);
-      const Predicate belongs = [is_disc](const Cell &cell) { return (cell->material_id() == 0) == is_disc; };
+      const CellPredicate belongs = [is_disc](const Cell &cell) { return (cell->material_id() == 0) == is_disc; };
       const auto      K       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
         values.reinit(cell);
         check_orientation(values, model.component_names()[cell->material_id()]);
@@ -204,7 +132,7 @@ namespace Squeal
       const auto               is_mounted = [surface](const Cell &cell, const unsigned int f) {
         return cell->at_boundary(f) && cell->face(f)->boundary_id() == surface;
       };
-      const Predicate has_mount = [&](const Cell &cell) {
+      const CellPredicate has_mount = [&](const Cell &cell) {
         const auto faces = cell->face_indices();
         return std::any_of(faces.begin(), faces.end(), [&](const unsigned int f) { return is_mounted(cell, f); });
       };
