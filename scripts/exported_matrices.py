@@ -4,13 +4,14 @@ The files of DIRECTORY/matrices, in Matrix Market form, are
 
     M, K            n x n    mass and stiffness of disc and pins, not yet coupled, clamped dofs gone
     C               n x n    damping of the materials
+    G               n x n    gyroscopic forces of the disc; missing where they are left out
     C_b             n x n    damping of the contact, along the radius and along the sliding
     P_n, P_t, P_b   n_c x n  relative displacement disc minus pin, normal, along the sliding, along the radius
     T_c             n x n_k  basis of the kernel of P_n
 
 and the problem is (lambda^2 M~_c + lambda C_c + K~_c) phi = 0 with
 
-    K~ = K - mu/2 P_t^T P_n K,  M~ = M - mu/2 P_t^T P_n M,  C~ = C - mu/2 P_t^T P_n C + C_b,
+    K~ = K - mu/2 P_t^T P_n K,  M~ = M - mu/2 P_t^T P_n M,  C~ = C + G - mu/2 P_t^T P_n (C + G) + C_b,
     K~_c = T_c^T K~ T_c, M~_c and C_c likewise.
 
 Nothing here is taken from the program but these matrices, so that what follows is independent of it.
@@ -52,10 +53,13 @@ class QuadraticProblem:
 
 
 def read_matrices(directory):
-    """A dictionary name -> csr matrix of the eight exported matrices."""
+    """A dictionary name -> csr matrix of the exported matrices."""
     matrices = {}
-    for name in ("M", "C", "K", "C_b", "P_n", "P_t", "P_b", "T_c"):
+    for name in ("M", "C", "K", "G", "C_b", "P_n", "P_t", "P_b", "T_c"):
         path = pathlib.Path(directory) / "matrices" / f"{name}.mtx"
+        if not path.is_file() and name == "G":
+            matrices[name] = sparse.csr_matrix(matrices["C"].shape)
+            continue
         if not path.is_file():
             sys.exit(f"{path} is missing; run squeal with --set \"Output/Write matrices=true\".")
         matrices[name] = sparse.csr_matrix(scipy.io.mmread(path))
@@ -72,9 +76,10 @@ def couple(matrices, friction_coefficient):
         projected.sum_duplicates()
         return projected
 
+    bodies = matrices["C"] + matrices["G"]
     return QuadraticProblem(
         mass=project(matrices["M"] + friction @ matrices["M"]),
-        damping=project(matrices["C"] + friction @ matrices["C"] + matrices["C_b"]),
+        damping=project(bodies + friction @ bodies + matrices["C_b"]),
         stiffness=project(matrices["K"] + friction @ matrices["K"]),
     )
 
@@ -97,6 +102,7 @@ def structure_errors(matrices):
     for name in ("M", "C", "K", "C_b"):
         matrix = matrices[name]
         errors[f"{name} - {name}^T"] = largest(matrix - matrix.T) / (largest(matrix) or 1.0)
+    errors["G + G^T"] = largest(matrices["G"] + matrices["G"].T) / (largest(matrices["G"]) or 1.0)
     return errors
 
 

@@ -11,6 +11,10 @@ namespace Squeal
     add_number_parameter(prm, "Friction coefficient", friction_coefficient, "Coulomb's coefficient mu. Units: none.", Double(0., 10.));
     add_enum_parameter(prm, "Rotation", rotation, "Sense of rotation about the z axis: the disc slides along +e_theta or -e_theta.");
     add_number_parameter(prm, "Rotation speed", rotation_speed, "Angular speed of the disc. Units: rad/s.", Double(0.));
+    prm.add_parameter("Gyroscopic forces", rotating_disc,
+                      "Whether the equations of motion of the disc contain its rotation, seen from the fixed frame: gyroscopic forces and "
+                      "convective stiffness.",
+                      dealii::Patterns::Bool());
     add_number_parameter(prm, "Load per side", load_per_side, "Normal force with which the pins of one side press. Units: N.", Double(0.));
     add_enum_parameter(prm, "Radial dissipation", radial_dissipation,
                        "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
@@ -20,5 +24,10 @@ namespace Squeal
                          "c_t = slope R_n0 per node, so that a falling slope destabilises. Units: s/m.",
                          Double(-10., 10.));
     prm.leave_subsection();
+  }
+
+  double OperationParameters::angular_velocity() const
+  {
+    return rotation == Rotation::positive ? rotation_speed : -rotation_speed;
   }
 } // namespace Squeal

@@ -5,6 +5,8 @@
 #include <squeal/linear_algebra/matrix_operator.h>
 #include <squeal/stability/krylov_modes.h>
 
+#include <algorithm>
+
 namespace Squeal
 {
   namespace
@@ -40,15 +42,23 @@ namespace Squeal
       ParameterValues                     values;
     };
 
-    /// Q(s)⁻¹ at friction coefficient @p mu, by @p inverse or by factors kept in @p lu.
+    /// Whether UpdatedInverse, whose factor is that of a symmetric matrix, holds all terms.
+    bool is_symmetric(const std::vector<Term> &terms, const ParameterValues &values)
+    {
+      return std::none_of(terms.begin(), terms.end(),
+                          [&values](const Term &term) { return term.symmetry == Symmetry::skew && !term.vanishes(values); });
+    }
+
+    /// Q(s)⁻¹ at friction coefficient @p mu, by @p inverse where it @p fits, or by factors kept in @p lu.
     const LinearOperator &inverse_with_friction(const SecondOrderSystem        &matrices,
                                                 const double                    shift,
                                                 const double                    mu,
                                                 const SolverParameters         &parameters,
+                                                const bool                      fits,
                                                 UpdatedInverse                 &inverse,
                                                 std::unique_ptr<Factorization> &lu)
     {
-      if (parameters.shift_inverse == ShiftInverse::updated_cholesky)
+      if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || shift == 0.))
         {
           inverse.set_friction_coefficient(mu);
           return inverse;
@@ -84,7 +94,7 @@ namespace Squeal
     std::vector<Term>     sparse, others;
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
-    const bool has_full_terms = !terms_of(others, values, 1).empty();
+    const bool has_full_terms = !terms_of(others, values, 1).empty(), symmetric = is_symmetric(sparse, values);
     // The inverse would hold them
     if (shift != 0. && has_full_terms)
       throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver",
@@ -111,7 +121,7 @@ namespace Squeal
     std::unique_ptr<Factorization> lu;
     try
       {
-        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, inverse, lu), options));
+        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, symmetric, inverse, lu), options));
       }
     catch (const SolverError &)
       {
@@ -121,7 +131,7 @@ namespace Squeal
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
-        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, shifted, lu), options));
+        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, symmetric, shifted, lu), options));
         modes.summary += ", shifted";
       }
     finish_modes(system, values, inverse, modes);

@@ -112,8 +112,11 @@ namespace Squeal
          [](const Parameters &p) {
            // Tables of the steady sliding state show the sliding speeds
            const bool is_shown = p.needs_steady_sliding() && (p.study == Study::stability || p.study == Study::dissipation);
-           return unless(is_shown || (p.has_friction() && p.has_contact_damping()), "no contact damping");
+           return unless(is_shown || (p.has_friction() && (p.has_contact_damping() || p.operation.rotating_disc)),
+                         "neither contact damping nor gyroscopic forces");
          }},
+        {"Operation/Gyroscopic forces",
+         [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem leaves the rotation out"); }},
         {"Operation/Load per side",
          [](const Parameters &p) {
            // Pins without an entry in Steady sliding/Loads share it

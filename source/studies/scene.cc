@@ -1,6 +1,8 @@
-#include <squeal/assembly/elasticity.h>
+#include <squeal/assembly/rotation.h>
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_count_estimate.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/linear_algebra/sparse.h>
@@ -33,6 +35,11 @@ namespace Squeal
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
                                  locking_poisson_ratio, " on bending frequencies are more than 1 % too high, growth rates less accurate "
                                  "still; set Discretization/Degree = 2"));
+    }
+
+    bool is_free_disc(const Scene &scene, const SecondOrderSystem &system, const Parameters &parameters)
+    {
+      return stabilizing_shift(*scene.model, system, circular_frequency(parameters.discretization.maximum_frequency)) > 0.;
     }
   } // namespace
 
@@ -73,9 +80,18 @@ namespace Squeal
   void assemble_scene(Scene &scene, Run &run)
   {
     run.progress.begin("Assembly");
-    const BodyTerms bodies = body_terms(*scene.model, run.parameters.materials);
-    scene.bodies           = merged(bodies.terms, bodies.values);
-    scene.system           = sparse_matrices(scene.bodies, bodies.values);
+    const Parameters &parameters = run.parameters;
+    BodyTerms         bodies     = body_terms(*scene.model, parameters.materials);
+    if (parameters.operation.rotating_disc && parameters.has_friction())
+      {
+        if (is_free_disc(scene, sparse_matrices(bodies.terms, bodies.values), parameters))
+          throw ParameterError("the disc is free or held softly: its motions as a rigid body are not stable in the fixed frame",
+                               "parameter Operation/Gyroscopic forces",
+                               "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
+        add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
+      }
+    scene.bodies = merged(bodies.terms, bodies.values);
+    scene.system = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->NumGlobalNonzeros(), " entries in K"));
   }
 

@@ -77,7 +77,13 @@ namespace Squeal
       // A matrix without entries where there is no damping, so that readers need no special case
       SparseMatrix zero(Copy, model.free_map(), 0);
       zero.FillComplete();
-      write(system.damping ? *system.damping : zero, "C", MatrixMarketSymmetry::symmetric);
+      const Term *symmetric = nullptr;
+      for (const Term &term : scene.bodies)
+        if (term.symmetry == Symmetry::skew)
+          write(*term.matrix, "G", MatrixMarketSymmetry::general);
+        else if (term.power == 1)
+          symmetric = &term;
+      write(symmetric ? *symmetric->matrix : zero, "C", MatrixMarketSymmetry::symmetric);
       write(damping ? *damping : zero, "C_b", MatrixMarketSymmetry::symmetric);
       write(*contact.normal, "P_n", MatrixMarketSymmetry::general);
       write(*contact.tangential, "P_t", MatrixMarketSymmetry::general);

@@ -50,6 +50,15 @@ class Matrices(ProgramTest):
             self.assertEqual(len(file.read().splitlines()), 1 + 4 * 7)
 
     @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
+    def test_gyroscopic_forces(self):
+        results = self.run_scene("rotating", "Output/Write matrices=true", "Operation/Gyroscopic forces=true",
+                                 "Operation/Radial dissipation=consistent")
+        self.assertTrue((results / "matrices" / "G.mtx").is_file())
+        check = subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "check_eigenvalues.py", results, "--solver", "scipy"],
+                               text=True, capture_output=True, check=False)
+        self.assertEqual(check.returncode, 0, check.stdout + check.stderr)
+
+    @unittest.skipUnless(importlib.util.find_spec("scipy"), "needs SciPy")
     def test_every_damping(self):
         """Open contact nodes, damping of the contact along both directions and of the materials, with friction's part in it."""
         results = self.run_scene("damped", "Output/Write matrices=true", "Steady sliding/Contact state=steady sliding",

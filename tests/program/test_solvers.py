@@ -110,6 +110,30 @@ class Rotation(ProgramTest):
         self.assertGreater(distance(self.values("negative", plan), self.values("positive", plan)), 1e-3)
 
 
+class GyroscopicForces(ProgramTest):
+    def test_both_solvers_and_lu(self):
+        values = [eigenvalues(self.run_scene("results", "Operation/Gyroscopic forces=true", *overrides))
+                  for overrides in ((), RESIDUAL_ITERATION,
+                                    ("Complex modes/Shift inverse=sparse LU",))]
+        for others in values[1:]:
+            self.assert_same_eigenvalues(others, values[0])
+        self.assertGreater(distance(eigenvalues(self.run_scene("results")), values[0]), 1e-5)
+
+    def test_sweep(self):
+        # Modes of a sweep are those of a single run
+        self.run_scene("sweep", "Operation/Gyroscopic forces=true", "Study=sweep", "Sweep/First friction coefficient=0",
+                       "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=3", "Sweep/Tolerance=1e-9")
+        rows = [row for row in read_table(self.folder / "sweep" / "branches.csv") if float(row["mu [-]"]) == 0.4]
+        found = [complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])) for row in rows]
+        for value in eigenvalues(self.run_scene("single", "Operation/Gyroscopic forces=true")):
+            self.assertLess(min(abs(other - value) for other in found), 1e-7 * abs(value))
+
+    def test_free_disc(self):
+        process = self.call("scene.prm", "--output", "refused", "--set", "Operation/Gyroscopic forces=true", "--set", "Mounts/Elastic mounts=")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("rigid body", process.stderr)
+
+
 class Mounts(ProgramTest):
     def test_free_disc(self):
         # Pins hold the disc only along its axis: it may move in its plane and turn.

@@ -46,10 +46,14 @@ namespace Squeal
     double            friction_coefficient = 0.4;   ///< μ [-]
     Rotation          rotation             = Rotation::positive;
     double            rotation_speed       = 4.;    ///< Ω [rad/s]
+    bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
     double            load_per_side        = 1000.; ///< [N]
     RadialDissipation radial_dissipation   = RadialDissipation::none;
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
 
     void add_parameters(dealii::ParameterHandler &prm);
+
+    /// ±Ω, positive about e_z [rad/s].
+    double angular_velocity() const;
   };
 } // namespace Squeal
