@@ -10,6 +10,15 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    void write_to_disk(const std::filesystem::path &file, const int flags, const std::initializer_list<std::string_view> &texts)
+    {
+      if (const int problem = write_file(file, flags, texts, true); problem != 0)
+        throw std::filesystem::filesystem_error("write", file, std::error_code(problem, std::generic_category()));
+    }
+  } // namespace
+
   int write_file(const std::filesystem::path                   &file,
                  const int                                      flags,
                  const std::initializer_list<std::string_view> &texts,
@@ -32,6 +41,18 @@ namespace Squeal
     if (descriptor >= 0 && ::close(descriptor) != 0 && problem == 0)
       problem = errno;
     return problem;
+  }
+
+  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts)
+  {
+    write_to_disk(file, O_APPEND, texts);
+  }
+
+  void replace_file(const std::filesystem::path &file, const std::string_view text)
+  {
+    const std::filesystem::path temporary = file.string() + ".incomplete";
+    write_to_disk(temporary, O_TRUNC, {text});
+    std::filesystem::rename(temporary, file);
   }
 
   bool file_ends_with(const std::filesystem::path &file, const std::string_view words)

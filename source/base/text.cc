@@ -64,4 +64,19 @@ namespace Squeal
   {
     return "`" + legible(text) + "`";
   }
+
+  std::string first_difference(const std::string &there, const std::string &here)
+  {
+    std::istringstream old_text(there), new_text(here);
+    std::string        old_line, new_line;
+    const auto         quoted = [](const std::istream &stream, const std::string &line) {
+      const auto first = line.find_first_not_of(" \t");
+      return stream && first != std::string::npos ? in_quotes(line.substr(first)) : "nothing";
+    };
+    while (std::getline(old_text, old_line) && std::getline(new_text, new_line) && old_line == new_line)
+      ;
+    if (!old_text)
+      std::getline(new_text, new_line);
+    return quoted(old_text, old_line) + " there, " + quoted(new_text, new_line) + " here";
+  }
 } // namespace Squeal

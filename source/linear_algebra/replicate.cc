@@ -1,9 +1,22 @@
 #include <squeal/linear_algebra/replicate.h>
 
 #include <Epetra_Comm.h>
+#include <Epetra_Import.h>
+
+#include <algorithm>
 
 namespace Squeal
 {
+  namespace
+  {
+    /// All rows of @p map on process 0.
+    Epetra_Map on_root(const Epetra_BlockMap &map)
+    {
+      const int n = map.NumGlobalElements();
+      return Epetra_Map(n, map.Comm().MyPID() == 0 ? n : 0, 0, map.Comm());
+    }
+  } // namespace
+
   DenseMatrix replicate(const MultiVector &X)
   {
     const int   n = X.GlobalLength(), k = X.NumVectors();
@@ -22,6 +35,28 @@ namespace Squeal
     for (int j = 0; j < X.n_columns(); ++j)
       for (int i = 0; i < map.NumMyElements(); ++i)
         result[j][i] = X(map.GID(i), j);
+    return result;
+  }
+
+  DenseMatrix gather(const MultiVector &X)
+  {
+    const Epetra_Map map = on_root(X.Map());
+    MultiVector      whole(map, X.NumVectors(), false);
+    whole.Import(X, Epetra_Import(map, X.Map()), Insert);
+    DenseMatrix result(whole.MyLength(), whole.NumVectors());
+    for (int j = 0; j < result.n_columns(); ++j)
+      std::copy(whole[j], whole[j] + result.n_rows(), result.column(j));
+    return result;
+  }
+
+  MultiVector scatter(const DenseMatrix &X, const Epetra_Map &map)
+  {
+    int n_columns = X.n_columns();
+    map.Comm().Broadcast(&n_columns, 1, 0);
+    MultiVector whole(on_root(map), n_columns, false), result(map, n_columns, false);
+    for (int j = 0; j < n_columns; ++j)
+      std::copy(X.column(j), X.column(j) + whole.MyLength(), whole[j]);
+    result.Import(whole, Epetra_Import(map, whole.Map()), Insert);
     return result;
   }
 } // namespace Squeal

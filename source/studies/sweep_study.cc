@@ -15,7 +15,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <ostream>
 #include <set>
@@ -157,23 +156,20 @@ namespace Squeal
       std::vector<CountAt> counts;
     };
 
-    /// Where an unfinished sweep keeps what it has found, and what it is the sweep of.
-    struct CheckpointPlace
-    {
-      std::string folder, key;
-    };
-
-    CheckpointPlace checkpoint_place(const Run &run)
+    /// Everything on which the results of a sweep depend: the version of the program, the parameters, the mesh.
+    std::string identity(const Run &run, const Scene &scene)
     {
       // What only adds to the results does not change them
       Parameters parameters        = run.parameters;
       parameters.output            = {};
       parameters.sweep.mode_shapes = {};
       parameters.sweep.counts      = {};
-      std::ostringstream key;
-      key << "# squeal " << version << '\n';
-      parameters.print(key, false);
-      return {checkpoint_folder(run.folder().name()), key.str()};
+      std::ostringstream stream;
+      stream << "# squeal " << version << '\n';
+      parameters.print(stream, false);
+      stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().NumGlobalElements() << " dofs, nodes "
+             << std::hex << checksum(scene.mesh) << '\n';
+      return stream.str();
     }
 
     bool is_in_band(const std::complex<double> &lambda, const double largest_frequency)
@@ -214,7 +210,7 @@ namespace Squeal
                   const std::size_t      number,
                   const std::vector<Line> &lines,
                   const ContactStates   &states,
-                  const CheckpointPlace &checkpoint,
+                  ChartCheckpoint       &checkpoint,
                   Run                   &run)
         : scene(scene)
         , regime(regime)
@@ -284,9 +280,7 @@ namespace Squeal
         CertifiedSweepOptions options;
         options.tolerance     = run.parameters.sweep.tolerance;
         options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
-        const auto store      = open_store("sweep");
-        if (store->n_found() > 0)
-          run.progress.note(text("  an interrupted sweep goes on: ", store->n_found(), " operating points are known"));
+        const auto store      = store_of("sweep");
         const CertifiedSweep sweep = certified_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
         for (std::size_t i = 0; i < points.size(); ++i)
           if (sweep.points[i])
@@ -300,11 +294,10 @@ namespace Squeal
                                  sweep.why_stopped, "; what is written was proved. Raise Sweep/Maximum basis or Sweep/Tolerance"));
       }
 
-      std::unique_ptr<ChartCheckpoint> open_store(const std::string &phase) const
+      /// Where a phase of the work on this contact set keeps its results.
+      std::unique_ptr<ChartStore> store_of(const std::string &phase) const
       {
-        // Not after anything that depends on parameters: a sweep of other ones must find what lies there
-        const std::string name = checkpoint.folder + "/contact_set_" + std::to_string(number) + "/" + phase;
-        return std::make_unique<ChartCheckpoint>(name, checkpoint.key, linearisation.coupled.map(), run.communicator, omega_max);
+        return checkpoint.part(text("contact set ", number, " of ", regime.closed.size(), " nodes, ", phase), linearisation.coupled.map());
       }
 
       /// Without friction as many modes as inertia counts.
@@ -402,7 +395,7 @@ namespace Squeal
         // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
         ChartOptions coarse        = options;
         coarse.maximum_refinements = 0;
-        refinements = open_store(text("line_", line, "_from_", friction_coefficients.front()));
+        refinements = store_of(text("line ", line, " from ", exact_text(friction_coefficients.front())));
         sharpen(line, chart_of(coarse), friction_coefficients);
         ChartLine result{chart_of(options), {}};
         refinements.reset();
@@ -631,13 +624,13 @@ namespace Squeal
       const std::size_t          number; ///< of the contact set, from one on
       const std::vector<Line>   &lines;
       const ContactStates       &states;
-      const CheckpointPlace     &checkpoint;
+      ChartCheckpoint           &checkpoint;
       Run                       &run;
       const double               omega_max;
       Linearisation              linearisation;
       FrictionlessModes          frictionless;
       std::unique_ptr<ChartModel> model;
-      std::unique_ptr<ChartCheckpoint> refinements; ///< of the line that is followed
+      std::unique_ptr<ChartStore> refinements; ///< of the line that is followed
       std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
     };
 
@@ -758,14 +751,16 @@ namespace Squeal
         run.progress.note("  dry run: nothing was computed or written");
         return;
       }
+    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), identity(run, scene), run.communicator, omega_max);
+    if (checkpoint.n_found() > 0)
+      run.progress.note(text("  an interrupted sweep goes on: ", checkpoint.n_found(), " operating points are known"));
     assemble_scene(scene, run);
     const ContactStates     states(scene, run);
     const std::vector<Line> lines   = lines_of(parameters);
     const auto              regimes = contact_regimes(lines, states, run);
 
     // ------------------------------------------------------------- every regime
-    const CheckpointPlace checkpoint = checkpoint_place(run);
-    SweepResults          results;
+    SweepResults results;
     for (std::size_t r = 0; r < regimes.size(); ++r)
       RegimeModel(scene, regimes[r], r + 1, lines, states, checkpoint, run).add_to(results);
 
@@ -806,7 +801,6 @@ namespace Squeal
     if (!results.map.empty())
       run.store_table("map", map_table(results, parameters.sweep.map_parameter));
     run.finish();
-    if (run.is_root)
-      std::filesystem::remove_all(checkpoint.folder);
+    checkpoint.remove();
   }
 } // namespace Squeal

@@ -43,3 +43,11 @@ TEST(Text, LongAndInvisibleTextsAreMadeLegible)
   EXPECT_EQ(legible(std::string(79, 'x') + "\u00b5m"), std::string(79, 'x') + "... (82 characters)");
   EXPECT_EQ(single_spaced(" a \t b\n"), "a b");
 }
+
+TEST(Text, TheFirstDifferenceIsNamed)
+{
+  EXPECT_EQ(first_difference("a\n  b = 1\nc", "a\n  b = 2\nd"), "`b = 1` there, `b = 2` here");
+  EXPECT_EQ(first_difference("a\nb\n", "a\n"), "`b` there, nothing here");
+  EXPECT_EQ(first_difference("a\n", "a\nb\n"), "nothing there, `b` here");
+  EXPECT_EQ(first_difference("a\n\n", "a\nb\n"), "nothing there, `b` here");
+}

@@ -164,6 +164,18 @@ TEST(GenerateMesh, SameParametersGiveTheSameMesh)
   expect_same(generate_mesh(one_pin()), generate_mesh(one_pin()));
 }
 
+TEST(GenerateMesh, ChecksumsTellMeshesApart)
+{
+  HexMesh    mesh = generate_mesh(one_pin());
+  const auto of   = checksum(mesh);
+  EXPECT_EQ(checksum(generate_mesh(one_pin())), of);
+  double &z = mesh.points.back()[2];
+  z += 1e-16; // rounding
+  EXPECT_EQ(checksum(mesh), of);
+  z += 1e-6;
+  EXPECT_NE(checksum(mesh), of);
+}
+
 TEST(GenerateMesh, PadPlanIsExtruded)
 {
   GeometryParameters parameters;

@@ -2,6 +2,7 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/replicate.h>
 
 #include <gtest/gtest.h>
 
@@ -30,6 +31,29 @@ namespace
     });
   }
 } // namespace
+
+
+
+TEST_P(MultiVectors, AreGatheredAndScattered)
+{
+  const int         n    = 50;
+  const Epetra_Map  map  = rows(n, GetParam());
+  const MultiVector X    = random_vectors(map, 3, 7);
+  const DenseMatrix all  = replicate(X);
+  DenseMatrix       root = gather(X);
+  EXPECT_EQ(root.n_rows(), map.Comm().MyPID() == 0 ? n : 0);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < root.n_rows(); ++i)
+      EXPECT_EQ(root(i, j), all(i, j));
+  if (map.Comm().MyPID() != 0)
+    root = DenseMatrix();
+  const MultiVector Y = scatter(root, map);
+  EXPECT_TRUE(Y.Map().SameAs(map));
+  ASSERT_EQ(Y.NumVectors(), 3);
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < Y.MyLength(); ++i)
+      EXPECT_EQ(Y[j][i], X[j][i]);
+}
 
 
 

@@ -15,6 +15,18 @@ namespace Squeal
    */
   int write_file(const std::filesystem::path &file, int flags, const std::initializer_list<std::string_view> &texts, bool on_disk);
 
+  /**
+   * Adds texts to the end of a file, on the disk when it returns. What has been written when it fails stays. Throws
+   * std::filesystem::filesystem_error.
+   */
+  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts);
+
+  /**
+   * Gives a file a new content by way of `FILE.incomplete`: at every moment it has the former one or all of the new one. Throws
+   * std::filesystem::filesystem_error.
+   */
+  void replace_file(const std::filesystem::path &file, std::string_view text);
+
   /// Whether a file is there and ends with these words, space apart: whether what a library has written there is complete.
   bool file_ends_with(const std::filesystem::path &file, std::string_view words);
 } // namespace Squeal

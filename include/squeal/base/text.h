@@ -22,4 +22,7 @@ namespace Squeal
 
   /// The same between back-quotes.
   std::string in_quotes(const std::string &text);
+
+  /// The first lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", or "nothing" where a text ends.
+  std::string first_difference(const std::string &there, const std::string &here);
 } // namespace Squeal

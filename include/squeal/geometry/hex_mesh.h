@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -35,6 +36,9 @@ namespace Squeal
     std::vector<std::string>   volume_names;   ///< "disc", then "pin_..."
     std::vector<std::string>   surface_names;
   };
+
+  /// Of the places of the nodes, to the nanometre: tells two meshes with the same numbers of nodes apart.
+  std::uint64_t checksum(const HexMesh &mesh);
 
   /// Physical names that every geometry uses.
   namespace PhysicalNames

@@ -1,13 +1,16 @@
 #pragma once
 
+#include <squeal/output/record_archive.h>
 #include <squeal/stability/certified_sweep.h>
 
 #include <Epetra_Map.h>
 #include <mpi.h>
 
 #include <functional>
-#include <optional>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Squeal
@@ -16,70 +19,70 @@ namespace Squeal
   std::string checkpoint_folder(const std::string &output);
 
   /**
-   * Keeps what a sweep has found in a folder, so that an interrupted run
-   * continues. It stays when a run fails, until remove(). All
-   * processes must call everything; process 0 alone reads and writes, and an
-   * error there is thrown on all.
+   * Keeps what a sweep has found in one archive, so that an interrupted run continues. It stays when a run fails, until
+   * remove(). All processes must call everything; process 0 alone reads and writes, and an error there is thrown on all.
    *
-   * `parameters.prm` tells whose sweep it is; `points.csv` is for the reader, with
-   * one row for each mode of the band. Results and blocks of the basis are
-   * binary files with every bit, their rows in the global order: a sweep may
-   * continue on another number of processes. A file appears under its name
-   * when it is complete. A result that is damaged nevertheless is computed anew; where
-   * a block is damaged or missing all is, since results and later blocks rest on it.
+   * The archive begins with the version of its format and what identifies the sweep; results and blocks of bases follow as they are
+   * found. Blocks have all rows in the order of their numbers: a sweep may continue on another number of processes. A
+   * damaged result is computed anew; where a block is damaged everything is, since results and later
+   * blocks rest on it. `points.csv` shows the reader every mode of the band.
    */
-  class ChartCheckpoint : public ChartStore
+  class ChartCheckpoint
   {
   public:
     /**
-     * Begins a sweep in @p folder, or finds the one that lies there.
+     * Reads the unfinished sweep that lies in @p folder, if there is one.
      *
-     * @param folder            created with its parents if need be
-     * @param key               text of a parameter file; names everything on which results depend, the version of the program included
-     * @param rows              of the vectors of the basis
+     * @param folder            created with its parents when the first result or block comes
+     * @param key               text that names everything on which results depend, the version of the program included
      * @param largest_frequency end of the band [rad/s], for `points.csv`
      *
      * Throws FileError if the unfinished sweep in @p folder has another key, if the folder
-     * holds something else, or if it cannot be read or written.
+     * holds something else, or if it cannot be read.
      */
-    ChartCheckpoint(const std::string &folder, const std::string &key, const Epetra_Map &rows, MPI_Comm communicator, double largest_frequency);
+    ChartCheckpoint(const std::string &folder, const std::string &key, MPI_Comm communicator, double largest_frequency);
 
-    /// Results that were there at the start.
+    /// Results that an earlier run has kept.
     int n_found() const;
 
-    std::optional<ChartPoint> find(const OperatingPoint &point) const override;
-
-    /// Throws FileError if the files cannot be written; what was kept before stays.
-    void keep(const OperatingPoint &point, const ChartPoint &result) override;
-
-    std::vector<MultiVector> basis() const override;
-
-    /// Throws FileError if the file cannot be written; what was kept before stays.
-    void keep(const MultiVector &block) override;
+    /**
+     * A part of the sweep that has a basis of its own with @p rows, as a store that refers to this checkpoint: it finds what an
+     * earlier run has kept there, and keeps what is found now. Throws FileError if it cannot; what was kept before stays.
+     */
+    std::unique_ptr<ChartStore> part(const std::string &name, const Epetra_Map &rows);
 
     /// Deletes the folder when nothing in it is needed any more; throws FileError if it cannot.
     void remove();
 
-    /// Whose sweep it is.
-    static constexpr const char *key_file = "parameters.prm";
-    /// What it has found, for the reader.
-    static constexpr const char *points_file = "points.csv";
+    static constexpr const char *archive_name = "sweep.archive";
+    static constexpr const char *points_name  = "points.csv";
 
   private:
+    class Part;
+    struct Record;
+
+    /// What an archive holds of a part: results by line and friction coefficient.
+    struct Contents
+    {
+      int                                          n_blocks = 0; ///< with those of this run
+      std::vector<DenseMatrix>                     blocks;
+      std::map<std::pair<int, double>, ChartPoint> results;
+    };
+
     /// Calls @p action on process 0; what it throws is thrown on all processes as a FileError.
     void on_root(const std::function<void()> &action) const;
 
     // On process 0 only:
-    void               open(const std::string &key);
-    bool               read_blocks();        ///< whether all are there
-    std::optional<int> read_results() const; ///< how many; nothing if they rest on blocks that are not there
-    void               start_afresh();
+    void open();
+    bool read(); ///< whether no block is missing on which others rest
+    void append(const Record &record);
 
-    std::string folder;
-    Epetra_Map  rows;
-    MPI_Comm    communicator;
-    bool        is_root;
-    double      largest_frequency;
-    int         n_blocks = 0, n_results = 0;
+    const std::string               folder, identity;
+    RecordArchive                   archive;
+    const MPI_Comm                  communicator;
+    const double                    largest_frequency;
+    std::map<std::string, Contents> parts;
+    bool                            is_begun  = false; ///< whether the archive is this sweep's
+    int                             n_results = 0;
   };
 } // namespace Squeal
