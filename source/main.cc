@@ -7,11 +7,8 @@
 #include <squeal/base/version.h>
 #include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
-#include <squeal/studies/dissipation_study.h>
 #include <squeal/studies/parameter_usage.h>
-#include <squeal/studies/reduction_study.h>
-#include <squeal/studies/stability_study.h>
-#include <squeal/studies/sweep_study.h>
+#include <squeal/studies/run.h>
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
@@ -40,26 +37,6 @@ Decides whether a disc rubbed by friction pins squeals.
   --version                  prints the version
   -h, --help                 prints this text
 )";
-
-  void run_study(Squeal::Run &run)
-  {
-    using namespace Squeal;
-    switch (run.parameters.study)
-      {
-        case Study::stability:
-          run_stability_study(run);
-          break;
-        case Study::dissipation:
-          run_dissipation_study(run);
-          break;
-        case Study::reduction:
-          run_reduction_study(run);
-          break;
-        case Study::sweep:
-          run_sweep_study(run);
-          break;
-      }
-  }
 
   void run(const Squeal::CommandLine &line,
            const std::string         &command,
@@ -98,7 +75,7 @@ Decides whether a disc rubbed by friction pins squeals.
     Run run(parameters, options, MPI_COMM_WORLD, progress, screen, interruption);
     if (const std::string note = unused_parameters_note(parameters); !note.empty())
       progress.note(note);
-    run_study(run);
+    parameters.study->run(run);
   }
 
   /// The message of a failed run; rethrows what is being handled.

@@ -202,6 +202,20 @@ namespace Squeal
       return {single_spaced(text.substr(0, equal)), dealii::Utilities::trim(text.substr(equal + 1)), where};
     }
 
+    /// Declares the parameter that names the study.
+    void add_study(dealii::ParameterHandler &prm, const Study *&study)
+    {
+      std::string names;
+      for (const Study *known : studies())
+        names += (names.empty() ? "" : "|") + std::string(known->name);
+      prm.declare_entry("Study", study->name, dealii::Patterns::Selection(names), "The question that the run answers.");
+      prm.add_action("Study", [&study](const std::string &name) {
+        for (const Study *known : studies())
+          if (known->name == name)
+            study = known;
+      });
+    }
+
     /// Geometry/File as the last statement about it says.
     std::string geometry_file(const std::vector<ParameterStatement> &statements)
     {
@@ -215,7 +229,7 @@ namespace Squeal
 
   void Parameters::add_parameters(dealii::ParameterHandler &prm)
   {
-    add_enum_parameter(prm, "Study", study, "The question that the run answers.");
+    add_study(prm, study);
     geometry.add_parameters(prm);
     materials.add_parameters(prm);
     discretization.add_parameters(prm);
@@ -271,23 +285,27 @@ namespace Squeal
 
   bool Parameters::needs_steady_sliding() const
   {
-    return sliding.state == ContactState::steady_sliding || study == Study::dissipation;
+    return sliding.state == ContactState::steady_sliding || study->compares_dissipation;
   }
 
   bool Parameters::has_contact_damping() const
   {
-    // The study of dissipation turns it on whatever the operation says
-    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study == Study::dissipation;
+    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study->compares_dissipation;
   }
 
   bool Parameters::has_friction() const
   {
-    return study != Study::reduction || reduction.problem == ReductionProblem::friction;
+    return study->has_friction == nullptr || study->has_friction(*this);
+  }
+
+  bool Parameters::solves_by(const ComplexSolver solver) const
+  {
+    return has_friction() && solvers.complex_solver == solver;
   }
 
   bool Parameters::uses_load_per_side() const
   {
-    if (study == Study::dissipation)
+    if (study->compares_dissipation)
       return true;
     return needs_steady_sliding() ? sliding.control == BackplateControl::load_per_side : has_contact_damping();
   }
@@ -306,20 +324,6 @@ namespace Squeal
                            "parameter Operation/Rotation speed",
                            "give a positive speed; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
                            "Steady sliding/Contact state = equal load");
-  }
-
-  void Parameters::check_map() const
-  {
-    if (study != Study::sweep || sweep.map_parameter == MapParameter::none)
-      return;
-    const bool is_steady = needs_steady_sliding();
-    if (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0. &&
-        !(is_steady && sweep.map_parameter == MapParameter::load))
-      throw ParameterError("without contact damping nothing depends on the " + to_string(sweep.map_parameter), "parameter Sweep/Map parameter",
-                           "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
-    if (is_steady && sweep.map_parameter == MapParameter::load && sliding.control != BackplateControl::load_per_side)
-      throw ParameterError("a map over the load needs backplates that are pressed with it", "parameter Steady sliding/Control",
-                           "set it to load per side, or Sweep/Map parameter = none");
   }
 
   void Parameters::check_damping_in_band() const
@@ -346,7 +350,8 @@ namespace Squeal
     damping.check();
     reduction.check();
     sweep.check();
-    check_map();
+    if (study->check != nullptr)
+      study->check(*this);
     check_damping_in_band();
     solvers.check();
   }

@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/studies/dissipation_study.h>
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
@@ -100,7 +99,13 @@ namespace Squeal
     }
   } // namespace
 
-  void run_dissipation_study(Run &run)
+  /**
+   * `Study = dissipation`: complex modes at one friction coefficient without
+   * radial dissipation and with each reading of it, c_b consistent and as
+   * published, R_n0 from equal shares of the load and from steady sliding, side
+   * by side with the last column of the paper's Table 1.
+   */
+  static void run_dissipation_study(Run &run)
   {
     const Parameters &parameters = run.parameters;
     Scene             scene      = mesh_scene(run);
@@ -151,4 +156,12 @@ namespace Squeal
     run.screen << '\n';
     run.finish();
   }
+
+  extern const Study dissipation_study = [] {
+    Study study{"dissipation", run_dissipation_study};
+    study.rules                = {{"Steady sliding/Contact state", [](const Parameters &) { return "the study compares both states"; }}};
+    study.no_mode_shapes       = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.compares_dissipation = true;
+    return study;
+  }();
 } // namespace Squeal

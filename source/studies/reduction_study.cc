@@ -8,7 +8,7 @@
 #include <squeal/stability/residual_iteration.h>
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/mode_tables.h>
-#include <squeal/studies/reduction_study.h>
+#include <squeal/studies/parameter_usage.h>
 
 #include <algorithm>
 #include <cmath>
@@ -342,9 +342,54 @@ namespace Squeal
         }
       return table;
     }
+
+    // ------------------------------------------------------ parameters in use
+
+    /// Whether a basis is measured for which @p fits holds.
+    bool measures(const Parameters &p, bool (*fits)(BasisKind))
+    {
+      const auto &names = p.reduction.bases;
+      return std::any_of(EnumTable<BasisKind>::names.begin(), EnumTable<BasisKind>::names.end(), [&](const auto &entry) {
+        const bool is_chosen = names.empty() ? p.has_friction() || !needs_friction(entry.value) :
+                                               std::find(names.begin(), names.end(), entry.name) != names.end();
+        return is_chosen && fits(entry.value);
+      });
+    }
+
+    bool has_real_modes(const BasisKind kind)
+    {
+      const auto parts = basis_parts(kind);
+      return std::find(parts.begin(), parts.end(), BasisPart::real) != parts.end();
+    }
+
+    bool is_grown(const BasisKind kind)
+    {
+      return kind == BasisKind::residual_grown;
+    }
+
+    bool is_pod(const BasisKind kind)
+    {
+      return kind == BasisKind::pod;
+    }
+
+    Reason no_snapshots(const Parameters &p)
+    {
+      return unless(measures(p, is_pod), "the basis POD is not measured");
+    }
+
+    Reason no_krylov(const Parameters &p)
+    {
+      return unless(measures(p, is_pod) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
+    }
   } // namespace
 
-  void run_reduction_study(Run &run)
+  /**
+   * `Study = reduction`: reduced bases measured against full-order modes, those
+   * of Tables 2, 4 and 5 of the paper and better ones: sizes, rank decisions,
+   * errors by groups of modes, error estimates with their verdicts, and what
+   * building and solving cost.
+   */
+  static void run_reduction_study(Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const ReductionParameters &reduction  = parameters.reduction;
@@ -569,4 +614,23 @@ namespace Squeal
     run.progress.note(text("  full order: ", full_seconds, " s of CPU for ", labels.size(), " modes"));
     run.finish();
   }
+
+  extern const Study reduction_study = [] {
+    Study study{"reduction", run_reduction_study, {"Reduction/"}};
+    study.rules = {
+      {"Operation/Rotation speed", no_sliding_speed},
+      {"Reduction/Component modes", [](const Parameters &p) { return unless(measures(p, is_connected), "no basis of component modes is measured"); }},
+      {"Reduction/Coupled frequency", [](const Parameters &p) { return unless(measures(p, has_real_modes), "no basis of real modes is measured"); }},
+      {"Reduction/Grown tolerances", [](const Parameters &p) { return unless(measures(p, is_grown), "no residual-grown basis is measured"); }},
+      {"Reduction/Snapshots", no_snapshots},
+      {"Reduction/POD tolerance", no_snapshots},
+      {"Complex modes/Shift inverse", no_krylov},
+      {"Complex modes/Tolerance", no_krylov},
+      {"Complex modes/Maximum basis", [](const Parameters &p) {
+         return unless(measures(p, is_grown) || p.solves_by(ComplexSolver::residual_iteration), "of the solver residual iteration");
+       }}};
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.has_friction   = [](const Parameters &p) { return p.reduction.problem == ReductionProblem::friction; };
+    return study;
+  }();
 } // namespace Squeal

@@ -7,7 +7,6 @@
 #include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
-#include <squeal/studies/stability_study.h>
 
 #include <algorithm>
 #include <cmath>
@@ -174,7 +173,13 @@ namespace Squeal
     }
   } // namespace
 
-  void run_stability_study(Run &run)
+  /**
+   * `Study = stability`: component modes, real coupled modes and complex modes
+   * at one friction coefficient, about equal shares of the load or about steady
+   * sliding, with their tables and mode shapes. A dry run makes, checks and
+   * counts the mesh, and writes nothing.
+   */
+  static void run_stability_study(Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const OperationParameters &operation  = parameters.operation;
@@ -226,4 +231,6 @@ namespace Squeal
       write_msh(scene.mesh, run.folder().path("mesh.msh"));
     run.finish();
   }
+
+  extern const Study stability_study = {"stability", run_stability_study, {"Output/Write matrices"}};
 } // namespace Squeal

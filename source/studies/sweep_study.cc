@@ -10,7 +10,7 @@
 #include <squeal/studies/contact_states.h>
 #include <squeal/studies/frictionless_modes.h>
 #include <squeal/studies/mode_fields.h>
-#include <squeal/studies/sweep_study.h>
+#include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/sweep_tables.h>
 
 #include <algorithm>
@@ -737,9 +737,32 @@ namespace Squeal
                   strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
                   "; most at mu = ", worst, ": ", label, " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");
     }
+
+    // ------------------------------------------------------------ the study
+
+    /// Throws ParameterError where nothing depends on what a map varies.
+    void check_map(const Parameters &parameters)
+    {
+      const MapParameter varied = parameters.sweep.map_parameter;
+      if (varied == MapParameter::none)
+        return;
+      const OperationParameters &operation = parameters.operation;
+      const bool                 is_steady = parameters.needs_steady_sliding();
+      if (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0. &&
+          !(is_steady && varied == MapParameter::load))
+        throw ParameterError("without contact damping nothing depends on the " + to_string(varied), "parameter Sweep/Map parameter",
+                             "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
+      if (is_steady && varied == MapParameter::load && parameters.sliding.control != BackplateControl::load_per_side)
+        throw ParameterError("a map over the load needs backplates that are pressed with it", "parameter Steady sliding/Control",
+                             "set it to load per side, or Sweep/Map parameter = none");
+    }
   } // namespace
 
-  void run_sweep_study(Run &run)
+  /**
+   * `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where
+   * they begin and cease to grow, and maps over load or speed.
+   */
+  static void run_sweep_study(Run &run)
   {
     const Parameters &parameters = run.parameters;
     const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
@@ -803,4 +826,22 @@ namespace Squeal
     run.finish();
     checkpoint.remove();
   }
+
+  extern const Study sweep_study = [] {
+    const auto map_axis = [](const Parameters &p) { return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none"); };
+    Study      study{"sweep", run_sweep_study, {"Sweep/"}};
+    study.rules = {{"Operation/Friction coefficient",
+                    [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
+                   {"Operation/Rotation speed", no_sliding_speed},
+                   {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+                   {"Sweep/First map value", map_axis},
+                   {"Sweep/Last map value", map_axis},
+                   {"Sweep/Number of map values", map_axis},
+                   {"Sweep/Map friction coefficients", map_axis}};
+    study.no_mode_shapes = [](const Parameters &p) {
+      return unless(!p.sweep.mode_shapes.empty(), "a sweep writes mode shapes for Sweep/Mode shapes at");
+    };
+    study.check = check_map;
+    return study;
+  }();
 } // namespace Squeal

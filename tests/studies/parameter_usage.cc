@@ -157,8 +157,23 @@ TEST(ParameterUsage, EveryParameterIsAccountedFor)
 
 TEST(ParameterUsage, NothingIsUnusedByDefault)
 {
-  for (const char *study : {"stability", "dissipation", "reduction", "sweep"})
-    EXPECT_EQ(unused({std::string("Study=") + study}), std::set<std::string>()) << study;
+  for (const Study *study : studies())
+    EXPECT_EQ(unused({std::string("Study=") + study->name}), std::set<std::string>()) << study->name;
+}
+
+
+
+TEST(ParameterUsage, EveryStudyIsFoundByItsName)
+{
+  EXPECT_EQ(studies().front(), Parameters().study);
+  std::set<std::string> names;
+  for (const Study *study : studies())
+    {
+      EXPECT_EQ(parameters_of({std::string("Study=") + study->name}).study, study) << study->name;
+      EXPECT_NE(study->run, nullptr) << study->name;
+      EXPECT_TRUE(names.insert(study->name).second) << study->name;
+    }
+  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "reduction", "stability", "sweep"}));
 }
 
 

@@ -10,24 +10,6 @@
 
 namespace Squeal
 {
-  /// Which question a run answers.
-  enum class Study
-  {
-    stability,   ///< component, real coupled and complex modes at one friction coefficient
-    dissipation, ///< complex modes with every reading of the radial dissipation
-    reduction,   ///< reduced bases, with their errors and cost
-    sweep        ///< complex modes over a range of the friction coefficient
-  };
-
-  template <>
-  struct EnumTable<Study>
-  {
-    static constexpr std::array<EnumName<Study>, 4> names = {{{Study::stability, "stability"},
-                                                             {Study::dissipation, "dissipation"},
-                                                             {Study::reduction, "reduction"},
-                                                             {Study::sweep, "sweep"}}};
-  };
-
   /// Elements and band (sections `Discretization` and `Band`).
   struct DiscretizationParameters
   {

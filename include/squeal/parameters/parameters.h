@@ -7,6 +7,7 @@
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
 #include <squeal/parameters/sliding.h>
+#include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
 
 #include <iosfwd>
@@ -18,7 +19,7 @@ namespace Squeal
   /// Everything a run depends on; a plain value once read.
   struct Parameters
   {
-    Study                    study = Study::stability;
+    const Study             *study = studies().front(); ///< the question
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
@@ -53,6 +54,9 @@ namespace Squeal
     /// Whether the study solves for modes with friction; else the friction coefficient only acts on the steady sliding state.
     bool has_friction() const;
 
+    /// Whether complex modes at Operation/Friction coefficient are those of this solver.
+    bool solves_by(ComplexSolver solver) const;
+
     /// Whether Operation/Load per side presses on anything.
     bool uses_load_per_side() const;
 
@@ -61,7 +65,6 @@ namespace Squeal
 
   private:
     void check_contact_state() const;
-    void check_map() const;
     void check_damping_in_band() const;
   };
 } // namespace Squeal

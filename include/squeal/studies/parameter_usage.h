@@ -23,6 +23,9 @@ namespace Squeal
   /// The same in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
   std::string unused_parameters_note(const Parameters &parameters);
 
+  /// Why the sliding speed damps nothing; null if it does. For studies that do not show it either.
+  Reason no_sliding_speed(const Parameters &parameters);
+
   /// Paths of all parameters, and sections with "/" at the end, that some run does not use.
   std::vector<std::string> conditional_parameters();
 } // namespace Squeal
