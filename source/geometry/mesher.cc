@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/installation.h>
 #include <squeal/geometry/mesher.h>
 #include <squeal/geometry/mesher_protocol.h>
 #include <squeal/parameters/number_parameter.h>
@@ -33,8 +34,8 @@ namespace Squeal
 
     [[noreturn]] void cannot_start(const int error)
     {
-      throw FileError(std::string("The mesher cannot be started: ") + std::strerror(error), SQUEAL_MESHER,
-                      "build the target squeal_mesher; check permissions and limits on processes");
+      throw FileError(std::string("The mesher cannot be started: ") + std::strerror(error), installation().mesher.string(),
+                      "build or install squeal_mesher; check permissions and limits on processes");
     }
 
     /// An open file or end of a pipe, above the numbers that the mesher is given.
@@ -120,7 +121,7 @@ namespace Squeal
         for (const auto &[from, to] : {std::make_pair(*printed, STDOUT_FILENO), std::make_pair(*printed, STDERR_FILENO),
                                        std::make_pair(*writing, mesher_reply_descriptor), std::make_pair(*script_file, mesher_script_descriptor)})
           posix_spawn_file_actions_adddup2(&actions, from, to);
-        const int error = posix_spawn(&process, SQUEAL_MESHER, &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
+        const int error = posix_spawn(&process, installation().mesher.c_str(), &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
         posix_spawn_file_actions_destroy(&actions);
         if (error != 0)
           {
@@ -272,7 +273,7 @@ namespace Squeal
 
   GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits)
   {
-    std::vector<std::string> arguments = {SQUEAL_MESHER, input.script.empty() ? input.file : mesher_script_name, exact_text(limits.bytes),
+    std::vector<std::string> arguments = {installation().mesher.string(), input.script.empty() ? input.file : mesher_script_name, exact_text(limits.bytes),
                                           exact_text(limits.seconds), limits.is_confined ? mesher_confined : mesher_free};
     for (const auto &[name, value] : input.numbers)
       arguments.insert(arguments.end(), {name, exact_text(value)});

@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/installation.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/geometry_file.h>
 
@@ -176,7 +177,7 @@ namespace Squeal
     if (given.is_relative() && !fs::equivalent(beside, fs::current_path()))
       directories.push_back(fs::current_path());
     if (!given.has_parent_path())
-      directories.push_back(SQUEAL_GEOMETRY_DIRECTORY);
+      directories.push_back(installation().geometries.string());
     std::string searched;
     for (const fs::path &directory : directories)
       {
@@ -192,7 +193,7 @@ namespace Squeal
   bool is_supplied(const std::string &geometry)
   {
     std::error_code ignored;
-    return fs::equivalent(fs::path(geometry).parent_path(), SQUEAL_GEOMETRY_DIRECTORY, ignored);
+    return fs::equivalent(fs::path(geometry).parent_path(), installation().geometries, ignored);
   }
 
   bool is_script(const std::string &geometry)
