@@ -74,7 +74,7 @@ namespace Squeal
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
                                             const DenseMatrix &stiffness,
-                                            const double       largest_frequency,
+                                            const double       largest_circular_frequency,
                                             const RealVectors  real_vectors)
   {
     DenseQuadraticModes modes;
@@ -121,7 +121,7 @@ namespace Squeal
             if (real_vectors == RealVectors::wanted)
               wanted.push_back(j);
           }
-        else if (lambda.imag() > 0. && lambda.imag() <= largest_frequency)
+        else if (lambda.imag() > 0. && lambda.imag() <= largest_circular_frequency)
           wanted.push_back(j);
       }
     std::sort(modes.real_values.begin(), modes.real_values.end());

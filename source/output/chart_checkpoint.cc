@@ -33,12 +33,12 @@ namespace Squeal
     constexpr int significant_digits = 12;
 
     /// Rows of `points.csv`.
-    std::string csv_rows(const int line, const ChartPoint &point, const double largest_frequency)
+    std::string csv_rows(const int line, const ChartPoint &point, const double largest_circular_frequency)
     {
       std::ostringstream text;
       text << std::setprecision(significant_digits);
       for (std::size_t j = 0; j < point.lambda.size(); ++j)
-        if (point.lambda[j].imag() <= largest_frequency)
+        if (point.lambda[j].imag() <= largest_circular_frequency)
           {
             const ModalQuantities mode = modal_quantities(point.lambda[j]);
             text << line << ',' << point.friction_coefficient << ',' << mode.frequency << ',' << mode.growth_rate << ','
@@ -122,12 +122,12 @@ namespace Squeal
     const Epetra_Map  rows;
   };
 
-  ChartCheckpoint::ChartCheckpoint(const std::string &folder, const std::string &key, const MPI_Comm communicator, const double largest_frequency)
+  ChartCheckpoint::ChartCheckpoint(const std::string &folder, const std::string &key, const MPI_Comm communicator, const double largest_circular_frequency)
     : folder(folder)
     , identity(title + ' ' + std::to_string(version_of_format) + '\n' + key)
     , archive(fs::path(folder) / archive_name)
     , communicator(communicator)
-    , largest_frequency(largest_frequency)
+    , largest_circular_frequency(largest_circular_frequency)
   {
     on_root([&] { open(); });
     n_results = broadcast(communicator, n_results, 0);
@@ -187,7 +187,7 @@ namespace Squeal
     for (const auto &[name, contents] : parts)
       for (const auto &[place, result] : contents.results)
         {
-          text += csv_rows(place.first, result, largest_frequency);
+          text += csv_rows(place.first, result, largest_circular_frequency);
           ++n_results;
         }
     replace_file(fs::path(folder) / points_name, text);
@@ -224,7 +224,7 @@ namespace Squeal
     if (record.is_block())
       ++parts[record.part].n_blocks;
     else
-      append_to_file(fs::path(folder) / points_name, {csv_rows(record.line, record.point, largest_frequency)});
+      append_to_file(fs::path(folder) / points_name, {csv_rows(record.line, record.point, largest_circular_frequency)});
   }
 
   int ChartCheckpoint::n_found() const

@@ -120,9 +120,9 @@ namespace Squeal
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
     response     = compute(BasisSource::uncoupled_factor,
-                           [&] { return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_frequency, library); });
+                           [&] { return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_circular_frequency, library); });
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
-                                                 plan.largest_frequency, library);
+                                                 plan.largest_circular_frequency, library);
     const StaticModes &modes = *static_modes;
     const std::pair<BasisSource, std::function<int()>> sets[] = {
       {BasisSource::normal_attachment, [&] { return modes.normal_attachment().NumVectors(); }},
@@ -146,7 +146,7 @@ namespace Squeal
         {
           run.progress.update(text("mu = ", value));
           const ComplexModes modes =
-            krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value, plan.largest_frequency,
+            krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value, plan.largest_circular_frequency,
                          frictionless.real.eigenvalues.size(), run.parameters.solvers, run.progress);
           result.push_back(*modes.real_part);
           result.push_back(*modes.imaginary_part);
@@ -195,7 +195,7 @@ namespace Squeal
   {
     run.progress.begin("Growing a basis");
     ResidualIterationOptions iteration;
-    iteration.largest_frequency = plan.largest_frequency;
+    iteration.largest_frequency = plan.largest_circular_frequency;
     iteration.tolerance         = tolerance;
     iteration.maximum_basis     = run.parameters.solvers.maximum_basis;
     residuals                   = compute(BasisSource::residuals, [&] {

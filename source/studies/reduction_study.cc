@@ -119,8 +119,8 @@ namespace Squeal
         for (int solution = 0; solution < n_timed_solutions; ++solution)
           {
             const Stopwatch watch;
-            modes               = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_frequency, BandEnd::open) :
-                                                      reduced_real_modes(model, plan.largest_frequency, BandEnd::open);
+            modes               = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
+                                                      reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
             const double latest = watch.seconds();
             seconds             = solution == 0 ? latest : std::min(seconds, latest);
           }

@@ -172,17 +172,17 @@ namespace Squeal
       return stream.str();
     }
 
-    bool is_in_band(const std::complex<double> &lambda, const double largest_frequency)
+    bool is_in_band(const std::complex<double> &lambda, const double largest_circular_frequency)
     {
-      return lambda.imag() <= largest_frequency;
+      return lambda.imag() <= largest_circular_frequency;
     }
 
     /// The mode of the band that grows most, or is damped least.
-    int leading_mode(const ChartPoint &point, const double largest_frequency)
+    int leading_mode(const ChartPoint &point, const double largest_circular_frequency)
     {
       int result = -1;
       for (std::size_t j = 0; j < point.lambda.size(); ++j)
-        if (is_in_band(point.lambda[j], largest_frequency) &&
+        if (is_in_band(point.lambda[j], largest_circular_frequency) &&
             (result < 0 || modal_quantities(point.lambda[j]).divergence_rate > modal_quantities(point.lambda[result]).divergence_rate))
           result = static_cast<int>(j);
       return result;
@@ -695,7 +695,7 @@ namespace Squeal
     /// Divergence rates that the least structural damping outweighs [-].
     constexpr double weak_divergence = 1e-4;
 
-    std::string verdict(const std::vector<ChartLine> &stretches, const std::size_t n_asked, const double largest_frequency)
+    std::string verdict(const std::vector<ChartLine> &stretches, const std::size_t n_asked, const double largest_circular_frequency)
     {
       double      first = -1., strong = -1., largest = 0., worst = 0., frequency = 0.;
       std::string first_label, strong_label, label;
@@ -708,7 +708,7 @@ namespace Squeal
             {
               const ChartPoint &point = line.chart.points[i];
               const int         j     = line.chart.branches[b].modes[i];
-              if (j < 0 || !is_in_band(point.lambda[j], largest_frequency) || point.verdicts[j] != Verdict::unstable)
+              if (j < 0 || !is_in_band(point.lambda[j], largest_circular_frequency) || point.verdicts[j] != Verdict::unstable)
                 continue;
               const ModalQuantities mode = modal_quantities(point.lambda[j]);
               if (first < 0.)

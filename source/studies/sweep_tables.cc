@@ -5,7 +5,7 @@
 
 namespace Squeal
 {
-  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, const double largest_frequency)
+  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, const double largest_circular_frequency)
   {
     Table table({{"mu", "-", 6},
                  {"branch", "-"},
@@ -24,7 +24,7 @@ namespace Squeal
         {
           const ChartPoint &point = chart.points[i];
           const int         j     = chart.branches[b].modes[i];
-          if (j < 0 || point.lambda[j].imag() > largest_frequency)
+          if (j < 0 || point.lambda[j].imag() > largest_circular_frequency)
             continue;
           const ModalQuantities mode = modal_quantities(point.lambda[j]);
           table.add_row({point.friction_coefficient, static_cast<long>(b + 1), labels[b], mode.frequency, mode.growth_rate,

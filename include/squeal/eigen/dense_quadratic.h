@@ -18,8 +18,8 @@ namespace Squeal
   /// Eigenvalues of a small quadratic pencil with vectors on both sides.
   struct DenseQuadraticModes
   {
-    /// λ with vectors, ascending by Im, then Re: 0 < Im λ ≤ largest_frequency and, where wanted, the real λ (of ±λ without damping
-    /// that with λ ≥ 0).
+    /// λ with vectors, ascending by Im, then Re: 0 < Im λ ≤ largest_circular_frequency and, where wanted, the real λ (of ±λ
+    /// without damping that with λ ≥ 0).
     std::vector<std::complex<double>> values;
 
     ComplexDenseMatrix right; ///< φ, r × k: Q(λ) φ = 0, ‖φ‖₂ = 1, the entry of largest modulus real and positive
@@ -30,7 +30,7 @@ namespace Squeal
 
   /**
    * All eigenvalues of Q(λ) = λ² M + λ C + K, small dense real r × r matrices,
-   * with 0 < Im λ ≤ @p largest_frequency [rad/s], by the companion form
+   * with 0 < Im λ ≤ @p largest_circular_frequency [rad/s], by the companion form
    *
    *     [ 0        I      ]
    *     [ -M⁻¹ K   -M⁻¹ C ]  [φ; λ φ] = λ [φ; λ φ],
@@ -45,6 +45,6 @@ namespace Squeal
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
                                             const DenseMatrix &stiffness,
-                                            double             largest_frequency = std::numeric_limits<double>::infinity(),
-                                            RealVectors        real_vectors      = RealVectors::none);
+                                            double             largest_circular_frequency = std::numeric_limits<double>::infinity(),
+                                            RealVectors        real_vectors               = RealVectors::none);
 } // namespace Squeal

@@ -35,12 +35,12 @@ namespace Squeal
      *
      * @param folder            created with its parents when the first result or block comes
      * @param key               text that names everything on which results depend, the version of the program included
-     * @param largest_frequency end of the band [rad/s], for `points.csv`
+     * @param largest_circular_frequency end of the band [rad/s], for `points.csv`
      *
      * Throws FileError if the unfinished sweep in @p folder has another key, if the folder
      * holds something else, or if it cannot be read.
      */
-    ChartCheckpoint(const std::string &folder, const std::string &key, MPI_Comm communicator, double largest_frequency);
+    ChartCheckpoint(const std::string &folder, const std::string &key, MPI_Comm communicator, double largest_circular_frequency);
 
     /// Results that an earlier run has kept.
     int n_found() const;
@@ -80,7 +80,7 @@ namespace Squeal
     const std::string               folder, identity;
     RecordArchive                   archive;
     const MPI_Comm                  communicator;
-    const double                    largest_frequency;
+    const double                    largest_circular_frequency;
     std::map<std::string, Contents> parts;
     bool                            is_begun  = false; ///< whether the archive is this sweep's
     int                             n_results = 0;

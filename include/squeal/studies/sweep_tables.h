@@ -9,7 +9,7 @@
 namespace Squeal
 {
   /// Every mode of the band at every point of a chart, refined ones included: its branch, λ, residuals, error, verdict and whether λ grows.
-  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, double largest_frequency);
+  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, double largest_circular_frequency);
 
   /// Where branches begin or cease to grow.
   Table threshold_table(const StabilityChart &chart, const std::vector<std::string> &labels);
