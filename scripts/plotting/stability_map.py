@@ -14,7 +14,7 @@ from plotting import style
 # From pale to dark, without white and grey, which cells of other meanings have; black texts are legible on all of it.
 SCALE = LinearSegmentedColormap.from_list("growth", ["#fff3c4", "#fdd27f", "#f9a052", "#e8673a", "#c43a24"])
 MOST_STEPS = 12  # numbers of modes up to this have a colour each
-LONELY = 0.05  # half-width of the cell of a value without neighbours
+ISOLATED = 0.05  # half-width of the cell of a value without neighbours
 WIDE = 1e4  # ratio of the ends of a logarithmic axis from which on only powers of ten are named
 ROOM_OF_LETTER, ROOM_OF_LINE = 0.02, 0.04  # shares of a panel
 
@@ -57,7 +57,7 @@ def cell_edges(values, logarithmic):
     if len(v) > 1:
         edges = np.concatenate([[1.5 * v[0] - 0.5 * v[1]], 0.5 * (v[:-1] + v[1:]), [1.5 * v[-1] - 0.5 * v[-2]]])
     else:
-        edges = np.array([v[0] - LONELY, v[0] + LONELY])
+        edges = np.array([v[0] - ISOLATED, v[0] + ISOLATED])
     edges = np.exp(edges) if logarithmic else edges
     if values[0] >= 0:
         edges[0] = max(edges[0], 0.0)

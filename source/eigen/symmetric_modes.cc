@@ -23,7 +23,7 @@ namespace Squeal
     const Decision   elastic("eigenvalue of the symmetric problem / largest wanted one", rigid_body_threshold);
 
     /// Starts that may find nothing new, the last of them with the other solver.
-    constexpr int most_vain_starts = 4;
+    constexpr int most_fruitless_starts = 4;
 
     /// Systems up to this size are solved densely.
     constexpr int largest_dense_system = 300;
@@ -100,12 +100,12 @@ namespace Squeal
           return dense();
 
         RitzPairs pairs;
-        int       n_found = 0, n_vain = 0;
+        int       n_found = 0, n_fruitless = 0;
         // Members of multiple eigenvalues may be missing at first; every start
         // finds at least one more, in general all.
         for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
           {
-            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_vain, pairs.vectors);
+            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
             if (fresh)
               {
                 const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &*fresh}) : *fresh;
@@ -120,7 +120,7 @@ namespace Squeal
                     continue;
                   }
               }
-            if (lift_limit() || ++n_vain < most_vain_starts)
+            if (lift_limit() || ++n_fruitless < most_fruitless_starts)
               continue;
             fail_incomplete(n_found);
           }
@@ -144,7 +144,7 @@ namespace Squeal
       }
 
       std::optional<MultiVector>
-      krylov(const int n_wanted, const unsigned int attempt, const int n_vain, const std::optional<MultiVector> &deflated)
+      krylov(const int n_wanted, const unsigned int attempt, const int n_fruitless, const std::optional<MultiVector> &deflated)
       {
         const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
         KrylovRequest     request;
@@ -152,10 +152,10 @@ namespace Squeal
         request.tolerance  = 0.1 * options.tolerance;
         request.block_size = options.block_size > 0 ? options.block_size : 8;
         request.seed       = options.seed + 7919 * attempt;
-        request.attempt    = n_vain;
+        request.attempt    = n_fruitless;
         request.what       = options.what;
         // Where the chosen solver finds no more, the other one may
-        const bool anasazi = (options.solver == RealSolver::anasazi) == (n_vain < most_vain_starts - 1);
+        const bool anasazi = (options.solver == RealSolver::anasazi) == (n_fruitless < most_fruitless_starts - 1);
         return anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
       }
 

@@ -59,7 +59,7 @@ namespace Squeal
     using dealii::Patterns::Integer;
     const dealii::Patterns::List coefficients(Double(0., 10.), 0, 1000);
     prm.enter_subsection("Sweep");
-    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Begin of the sweep. Units: none.", Double(0., 10.));
+    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.", Double(0., 10.));
     add_number_parameter(prm, "Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", Double(0., 10.));
     prm.add_parameter("Number of friction coefficients", friction_coefficients.number,
                       "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", Integer(1, 100000));
@@ -67,7 +67,7 @@ namespace Squeal
                          "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.",
                          Double(1e-10, 1e-2));
     prm.add_parameter("Maximum basis", maximum_basis,
-                      "Largest reduced basis, at least the real modes; a sweep that would need more stops at what it proved. Units: vectors.", Integer(1));
+                      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.", Integer(1));
     add_number_parameter(prm, "Threshold tolerance", threshold_tolerance,
                          "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", Double(1e-13, 1e-2));
     prm.add_parameter("Compare dissipation", compare_dissipation,

@@ -274,7 +274,7 @@ namespace Squeal
         return 1. / (1. + std::abs(x - y) / std::abs(x));
       }
 
-      /// Leaves as many modes on either side, the likest ones.
+      /// Leaves as many modes on either side, those most alike.
       void trim(std::vector<int> &first, std::vector<int> &second)
       {
         const bool        swapped = first.size() > second.size();

@@ -44,7 +44,7 @@ namespace Squeal
                                    {"frequency", "Hz", 3},
                                    {"growth rate", "1/s", 4},
                                    {"divergence rate", "%", 4},
-                                   {"damping ratio", "%", 4},
+                                   {"effective damping ratio -2R/omega", "%", 4},
                                    {"residual", "-", 1, true},
                                    {"eps_res", "-", 1, true},
                                    {"unstable", "-"}};
@@ -114,7 +114,7 @@ namespace Squeal
                  {"w_0", "m/s", 4},
                  {"c_b", "N s/m", 3},
                  {"c_t", "N s/m", 3},
-                 {"way of backplate", "m", 4, true},
+                 {"travel of backplate", "m", 4, true},
                  {"largest gap", "m", 2, true}});
     for (const PinContact &pin : pins)
       table.add_row({pin.pin, static_cast<long>(pin.side), pin.load, static_cast<long>(pin.n_open), static_cast<long>(pin.n_nodes),
@@ -135,8 +135,8 @@ namespace Squeal
     table.add_row({std::string("residual of the full system [-]"), c.residual});
     table.add_row({std::string("error of the prescribed loads [-]"), c.load});
     table.add_row({std::string("largest tension over load [-]"), c.tension});
-    table.add_row({std::string("largest overlap over way [-]"), c.overlap});
-    table.add_row({std::string("complementarity |r_n g| over load and way [-]"), c.complementarity});
+    table.add_row({std::string("largest overlap over travel [-]"), c.overlap});
+    table.add_row({std::string("complementarity |r_n g| over load and travel [-]"), c.complementarity});
     table.add_row({std::string("force balance with the supports [-]"), c.force_balance});
     table.add_row({std::string("moment balance with the supports [-]"), c.moment_balance});
     table.add_row({std::string("changes of the contact set [-]"), static_cast<long>(state.n_steps)});

@@ -33,7 +33,7 @@ subsection Output
 end
 """
 
-COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "damping ratio [%]",
+COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
                    "residual [-]", "eps_res [-]", "unstable [-]"]
 
 # Of the same eigenvalue found in another way [-]

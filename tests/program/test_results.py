@@ -40,7 +40,7 @@ class Results(ProgramTest):
         self.assertLessEqual(frequencies[-1], 5000)
         for row in rows:
             growth, frequency = float(row["growth rate [1/s]"]), float(row["frequency [Hz]"])
-            rate, damping = float(row["divergence rate [%]"]), float(row["damping ratio [%]"])
+            rate, damping = float(row["divergence rate [%]"]), float(row["effective damping ratio -2R/omega [%]"])
             self.assertAlmostEqual(rate, 100 * growth / (2 * math.pi * frequency), delta=1e-9 * abs(rate))
             self.assertAlmostEqual(damping, -2 * rate, delta=1e-9 * abs(rate))
             self.assertLessEqual(float(row["residual [-]"]), 1e-9)

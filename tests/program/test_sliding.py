@@ -77,8 +77,8 @@ class SlidingTest(ProgramTest):
         self.assertLess(values["residual of the full system [-]"], 1e-10)
         self.assertLess(values["error of the prescribed loads [-]"], 1e-10)
         self.assertLessEqual(values["largest tension over load [-]"], 0)
-        self.assertLess(values["largest overlap over way [-]"], 1e-12)
-        self.assertLess(values["complementarity |r_n g| over load and way [-]"], 1e-12)
+        self.assertLess(values["largest overlap over travel [-]"], 1e-12)
+        self.assertLess(values["complementarity |r_n g| over load and travel [-]"], 1e-12)
         self.assertLess(values["force balance with the supports [-]"], 1e-10)
         self.assertLess(values["moment balance with the supports [-]"], 1e-10)
         if has_load:
@@ -111,7 +111,7 @@ class State(SlidingTest):
             of_side = [pin for pin in self.pins.values() if pin["side [-]"] == side]
             self.assertEqual(len(of_side), 2)
             self.assertAlmostEqual(sum(pin["load [N]"] for pin in of_side), LOAD, delta=1e-10 * LOAD)
-            self.assertEqual(len({pin["way of backplate [m]"] for pin in of_side}), 1)
+            self.assertEqual(len({pin["travel of backplate [m]"] for pin in of_side}), 1)
 
     def test_pins(self):
         height = 0.0318
@@ -122,7 +122,7 @@ class State(SlidingTest):
                 self.assertEqual(pin["largest gap [m]"], 0)
                 # Friction turns a pin about its clamp: the centre of pressure of a stiff one lies mu times half its height ahead.
                 self.assertAlmostEqual(pin["pressure offset along t [m]"], -FRICTION * height / 2, delta=0.05 * FRICTION * height / 2)
-                self.assertGreater(pin["way of backplate [m]"], 0)
+                self.assertGreater(pin["travel of backplate [m]"], 0)
                 self.assertGreater(pin["largest pressure [Pa]"], pin["load [N]"] / (math.pi * 0.026**2))
                 self.assertAlmostEqual(pin["w_0 [m/s]"], SPEED * (0.2275 + pin["pressure offset outwards [m]"]), delta=1e-6)
                 self.assertEqual(pin["c_t [N s/m]"], 0)
@@ -157,7 +157,7 @@ class State(SlidingTest):
         ends = [(point, u) for point, u in zip(state.points, state.fields["displacement"]) if abs(abs(point[2]) - 0.05495) < 1e-6]
         self.assertGreater(len(ends), 0)
         # The clamped ends of the pins have moved with their backplate.
-        way = self.pins["pin_top_1"]["way of backplate [m]"]
+        way = self.pins["pin_top_1"]["travel of backplate [m]"]
         for (_, _, z), u in ends:
             self.assert_close(u, (0, 0, -math.copysign(way, z)), SINGLE)
 
@@ -204,7 +204,7 @@ class Control(SlidingTest):
         cls.results = cls.run_scene("results", STEADY, CONSISTENT)
 
     def test_displacement(self):
-        ways = [pin["way of backplate [m]"] for pin in pins(self.results).values()]
+        ways = [pin["travel of backplate [m]"] for pin in pins(self.results).values()]
         self.assert_close(ways, 4 * ways[:1], 1e-10)
         pressed = self.run_scene("pressed", STEADY, CONSISTENT, "Steady sliding/Control=displacement",
                                  f"Steady sliding/Displacement={ways[0]!r}")
@@ -218,13 +218,13 @@ class Control(SlidingTest):
         pressed = self.run_scene("pressed", *per_pin)
         self.assert_certified(pressed)
         self.assert_close(loads(pressed), [700, 300, 500, 500], 1e-10)
-        ways = [pin["way of backplate [m]"] for pin in pins(pressed).values()]
+        ways = [pin["travel of backplate [m]"] for pin in pins(pressed).values()]
         self.assertGreater(ways[0], ways[1])
 
         # Gaps change the ways then, and nothing else.
         short = self.run_scene("short", *per_pin, "Steady sliding/Gaps=pin_top_1: 1e-5; pin_bottom_2: 3e-6")
         self.assert_close(loads(short), loads(pressed), 1e-10)
-        self.assert_close([pin["way of backplate [m]"] for pin in pins(short).values()],
+        self.assert_close([pin["travel of backplate [m]"] for pin in pins(short).values()],
                           [way + gap for way, gap in zip(ways, (1e-5, 0, 0, 3e-6))], 1e-9)
         self.assert_same_eigenvalues(eigenvalues(short), eigenvalues(pressed))
 
@@ -268,7 +268,7 @@ class Gaps(SlidingTest):
                 self.assertAlmostEqual(table["pin_top_2"]["load [N]"], LOAD, delta=1e-10 * LOAD)
                 self.assertEqual([table["pin_top_1"][name] for name in ("load [N]", "largest pressure [Pa]", "c_b [N s/m]")], [0, 0, 0])
                 # The gap is what the backplate has not closed, but for what the disc gives way.
-                self.assertAlmostEqual(table["pin_top_1"]["largest gap [m]"], 2e-5 - table["pin_top_1"]["way of backplate [m]"], delta=1e-6)
+                self.assertAlmostEqual(table["pin_top_1"]["largest gap [m]"], 2e-5 - table["pin_top_1"]["travel of backplate [m]"], delta=1e-6)
                 self.assertGreater(len(eigenvalues(results)), 30)
                 # Its lowest bending modes are those of a pin that is clamped at one end and free at the other.
                 free = [float(row["frequency [Hz]"]) for row in read_table(results / "component_modes.csv")
@@ -325,7 +325,7 @@ class Independent(SlidingTest):
         table = pins(results)
         compression = {name: [p for p, pin in zip(compressions, contact.pins) if pin == name] for name in PINS}
         self.assert_close(loads(results), [sum(compression[name]) for name in PINS], 1e-8)
-        self.assert_close([pin["way of backplate [m]"] for pin in table.values()], ways, 1e-8)
+        self.assert_close([pin["travel of backplate [m]"] for pin in table.values()], ways, 1e-8)
         self.assertEqual([pin["open nodes [-]"] for pin in table.values()], [compression[name].count(0) for name in PINS])
         for name, pin in table.items():
             pressures = [p / area for p, area, of_pin in zip(compressions, contact.areas, contact.pins) if of_pin == name]

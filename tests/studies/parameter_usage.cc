@@ -48,6 +48,7 @@ namespace
       {"Operation/Friction coefficient", "0.3"},
       {"Operation/Rotation", "negative"},
       {"Operation/Rotation speed", "5"},
+      {"Operation/Gyroscopic forces", "true"},
       {"Operation/Load per side", "500"},
       {"Operation/Radial dissipation", "consistent"},
       {"Operation/Friction slope", "-0.01"},

@@ -46,10 +46,10 @@ namespace Squeal
     double            friction_coefficient = 0.4;   ///< μ [-]
     Rotation          rotation             = Rotation::positive;
     double            rotation_speed       = 4.;    ///< Ω [rad/s]
-    bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
     double            load_per_side        = 1000.; ///< [N]
     RadialDissipation radial_dissipation   = RadialDissipation::none;
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
+    bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
 
     void add_parameters(dealii::ParameterHandler &prm);
 
