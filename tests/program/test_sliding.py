@@ -181,19 +181,6 @@ class State(SlidingTest):
             self.assert_same_eigenvalues(values[1], values[0])
         self.assert_close(loads(self.folder / "scaled"), [3 * load for load in loads(self.results)], 1e-10)
 
-    def test_processes(self):
-        several = self.run_scene("several", STEADY, CONSISTENT, "Output/Mode shapes=unstable", n_processes=2)
-        self.assert_certified(several)
-        actual = pins(several)
-        for name, pin in self.pins.items():
-            for column, value in pin.items():
-                with self.subTest(name, column=column):
-                    self.assertAlmostEqual(actual[name][column], value, delta=1e-8 * abs(value))
-        self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(self.results), 1e-8)
-        for (_, fields), (_, other) in zip(ContactFaces(self.results / "sliding_state_contact.vtu").all(),
-                                           ContactFaces(several / "sliding_state_contact.vtu").all()):
-            self.assertAlmostEqual(fields["normal_reaction"], other["normal_reaction"], delta=SINGLE * LOAD)
-
 
 class Control(SlidingTest):
     """The other two ways to press."""
@@ -454,12 +441,6 @@ class Damping(SlidingTest):
             # Friction lets pin modes share their damping among themselves.
             self.assertAlmostEqual(value.real - undamped.real, -ratio * abs(undamped), delta=0.03 * ratio * abs(undamped))
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("other", table, *RESIDUAL_ITERATION)), damped)
-
-    def test_processes(self):
-        overrides = [STEADY, CONSISTENT, "Steady sliding/Gaps=pin_top_1: 1e-5", "Operation/Friction slope=-0.01",
-                     "Pin material/Rayleigh beta=1e-7", "Damping/Modal damping ratio=0: 0.01"]
-        one, two = (eigenvalues(self.run_scene("processes", *overrides, n_processes=n)) for n in (1, 2))
-        self.assert_same_eigenvalues(two, one)
 
 
 class DissipationStudy(SlidingTest):

@@ -59,28 +59,6 @@ class Solvers(ProgramTest):
                 self.assert_same_eigenvalues(values, expected)
 
 
-class Processes(ProgramTest):
-    def test_same_as_one(self):
-        for name, overrides in {"Krylov": [], "Krylov, dissipation": [DISSIPATION], "residual iteration": RESIDUAL_ITERATION,
-                                "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
-            one = self.run_scene("one", *overrides)
-            # Three processes see no other code than two: half of the cases do.
-            for n_processes in (2, 3) if name in ("Krylov", "residual iteration, dissipation") else (2,):
-                with self.subTest(name, n_processes=n_processes):
-                    several = self.run_scene("several", *overrides, n_processes=n_processes)
-                    self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(one))
-                    self.assert_same_eigenvalues(real_frequencies(several), real_frequencies(one))
-                    record = json.loads((several / "run.json").read_text(encoding="utf-8"))
-                    self.assertEqual(record["machine"]["processes"], n_processes)
-
-    def test_fields(self):
-        fields = {}
-        for n_processes in (1, 2):
-            results = self.run_scene("results", "Output/Mode shapes=unstable", n_processes=n_processes)
-            fields[n_processes] = sorted(path.name for path in (results / "modes").iterdir())
-        self.assertEqual(fields[1], fields[2])
-
-
 class Rotation(ProgramTest):
     """Turning the other way is the mirror image."""
 

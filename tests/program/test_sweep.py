@@ -231,20 +231,6 @@ class Sweep(SweepTest):
                 with self.subTest(suffix, mu=mu):
                     self.assert_same_modes(modes[mu], self.modes_at(mu, *overrides), 2e-8)
 
-    def test_processes(self):
-        several = self.sweep("several", *self.overrides, n_processes=2)
-        for suffix in ("", "_without_dissipation"):
-            self.assert_complete(several, suffix)
-            modes, others = (modes_by_mu(folder, f"branches{suffix}.csv") for folder in (self.results, several))
-            for mu in self.grid:
-                self.assert_same_modes(others[mu], modes[mu], DEFAULT_ACCURACY)
-            one, two = (thresholds(folder, f"thresholds{suffix}.csv") for folder in (self.results, several))
-            self.assertEqual([row["event"] for row in two], [row["event"] for row in one])
-            for a, b in zip(one, two):
-                self.assertAlmostEqual(a["mu [-]"], b["mu [-]"], delta=a["uncertainty [-]"] + b["uncertainty [-]"] + 1e-6)
-        for a, b in zip(read_table(self.results / "argument_counts.csv"), read_table(several / "argument_counts.csv"), strict=True):
-            self.assertEqual(a["modes counted [-]"], b["modes counted [-]"])
-
     def test_maps(self):
         """Contact damps in proportion to load over speed, and nothing else depends on either."""
         by_load = read_table(self.results / "map.csv")

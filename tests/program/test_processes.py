@@ -1,0 +1,73 @@
+"""The same results on several processes as on one: solvers, steady sliding, damping, and a sweep.
+
+These runs are apart from the other tests because they need cores of their own: processes that share theirs with other
+programs wait for each other.
+"""
+
+import json
+
+from program import ProgramTest, eigenvalues, read_table, real_frequencies
+from test_sliding import LOAD, SINGLE, STEADY, ContactFaces, SlidingTest, pins
+from test_solvers import DISSIPATION, RESIDUAL_ITERATION
+from test_sweep import DEFAULT_ACCURACY, MAP, SweepTest, by_mu, grid_of, modes_by_mu, thresholds
+
+UNSTABLE_SHAPES = "Output/Mode shapes=unstable"
+
+
+class Solvers(ProgramTest):
+    def test_modes(self):
+        for name, overrides in {"Krylov": [], "Krylov, dissipation": [DISSIPATION], "residual iteration": RESIDUAL_ITERATION,
+                                "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
+            one = self.run_scene("one", UNSTABLE_SHAPES, *overrides)
+            # Three processes see no other code than two: half of the cases do.
+            for n_processes in (2, 3) if name in ("Krylov", "residual iteration, dissipation") else (2,):
+                with self.subTest(name, n_processes=n_processes):
+                    several = self.run_scene("several", UNSTABLE_SHAPES, *overrides, n_processes=n_processes)
+                    self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(one))
+                    self.assert_same_eigenvalues(real_frequencies(several), real_frequencies(one))
+                    fields, others = (sorted(path.name for path in (folder / "modes").iterdir()) for folder in (one, several))
+                    self.assertEqual(others, fields)
+                    record = json.loads((several / "run.json").read_text(encoding="utf-8"))
+                    self.assertEqual(record["machine"]["processes"], n_processes)
+
+
+class Sliding(SlidingTest):
+    def test_state(self):
+        one, two = (self.run_scene(f"state_{n}", STEADY, DISSIPATION, UNSTABLE_SHAPES, n_processes=n) for n in (1, 2))
+        self.assert_certified(two)
+        actual = pins(two)
+        for name, pin in pins(one).items():
+            for column, value in pin.items():
+                with self.subTest(name, column=column):
+                    self.assertAlmostEqual(actual[name][column], value, delta=1e-8 * abs(value))
+        self.assert_same_eigenvalues(eigenvalues(two), eigenvalues(one), 1e-8)
+        for (_, fields), (_, other) in zip(ContactFaces(one / "sliding_state_contact.vtu").all(),
+                                           ContactFaces(two / "sliding_state_contact.vtu").all(), strict=True):
+            self.assertAlmostEqual(fields["normal_reaction"], other["normal_reaction"], delta=SINGLE * LOAD)
+
+    def test_every_damping(self):
+        overrides = [STEADY, DISSIPATION, "Steady sliding/Gaps=pin_top_1: 1e-5", "Operation/Friction slope=-0.01",
+                     "Pin material/Rayleigh beta=1e-7", "Damping/Modal damping ratio=0: 0.01"]
+        one, two = (eigenvalues(self.run_scene("damped", *overrides, n_processes=n)) for n in (1, 2))
+        self.assert_same_eigenvalues(two, one)
+
+
+class Sweep(SweepTest):
+    def test_branches_and_thresholds(self):
+        overrides = [DISSIPATION, "Sweep/Number of friction coefficients=4", "Sweep/Count modes at=0.2, 0.33",
+                     "Sweep/Mode shapes at=0, 0.4", UNSTABLE_SHAPES, "Sweep/Map parameter=load", "Sweep/First map value=250",
+                     "Sweep/Last map value=4000", *MAP]
+        one, two = (self.sweep(f"sweep_{n}", *overrides, n_processes=n) for n in (1, 2))
+        for suffix in ("", "_without_dissipation"):
+            self.assert_complete(two, suffix)
+            modes, others = (modes_by_mu(folder, f"branches{suffix}.csv") for folder in (one, two))
+            for mu in grid_of(one):
+                self.assert_same_modes(others[mu], modes[mu], DEFAULT_ACCURACY)
+            expected, actual = (thresholds(folder, f"thresholds{suffix}.csv") for folder in (one, two))
+            self.assertGreater(len(expected), 0)
+            self.assertEqual([row["event"] for row in actual], [row["event"] for row in expected])
+            for a, b in zip(expected, actual):
+                self.assertAlmostEqual(a["mu [-]"], b["mu [-]"], delta=a["uncertainty [-]"] + b["uncertainty [-]"] + 1e-6)
+        for a, b in zip(read_table(one / "argument_counts.csv"), read_table(two / "argument_counts.csv"), strict=True):
+            self.assertEqual(a["modes counted [-]"], b["modes counted [-]"])
+        self.assertEqual([len(by_mu(read_table(folder / "map.csv"))) for folder in (one, two)], [4, 4])
