@@ -225,8 +225,13 @@ class Dissipation(PlotTest):
 class Pictures(ProgramTest):
     """What becomes of pictures when they are drawn again and when the run is repeated."""
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.run_scene("original")
+
     def setUp(self):
-        self.results = self.run_scene("results")
+        self.results = shutil.copytree(self.folder / "original", self.folder / "results")
         self.picture = self.results / "plots" / "complex_plane.svg"
         self.addCleanup(shutil.rmtree, self.results)
 
