@@ -43,8 +43,8 @@ namespace
     std::vector<OperatingPoint> points() const
     {
       std::vector<OperatingPoint> result;
-      for (int i = 0; i <= 16; ++i)
-        result.push_back(at(0.05 * i));
+      for (int i = 0; i <= 8; ++i)
+        result.push_back(at(0.1 * i));
       return result;
     }
 
@@ -111,7 +111,7 @@ TEST(CertifiedSweep, AgreesWithFullOrder)
       const Chart                         chart(c_b, c_t);
       const auto                          points = chart.points();
       std::map<int, std::vector<Complex>> full;
-      for (const int i : {0, 5, 9, 13, 16})
+      for (const int i : {0, 2, 4, 6, 8})
         full[i] = krylov(with_values(chart.system, points[i].values), points[i].friction_coefficient, 1e-11).lambda;
       for (const double tolerance : {1e-6, 1e-8})
         {
@@ -142,7 +142,7 @@ TEST(CertifiedSweep, GoesOnAsIfNotInterrupted)
   MemoryStore           whole;
   ChartModel            model  = chart.model();
   const auto            result = sweep(model, points, options, &whole);
-  for (const int n_before : {0, 1, 7, 16})
+  for (const int n_before : {0, 1, 4, 8})
     {
       MemoryStore store;
       store.n_left = n_before;
