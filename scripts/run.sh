@@ -46,7 +46,7 @@ draw_plots()
   fi
 }
 
-setup squeal
+setup release squeal
 
 cd "$squeal_root"
 for parameter_file in "${parameter_files[@]}"; do

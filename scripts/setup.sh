@@ -108,13 +108,14 @@ build_jobs()
   echo "$jobs"
 }
 
-# Configures when needed and builds the targets named, or everything; the output is shown when something fails,
-# and kept in build/release/build.log.
-build_release()
+# build PRESET [TARGET]...: configures when needed and builds the targets named, or everything; the output is shown when
+# something fails, and kept in build/PRESET/build.log.
+build()
 {
-  local targets=()
+  local preset=$1 targets=()
+  shift
   (($# == 0)) || targets=(--target "$@")
-  local directory=$squeal_root/build/release
+  local directory=$squeal_root/build/$preset
   local log=$directory/build.log fresh=()
   mkdir -p "$directory"
   # A build directory that came along with a copied checkout would build the original.
@@ -122,13 +123,13 @@ build_release()
      ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$squeal_root" "$directory/CMakeCache.txt"; then
     fresh=(--fresh)
   fi
-  echo "Building build/release"
+  echo "Building build/$preset"
   if ! (
     cd "$squeal_root"
     if [[ ! -f $directory/build.ninja ]] || ((${#fresh[@]} > 0)); then
-      cmake --preset release "${fresh[@]}" || exit 1
+      cmake --preset "$preset" "${fresh[@]}" || exit 1
     fi
-    cmake --build --preset release "${targets[@]}" -- --quiet -j "$(build_jobs)"
+    cmake --build --preset "$preset" "${targets[@]}" -- --quiet -j "$(build_jobs)"
   ) >"$log" 2>&1; then
     cat "$log" >&2
     complain "The build failed; the messages above are in $log."
@@ -152,14 +153,14 @@ set_environment()
   fi
 }
 
-# setup [TARGET]: everything up to a program that can be run; without TARGET, the tests are built, too.
+# setup PRESET [TARGET]...: everything up to a program that can be run; without TARGET, the tests are built, too.
 setup()
 {
   install_packages "${packages[@]}"
   mapfile -t packages_linker < <(linker_package)
   install_packages "${packages_linker[@]}"
   check_blas
-  build_release "$@"
+  build "$@"
   set_environment
 }
 
@@ -173,5 +174,5 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
     esac
   done
   install_packages "${packages[@]}" "${additional[@]}"
-  setup squeal
+  setup release squeal
 fi

@@ -8,7 +8,7 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
-setup
+setup release
 
 cd "$squeal_root"
 ctest --preset release --no-tests=error "$@"

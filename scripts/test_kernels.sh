@@ -14,7 +14,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 declare -A needs=([Prescott]="pni" [Haswell]="avx2 fma" [SkylakeX]="avx512f avx512dq avx512bw avx512vl avx512cd")
 flags=" $(grep -m 1 '^flags' /proc/cpuinfo) "
 
-setup
+setup release
 
 cd "$squeal_root"
 failed=()
