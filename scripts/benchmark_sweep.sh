@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Times a certified sweep on one core beside full-order solutions by SLEPc's TOAR.
+# Times a error-controlled sweep on one core beside full-order solutions by SLEPc's TOAR.
 #
 #   scripts/benchmark_sweep.sh PRM [--modes N] [--core N] [-- OPTION...]
 #

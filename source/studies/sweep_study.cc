@@ -4,7 +4,7 @@
 #include <squeal/base/version.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/stability/branches.h>
-#include <squeal/stability/certified_sweep.h>
+#include <squeal/stability/error_controlled_sweep.h>
 #include <squeal/stability/contour_count.h>
 #include <squeal/stability/mode_links.h>
 #include <squeal/studies/contact_states.h>
@@ -247,10 +247,10 @@ namespace Squeal
         run.progress.finish(text(model->size(), " vectors to start from"));
       }
 
-      /// Proves what can be proved at all points, then follows branches and collects the map.
+      /// Evaluates all points to the tolerance, then follows branches and collects the map.
       void add_to(SweepResults &results)
       {
-        certify();
+        evaluate_points();
         for (std::size_t l = 0; l < lines.size(); ++l)
           if (lines[l].kind != Line::Kind::map)
             for (const auto &stretch : stretches(static_cast<int>(l)))
@@ -270,18 +270,18 @@ namespace Squeal
         return {mu, selected(contact.damping, regime.closed).values(), line};
       }
 
-      void certify()
+      void evaluate_points()
       {
         std::vector<OperatingPoint> points;
         for (const SweepPoint &point : regime.points)
           points.push_back(operating_point(point.line, point.friction_coefficient, point.contact));
 
         run.progress.begin("Sweep");
-        CertifiedSweepOptions options;
+        ErrorControlledSweepOptions options;
         options.tolerance     = run.parameters.sweep.tolerance;
         options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
         const auto store      = store_of("sweep");
-        const CertifiedSweep sweep = certified_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
+        const ErrorControlledSweep sweep = error_controlled_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
         for (std::size_t i = 0; i < points.size(); ++i)
           if (sweep.points[i])
             known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
@@ -291,7 +291,7 @@ namespace Squeal
         run.measure("largest estimated error of lambda [-]", sweep.worst_error);
         if (!sweep.why_stopped.empty())
           run.progress.note(text("  note: ", points.size() - known.size(), " operating points miss the tolerance of ", options.tolerance, ": ",
-                                 sweep.why_stopped, "; what is written was proved. Raise Sweep/Maximum basis or Sweep/Tolerance"));
+                                 sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
       }
 
       /// Where a phase of the work on this contact set keeps its results.
@@ -543,7 +543,7 @@ namespace Squeal
           }
       }
 
-      /// The chosen friction coefficients may be ones of which nothing was proved.
+      /// The chosen friction coefficients may be ones that miss the tolerance.
       void note_if_inaccurate(const ChartPoint &point) const
       {
         const double error = model->largest_error(point);
@@ -732,7 +732,7 @@ namespace Squeal
       if (first < 0.)
         return n_known == n_asked ? "  stable: no mode of the band grows at any friction coefficient of the sweep" :
                                     text("  no mode of the band grows at ", n_known, " of ", n_asked,
-                                         " friction coefficients; of the others nothing was proved");
+                                         " friction coefficients; the others miss the tolerance");
       return text("  squeal from mu = ", first, " on (", first_label, ")",
                   strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
                   "; most at mu = ", worst, ": ", label, " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");

@@ -542,9 +542,9 @@ TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
   const auto sweep = [&](ChartStore *store) {
     Progress   progress;
     ChartModel model(system, inverse, 0., *real.vectors, omega_max, 0.05);
-    return certified_sweep(model, points, {4, 0}, {}, store, MPI_COMM_WORLD, progress);
+    return error_controlled_sweep(model, points, {4, 0}, {}, store, MPI_COMM_WORLD, progress);
   };
-  const CertifiedSweep whole = sweep(nullptr);
+  const ErrorControlledSweep whole = sweep(nullptr);
 
   // As if the run were killed before its third result
   struct Killed
@@ -588,7 +588,7 @@ TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
   for (const OperatingPoint &point : points)
     before.push_back(store->find(point));
   EXPECT_TRUE(before[0] && before[1] && !before[2]);
-  const CertifiedSweep again = sweep(store.get());
+  const ErrorControlledSweep again = sweep(store.get());
   ASSERT_EQ(again.points.size(), whole.points.size());
   ChartCheckpoint finished = checkpoint();
   EXPECT_EQ(finished.n_found(), 5);

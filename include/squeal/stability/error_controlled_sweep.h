@@ -13,7 +13,7 @@
 namespace Squeal
 {
   /// How far a basis is grown for a chart.
-  struct CertifiedSweepOptions
+  struct ErrorControlledSweepOptions
   {
     double tolerance     = 1e-6; ///< on the estimated |δλ| / |λ| of every mode of the band at every operating point [-]
     int    maximum_basis = 1500; ///< vectors, at least the real modes
@@ -38,8 +38,8 @@ namespace Squeal
     virtual void keep(const MultiVector &block) = 0;
   };
 
-  /// What a sweep has proved.
-  struct CertifiedSweep
+  /// What a sweep has found within its tolerance.
+  struct ErrorControlledSweep
   {
     std::vector<std::optional<ChartPoint>> points;    ///< one for each operating point; nothing where the tolerance is missed
     double                                 worst_error; ///< largest estimated |δλ| / |λ| of the points [-]
@@ -62,10 +62,10 @@ namespace Squeal
    * determine how a sweep goes on: an interrupted one continues as if it had
    * not been.
    */
-  CertifiedSweep certified_sweep(ChartModel                        &model,
+  ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                  const std::vector<OperatingPoint> &points,
                                  const std::vector<int>            &training,
-                                 const CertifiedSweepOptions       &options,
+                                 const ErrorControlledSweepOptions       &options,
                                  ChartStore                        *store,
                                  MPI_Comm                           communicator,
                                  Progress                          &progress);

@@ -1,6 +1,6 @@
 #include "solutions.h"
 
-#include <squeal/stability/certified_sweep.h>
+#include <squeal/stability/error_controlled_sweep.h>
 
 #include <map>
 
@@ -95,16 +95,16 @@ namespace
     int                                          n_left = 1000000;
   };
 
-  CertifiedSweep sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const CertifiedSweepOptions &options, ChartStore *store = nullptr)
+  ErrorControlledSweep sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const ErrorControlledSweepOptions &options, ChartStore *store = nullptr)
   {
     Progress progress;
-    return certified_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
+    return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
   }
 } // namespace
 
 
 
-TEST(CertifiedSweep, AgreesWithFullOrder)
+TEST(ErrorControlledSweep, AgreesWithFullOrder)
 {
   for (const auto &[c_b, c_t] : {std::make_pair(0., 0.), {40., 0.}, {40., -10.}})
     {
@@ -115,7 +115,7 @@ TEST(CertifiedSweep, AgreesWithFullOrder)
         full[i] = krylov(with_values(chart.system, points[i].values), points[i].friction_coefficient, 1e-11).lambda;
       for (const double tolerance : {1e-6, 1e-8})
         {
-          CertifiedSweepOptions options;
+          ErrorControlledSweepOptions options;
           options.tolerance = tolerance;
           ChartModel model  = chart.model();
           const auto result = sweep(model, points, options);
@@ -134,11 +134,11 @@ TEST(CertifiedSweep, AgreesWithFullOrder)
 
 
 
-TEST(CertifiedSweep, GoesOnAsIfNotInterrupted)
+TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
 {
   const Chart           chart(40.);
   const auto            points = chart.points();
-  CertifiedSweepOptions options;
+  ErrorControlledSweepOptions options;
   MemoryStore           whole;
   ChartModel            model  = chart.model();
   const auto            result = sweep(model, points, options, &whole);
@@ -170,11 +170,11 @@ TEST(CertifiedSweep, GoesOnAsIfNotInterrupted)
 
 
 
-TEST(CertifiedSweep, StopsAtWhatItProved)
+TEST(ErrorControlledSweep, StopsAtWhatItProved)
 {
   const Chart           chart(0.);
   const auto            points = chart.points();
-  CertifiedSweepOptions options;
+  ErrorControlledSweepOptions options;
   options.tolerance     = 1e-9;
   options.maximum_basis = static_cast<int>(2 * chart.real.eigenvalues.size());
   ChartModel model      = chart.model();

@@ -1,5 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/stability/certified_sweep.h>
+#include <squeal/stability/error_controlled_sweep.h>
 #include <squeal/stability/mode_links.h>
 
 #include <deal.II/base/mpi.h>
@@ -97,17 +97,17 @@ namespace Squeal
     return result;
   }
 
-  CertifiedSweep certified_sweep(ChartModel                        &model,
+  ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                  const std::vector<OperatingPoint> &points,
                                  const std::vector<int>            &training,
-                                 const CertifiedSweepOptions       &options,
+                                 const ErrorControlledSweepOptions       &options,
                                  ChartStore                        *store,
                                  const MPI_Comm                     communicator,
                                  Progress                          &progress)
   {
     if (points.empty())
       throw SolverError("there is no operating point to evaluate", "sweep", "give one at least");
-    CertifiedSweep result{std::vector<std::optional<ChartPoint>>(points.size()), 0., 0, ""};
+    ErrorControlledSweep result{std::vector<std::optional<ChartPoint>>(points.size()), 0., 0, ""};
     const auto     report = [&](const std::size_t n_finished, const double error) {
       std::ostringstream text;
       text << n_finished << " of " << points.size() << " operating points, " << model.size() << " vectors, estimated error " << error;
