@@ -9,7 +9,8 @@ int main(int argc, char **argv)
 {
   Squeal::use_native_blas_kernels(argv);
   Squeal::set_blas_threads(1);
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  // Takes its own arguments away before the libraries see them
   ::testing::InitGoogleTest(&argc, argv);
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
   return RUN_ALL_TESTS();
 }
