@@ -34,8 +34,10 @@ namespace
   Scene scene(const Case &c, const RadialDissipation dissipation = RadialDissipation::consistent, const Bodies bodies = Bodies::undamped)
   {
     const MaterialParameters    materials = mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}});
-    const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 0, 1}};
-    return Scene(mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)),
+    // Fewer elements where they are quadratic
+    const int                   n    = c.degree == 1 ? 2 : 1;
+    const std::vector<PolarPin> pins = {{Plan::Side::top, 0, n, 1, 1}, {Plan::Side::bottom, -1, n, 0, 1}};
+    return Scene(mapped(extrude(polar_plan(0.15, 0.3, 1 + n, 4 + 4 * n, pins), layers(1, 2)),
                         [c](const Point3 &p) {
                           // A cone, and some tilt about y so that no face is like another
                           return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
