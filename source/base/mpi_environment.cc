@@ -11,7 +11,11 @@ namespace Squeal
     // What mpirun tells the processes that it starts
     const char *n_processes = std::getenv("OMPI_COMM_WORLD_LOCAL_SIZE");
     if (n_processes == nullptr)
-      setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+      {
+        setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+        // Isolated processes would all make, and remove at their end, one and the same folder
+        setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+      }
     // Not the cores to which this process is bound, but all that there are
     else if (std::atoi(n_processes) > ::sysconf(_SC_NPROCESSORS_ONLN))
       setenv("OMPI_MCA_mpi_yield_when_idle", "1", 0);

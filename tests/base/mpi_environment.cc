@@ -12,7 +12,7 @@ using namespace Squeal;
 namespace
 {
   constexpr const char *n_processes = "OMPI_COMM_WORLD_LOCAL_SIZE", *yields = "OMPI_MCA_mpi_yield_when_idle",
-                       *is_isolated = "OMPI_MCA_ess_singleton_isolated";
+                       *is_isolated = "OMPI_MCA_ess_singleton_isolated", *has_folder = "OMPI_MCA_orte_create_session_dirs";
 
   /// Without the variables, which come back at the end.
   class MpiEnvironment : public ::testing::Test
@@ -20,7 +20,7 @@ namespace
   protected:
     MpiEnvironment()
     {
-      for (const char *name : {n_processes, yields, is_isolated})
+      for (const char *name : {n_processes, yields, is_isolated, has_folder})
         {
           if (const char *value = std::getenv(name))
             former[name] = value;
@@ -29,7 +29,7 @@ namespace
     }
     ~MpiEnvironment() override
     {
-      for (const char *name : {n_processes, yields, is_isolated})
+      for (const char *name : {n_processes, yields, is_isolated, has_folder})
         unsetenv(name);
       for (const auto &[name, value] : former)
         setenv(name.c_str(), value.c_str(), 1);
@@ -53,6 +53,7 @@ TEST_F(MpiEnvironment, OfMoreProcessesThanCores)
   prepare_mpi_environment();
   EXPECT_STREQ(std::getenv(yields), "0");
   EXPECT_EQ(std::getenv(is_isolated), nullptr);
+  EXPECT_EQ(std::getenv(has_folder), nullptr);
 }
 
 
@@ -61,5 +62,6 @@ TEST_F(MpiEnvironment, WithoutMpirun)
 {
   prepare_mpi_environment();
   EXPECT_STREQ(std::getenv(is_isolated), "1");
+  EXPECT_STREQ(std::getenv(has_folder), "0");
   EXPECT_EQ(std::getenv(yields), nullptr);
 }
