@@ -282,18 +282,29 @@ class Signals(LostResults):
             outcomes = list(pool.map(self.trial, range(self.TRIALS), delays))
         self.assertEqual([outcome for outcome in outcomes if outcome], [])
 
+    def end_on_two_processes(self, ending):
+        """Ends a run early and returns what it says; mpirun may hand the signal on when the run has just finished."""
+        process = self.start("copy", *LONG, n_processes=2)
+        self.wait_for((self.folder / "copy.unfinished").is_dir, process)
+        process.send_signal(ending)
+        _, message = process.communicate(timeout=PROMPT)
+        self.assertNotEqual(process.returncode, 0)
+        self.assertEqual(message.count("squeal was ended by"), 1, message)
+        self.assertEqual(list(self.folder.glob("copy.*")), [])
+        return message
+
     def test_of_several_processes(self):
         copy = self.copy()
-        before = contents(copy)
         for ending in (signal.SIGTERM, signal.SIGINT):
-            process = self.start("copy", *LONG, n_processes=2)
-            self.wait_for((self.folder / "copy.unfinished").is_dir, process)
-            process.send_signal(ending)
-            _, message = process.communicate(timeout=PROMPT)
-            self.assertNotEqual(process.returncode, 0)
-            self.assertEqual(message.count("squeal was ended by"), 1, message)
+            for _ in range(3):
+                before = contents(copy)
+                message = self.end_on_two_processes(ending)
+                if "the results were complete" not in message:
+                    break
+                self.assert_complete(copy)
+            else:
+                self.fail(f"three runs finished before {ending.name} came")
             self.assertEqual(contents(copy), before)
-            self.assertEqual(list(self.folder.glob("copy.*")), [])
 
     def test_a_reader_that_goes_away(self):
         process = self.start("new", *LONG)
