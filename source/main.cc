@@ -128,6 +128,7 @@ Decides whether a disc rubbed by friction pins squeals.
 
 int main(int argc, char **argv)
 {
+  Squeal::ignore_again(); // before the program starts itself again, perhaps
   Squeal::use_native_blas_kernels(argv);
   Squeal::prepare_mpi_environment();
   // A limit on the size of files is an error of the write that meets it.

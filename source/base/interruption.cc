@@ -34,6 +34,21 @@ namespace Squeal
     int              wake_up[2]; // ends of a pipe: the handler writes, the thread reads
     struct sigaction former[signals.size()];
 
+    // Libraries may take signals for themselves before main() begins, and nobody could tell any longer which the parent
+    // wants to be ignored, as nohup does. Functions of this section run before those of the libraries.
+    std::array<bool, signals.size()> is_ignored;
+
+    void remember_ignored()
+    {
+      for (std::size_t s = 0; s < signals.size(); ++s)
+        {
+          struct sigaction given;
+          ::sigaction(signals[s].number, nullptr, &given);
+          is_ignored[s] = given.sa_handler == SIG_IGN;
+        }
+    }
+    __attribute__((section(".preinit_array"), used)) void (*const first_of_all)() = remember_ignored;
+
     void tell_thread(const int number)
     {
       const int           kept = errno;
@@ -50,6 +65,13 @@ namespace Squeal
     }
   } // namespace
 
+  void ignore_again()
+  {
+    for (std::size_t s = 0; s < signals.size(); ++s)
+      if (is_ignored[s])
+        ::signal(signals[s].number, SIG_IGN);
+  }
+
   Interruption::Interruption()
   {
     if (::pipe2(wake_up, O_CLOEXEC) != 0)
@@ -64,9 +86,10 @@ namespace Squeal
         own.sa_flags         = SA_RESTART;
         ::sigfillset(&own.sa_mask);
         ::sigaction(signals[s].number, nullptr, &former[s]);
-        if (former[s].sa_handler != SIG_IGN)
+        if (!is_ignored[s])
           ::sigaction(signals[s].number, &own, nullptr);
       }
+    ignore_again();
   }
 
   Interruption::~Interruption()

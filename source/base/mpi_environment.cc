@@ -15,6 +15,8 @@ namespace Squeal
         setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
         // Isolated processes would all make, and remove at their end, one and the same folder
         setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
+        // Open MPI 5 makes a file for shared memory, which nobody else would read
+        setenv("OMPI_MCA_btl", "self", 0);
       }
     // Not the cores to which this process is bound, but all that there are
     else if (std::atoi(n_processes) > ::sysconf(_SC_NPROCESSORS_ONLN))

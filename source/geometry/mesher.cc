@@ -236,8 +236,11 @@ namespace Squeal
     }
 
     /// What became of a process that said nothing.
-    [[noreturn]] void explain_end(const int status, const std::string &log, const std::string &where)
+    [[noreturn]] void explain_end(const int status, const std::string &log, const MesherLimits &limits, const std::string &where)
     {
+      // Its allocator says so, and goes on without the memory
+      if (log.find("Out of memory") != std::string::npos)
+        refuse_memory(limits, where);
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
         throw ForbiddenAction("starts another program");
       if (WIFSIGNALED(status))
@@ -285,14 +288,14 @@ namespace Squeal
                       "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");
     const int status = mesher.wait();
     if (reply->empty())
-      explain_end(status, mesher.log(), where);
+      explain_end(status, mesher.log(), limits, where);
     try
       {
         return mesh_from(*reply, limits, where);
       }
     catch (const std::length_error &)
       {
-        explain_end(status, mesher.log(), where); // the reply breaks off
+        explain_end(status, mesher.log(), limits, where); // the reply breaks off
       }
   }
 } // namespace Squeal

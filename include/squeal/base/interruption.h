@@ -8,6 +8,9 @@
 
 namespace Squeal
 {
+  /// Ignores the signals that were ignored when the program began, whatever libraries have done since.
+  void ignore_again();
+
   /**
    * Ends the process when SIGINT, SIGTERM, SIGHUP or SIGPIPE arrives: cleans up,
    * says so in one line, and exits with 128 + the number of the signal. A thread
