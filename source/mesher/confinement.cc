@@ -225,7 +225,7 @@ namespace Squeal
       setrlimit(resource, &both);
     };
     limit(RLIMIT_AS, bytes);
-    limit(RLIMIT_CPU, seconds);
+    limit(RLIMIT_CPU, 2. * seconds + 10.); // beyond what the parent, which says what happened, allows
     limit(RLIMIT_CORE, 0.);
   }
 } // namespace Squeal

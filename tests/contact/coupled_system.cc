@@ -70,7 +70,7 @@ TEST_P(Contact, OperatorsAreOrthogonal)
   const auto  two = Testing::diagonal(P_n.RowMap(), [](int) { return 2.; });
   for (const SparseMatrix *P : {&P_n, &P_t, &P_b})
     EXPECT_LT(difference(*multiply(*P, *P, false, true), *two), 1e-15);
-  for (const auto &[P, Q] : {std::make_pair(&P_n, &P_t), std::make_pair(&P_n, &P_b), std::make_pair(&P_t, &P_b)})
+  for (const auto [P, Q] : {std::make_pair(&P_n, &P_t), std::make_pair(&P_n, &P_b), std::make_pair(&P_t, &P_b)})
     EXPECT_LT(max_norm(*multiply(*P, *Q, false, true)), 1e-15);
 }
 

@@ -146,5 +146,5 @@ def write_modes(directory, eigenvalues):
         writer = csv.writer(file)
         writer.writerow(["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]"])
         for number, value in enumerate(eigenvalues, start=1):
-            writer.writerow([f"mode {number}", 1, repr(value.imag / (2 * math.pi)), repr(value.real),
-                             repr(100 * value.real / value.imag)])
+            writer.writerow([f"mode {number}", 1, repr(float(value.imag) / (2 * math.pi)), repr(float(value.real)),
+                             repr(float(100 * value.real / value.imag))])
