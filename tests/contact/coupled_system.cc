@@ -70,7 +70,8 @@ TEST_P(Contact, OperatorsAreOrthogonal)
   const auto  two = Testing::diagonal(P_n.RowMap(), [](int) { return 2.; });
   for (const SparseMatrix *P : {&P_n, &P_t, &P_b})
     EXPECT_LT(difference(*multiply(*P, *P, false, true), *two), 1e-15);
-  for (const auto [P, Q] : {std::make_pair(&P_n, &P_t), std::make_pair(&P_n, &P_b), std::make_pair(&P_t, &P_b)})
+  const std::vector<std::pair<const SparseMatrix *, const SparseMatrix *>> pairs = {{&P_n, &P_t}, {&P_n, &P_b}, {&P_t, &P_b}};
+  for (const auto &[P, Q] : pairs)
     EXPECT_LT(max_norm(*multiply(*P, *Q, false, true)), 1e-15);
 }
 

@@ -5,6 +5,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import resource
 import shutil
 import signal
@@ -289,7 +290,10 @@ class Signals(LostResults):
         process.send_signal(ending)
         _, message = process.communicate(timeout=PROMPT)
         self.assertNotEqual(process.returncode, 0)
-        self.assertEqual(message.count("squeal was ended by"), 1, message)
+        # From version 5 on Open MPI passes on nothing that processes say after it has ended them
+        version = subprocess.run([MPIRUN, "--version"], text=True, capture_output=True, check=True).stdout
+        is_passed_on = int(re.search(r"(\d+)\.\d", version).group(1)) < 5
+        self.assertEqual(message.count("squeal was ended by"), int(is_passed_on), message)
         self.assertEqual(list(self.folder.glob("copy.*")), [])
         return message
 
