@@ -1,8 +1,6 @@
 #include <squeal/contact/coupled_system.h>
 #include <squeal/linear_algebra/sparse.h>
 
-#include <Epetra_Vector.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -13,17 +11,14 @@ namespace Squeal
   {
     using Matrix = std::shared_ptr<const SparseMatrix>;
 
-    /// Pᵀ diag(c) P; null if all c vanish.
-    Matrix damping_along(const SparseMatrix &P, const std::vector<double> &coefficients)
+    /// Damping of the contact along b and t by the factors P_bᵀ and P_tᵀ, on coupled dofs or others.
+    std::vector<Term> contact_damping_terms(const std::shared_ptr<const LowRankFactor> &radial,
+                                            const std::shared_ptr<const LowRankFactor> &tangential)
     {
-      if (std::all_of(coefficients.begin(), coefficients.end(), [](const double c) { return c == 0.; }))
-        return nullptr;
-      Epetra_Vector scale(P.RowMap());
-      for (int i = 0; i < scale.MyLength(); ++i)
-        scale[i] = coefficients[P.RowMap().GID(i)];
-      SparseMatrix scaled(P);
-      scaled.LeftScale(scale);
-      return multiply(P, scaled, true, false);
+      const auto term = [](const char *weights, const std::shared_ptr<const LowRankFactor> &factor) {
+        return low_rank_term(weights, 1, {}, factor, factor, weights);
+      };
+      return {term(SystemParameter::radial_damping, radial), term(SystemParameter::sliding_damping, tangential)};
     }
 
     bool is_friction(const Term &term)
@@ -62,8 +57,8 @@ namespace Squeal
 
   Matrix contact_damping(const ContactOperators &contact, const ContactDamping &damping)
   {
-    const Matrix along_b = damping_along(*contact.radial, damping.radial), along_t = damping_along(*contact.tangential, damping.sliding);
-    return along_b && along_t ? add(1., *along_b, 1., *along_t) : along_b ? along_b : along_t;
+    const auto radial = std::make_shared<LowRankFactor>(contact.radial), tangential = std::make_shared<LowRankFactor>(contact.tangential);
+    return sparse_matrices(contact_damping_terms(radial, tangential), damping.values()).damping;
   }
 
   CoupledSystem coupled_system(const std::vector<CoupledTerm> &bodies, Matrix tangential, Matrix radial, const ContactDamping &damping)
@@ -79,11 +74,8 @@ namespace Squeal
         result.terms.push_back(low_rank_term("friction, " + body.term.name, body.term.power,
                                              body.term.coefficient * Monomial{-1., {{SystemParameter::friction, 1}}},
                                              result.friction_forces, std::make_shared<LowRankFactor>(body.reaction)));
-    const auto add_damping = [&result](const char *weights, const std::shared_ptr<const LowRankFactor> &factor) {
-      result.terms.push_back(low_rank_term(weights, 1, {}, factor, factor, weights));
-    };
-    add_damping(SystemParameter::radial_damping, std::make_shared<LowRankFactor>(std::move(radial)));
-    add_damping(SystemParameter::sliding_damping, result.friction_forces);
+    for (Term &term : contact_damping_terms(std::make_shared<LowRankFactor>(std::move(radial)), result.friction_forces))
+      result.terms.push_back(std::move(term));
 
     for (const Term &term : result.terms)
       if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
@@ -174,14 +166,16 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
+    const ParameterValues reactions = system.at(-1.); // −μ A V is A V there
     reaction_real = reaction_imaginary = DenseMatrix(system.n_contact(), static_cast<int>(lambda.size()));
     for (const Term &term : system.terms)
       if (is_friction(term))
         {
           const DenseMatrix re = term.right->transpose_times(real_part), im = term.right->transpose_times(imaginary_part);
+          const double      coefficient = term.coefficient.at(reactions);
           for (int j = 0; j < re.n_columns(); ++j)
             {
-              const Complex theta = term.coefficient.at(system.at(-1.)) * (term.power == 0 ? 1. : std::pow(lambda[j], term.power));
+              const Complex theta = coefficient * (term.power == 0 ? 1. : std::pow(lambda[j], term.power));
               for (int i = 0; i < re.n_rows(); ++i)
                 {
                   const Complex r = theta * Complex(re(i, j), im(i, j));

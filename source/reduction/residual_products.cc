@@ -2,7 +2,6 @@
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>
-#include <array>
 #include <functional>
 
 namespace Squeal

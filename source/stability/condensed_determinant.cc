@@ -224,6 +224,7 @@ namespace Squeal
 
   ComplexDenseMatrix CondensedDeterminant::complement(const Complex lambda, const double mu) const
   {
+    const ParameterValues values = system.at(mu);
     ComplexDenseMatrix   N(n_rows, n_rows);
     const Ratio          ratio(lambda, deflation_square, shift);
     std::vector<Complex> series(n_terms);
@@ -235,7 +236,7 @@ namespace Squeal
       {
         const int           n_here  = block.term->right->rank();
         const DenseMatrix   weights = block.term->weighted(ones(n_here), system.values);
-        const Complex       scale   = block.scale(lambda, system.at(mu));
+        const Complex       scale   = block.scale(lambda, values);
         for (int j = 0; j < n_rows; ++j)
           {
             real.assign(n_here, 0.);
@@ -262,6 +263,7 @@ namespace Squeal
 
   CondensedDeterminant::OnModes CondensedDeterminant::on_modes(const Complex lambda, const double mu) const
   {
+    const ParameterValues values = system.at(mu);
     const int n_modes = omega.size();
     OnModes   result;
     for (const double frequency : omega)
@@ -271,7 +273,7 @@ namespace Squeal
     ComplexDenseMatrix X(n_rows, n_modes);
     for (const Block &block : blocks)
       {
-        const Complex     scale    = block.scale(lambda, system.at(mu));
+        const Complex     scale    = block.scale(lambda, values);
         const DenseMatrix on_modes = block.term->weighted(block.on_modes, system.values);
         for (int j = 0; j < n_modes; ++j)
           for (int i = 0; i < on_modes.n_rows(); ++i)
@@ -296,12 +298,13 @@ namespace Squeal
 
   double CondensedDeterminant::truncation(const Complex lambda, const double mu, const int n) const
   {
+    const ParameterValues values = system.at(mu);
     // Σ_{k ≥ n} 2 |u|ᵏ / |r|
     const Ratio  ratio(lambda, deflation_square, shift);
     const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n) / (1. - u) / std::abs(ratio.r);
     double       rows = 0.;
     for (const Block &block : blocks)
-      rows += std::abs(block.scale(lambda, system.at(mu))) * block.norm;
+      rows += std::abs(block.scale(lambda, values)) * block.norm;
     return rows * tail * forces_norm;
   }
 
