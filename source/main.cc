@@ -57,8 +57,7 @@ Decides whether a disc rubbed by friction pins squeals.
       }
     if (line.print_parameters)
       {
-        const Parameters parameters =
-          line.parameter_file.empty() ? Parameters() : Parameters::read(line.parameter_file, line.overrides);
+        const Parameters parameters = line.parameter_file.empty() ? Parameters() : Parameters::read(line.parameter_file, line.overrides);
         parameters.print(screen, true);
         return;
       }
@@ -136,10 +135,10 @@ int main(int argc, char **argv)
   Squeal::Interruption interruption;
 
   // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
-  char  without_handler[] = "-no_signal_handler";
-  char *library_arguments[] = {argv[0], without_handler, nullptr};
-  char **library_argv = library_arguments;
-  int    library_argc = 2;
+  char   without_handler[]   = "-no_signal_handler";
+  char  *library_arguments[] = {argv[0], without_handler, nullptr};
+  char **library_argv        = library_arguments;
+  int    library_argc        = 2;
   // deal.II must not start threads of its own beside the processes.
   dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
   const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;

@@ -38,8 +38,7 @@ namespace Squeal::Testing
   using Row = std::map<int, double>; ///< column to entry
 
   /// A sparse matrix whose row i is @p row(i).
-  inline std::shared_ptr<SparseMatrix>
-  sparse(const Epetra_Map &row_map, const Epetra_Map &column_map, const std::function<Row(int)> &row)
+  inline std::shared_ptr<SparseMatrix> sparse(const Epetra_Map &row_map, const Epetra_Map &column_map, const std::function<Row(int)> &row)
   {
     auto A = std::make_shared<SparseMatrix>(Copy, row_map, 0);
     for (int i = 0; i < row_map.NumMyElements(); ++i)
@@ -144,8 +143,7 @@ namespace Squeal::Testing
               for (int i = 0; i < 3; ++i)
                 {
                   for (int j = 0; j < 3; ++j)
-                    K[3 * a + i][3 * b + j] +=
-                      weight * (lame * gradient[a][i] * gradient[b][j] + shear * gradient[a][j] * gradient[b][i]);
+                    K[3 * a + i][3 * b + j] += weight * (lame * gradient[a][i] * gradient[b][j] + shear * gradient[a][j] * gradient[b][i]);
                   K[3 * a + i][3 * b + i] += weight * shear * dot;
                   M[3 * a + i][3 * b + i] += weight * density * value[a] * value[b];
                 }
@@ -172,8 +170,7 @@ namespace Squeal::Testing
             if (inside)
               for (int b = 0; b < 8; ++b)
                 {
-                  const int other =
-                    ((corner[0] + (b & 1)) * ny + corner[1] + ((b >> 1) & 1)) * nz + corner[2] + ((b >> 2) & 1);
+                  const int other = ((corner[0] + (b & 1)) * ny + corner[1] + ((b >> 1) & 1)) * nz + corner[2] + ((b >> 2) & 1);
                   for (int j = 0; j < 3; ++j)
                     row[3 * other + j] += element[3 * a + component][3 * b + j];
                 }

@@ -58,7 +58,10 @@ namespace Squeal::Testing
         plan.faces.push_back({{point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}});
     for (const PolarPin &pin : pins)
       {
-        Plan::Pin part{(pin.side == Plan::Side::top ? "pin_top_" : "pin_bottom_") + std::to_string(plan.pins.size() + 1), pin.side, {}, {{0., 0.}}};
+        Plan::Pin part{(pin.side == Plan::Side::top ? "pin_top_" : "pin_bottom_") + std::to_string(plan.pins.size() + 1),
+                       pin.side,
+                       {},
+                       {{0., 0.}}};
         for (int i = pin.ring; i < pin.ring + pin.n_rings; ++i)
           for (int j = pin.sector; j < pin.sector + pin.n_sectors; ++j)
             part.faces.push_back(face(i, j));

@@ -30,9 +30,9 @@ namespace Squeal
 
     void add_to(TrilinosWrappers::SparseMatrix &matrix, const FreeDofs &dofs, const FullMatrix<double> &cell_matrix)
     {
-      const unsigned int               n = dofs.numbers.size();
+      const unsigned int                   n = dofs.numbers.size();
       std::vector<types::global_dof_index> columns(dofs.numbers.begin(), dofs.numbers.end());
-      std::vector<double>              values(n);
+      std::vector<double>                  values(n);
       for (unsigned int i = 0; i < n; ++i)
         {
           for (unsigned int j = 0; j < n; ++j)

@@ -91,23 +91,23 @@ namespace Squeal
                                                            Tensor<1, 3>({x[0] / r, x[1] / r, 0.});
           for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
             for (unsigned int j = 0; j < fe.n_dofs_per_cell(); ++j)
-              K(i, j) += e[fe.system_to_component_index(i).first] * e[fe.system_to_component_index(j).first] *
-                         values.shape_value(i, q) * values.shape_value(j, q) * values.JxW(q);
+              K(i, j) += e[fe.system_to_component_index(i).first] * e[fe.system_to_component_index(j).first] * values.shape_value(i, q) *
+                         values.shape_value(j, q) * values.JxW(q);
         }
     }
 
     /// Terms of a body: stiffness and mass at unit coefficient, once more as its damping.
     void add_body(BodyTerms &bodies, const Model &model, const std::string &name, const Material &material, const bool is_disc)
     {
-      FEValues<3> values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
-                         update_values | update_gradients | update_JxW_values);
+      FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
+                                 update_values | update_gradients | update_JxW_values);
       const CellPredicate belongs = [is_disc](const Cell &cell) { return (cell->material_id() == 0) == is_disc; };
-      const auto      K       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
+      const auto          K       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
         values.reinit(cell);
         check_orientation(values, model.component_names()[cell->material_id()]);
         integrate_stiffness(values, material.poisson_ratio, cell_matrix);
       });
-      const auto      M       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
+      const auto          M       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
         values.reinit(cell);
         integrate_mass(values, cell_matrix);
       });
@@ -126,8 +126,8 @@ namespace Squeal
 
     void add_mount(BodyTerms &bodies, const Model &model, const ElasticMount &mount)
     {
-      FEFaceValues<3> values(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
-                             update_values | update_quadrature_points | update_JxW_values);
+      FEFaceValues<3>          values(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
+                                      update_values | update_quadrature_points | update_JxW_values);
       const types::boundary_id surface    = model.surface_id(mount.surface);
       const auto               is_mounted = [surface](const Cell &cell, const unsigned int f) {
         return cell->at_boundary(f) && cell->face(f)->boundary_id() == surface;
@@ -136,9 +136,9 @@ namespace Squeal
         const auto faces = cell->face_indices();
         return std::any_of(faces.begin(), faces.end(), [&](const unsigned int f) { return is_mounted(cell, f); });
       };
-      for (const auto &[direction, name, stiffness] : {std::make_tuple(radial, "radial", mount.radial),
-                                                       std::make_tuple(tangential, "tangential", mount.tangential),
-                                                       std::make_tuple(axial, "axial", mount.axial)})
+      for (const auto &[direction, name, stiffness] :
+           {std::make_tuple(radial, "radial", mount.radial), std::make_tuple(tangential, "tangential", mount.tangential),
+            std::make_tuple(axial, "axial", mount.axial)})
         if (stiffness != 0.)
           {
             const auto        K = assemble_cells(model, has_mount, [&, e = direction](const Cell &cell, FullMatrix<double> &cell_matrix) {
@@ -151,7 +151,7 @@ namespace Squeal
                   }
             });
             const std::string parameter = std::string(name) + " stiffness, " + mount.surface;
-            bodies.values[parameter]    = {stiffness};
+            bodies.values[parameter]           = {stiffness};
             bodies.terms.push_back(sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, K));
           }
     }

@@ -19,7 +19,9 @@ namespace Squeal
       for (const unsigned int q : values.quadrature_point_indices())
         {
           const Point<3> &x         = values.quadrature_point(q);
-          const auto      turned_by = [&](const unsigned int i) { return x[0] * values.shape_grad(i, q)[1] - x[1] * values.shape_grad(i, q)[0]; };
+          const auto      turned_by = [&](const unsigned int i) {
+            return x[0] * values.shape_grad(i, q)[1] - x[1] * values.shape_grad(i, q)[0];
+          };
           for (const unsigned int i : values.dof_indices())
             for (const unsigned int j : values.dof_indices())
               if (fe.system_to_component_index(i).first == fe.system_to_component_index(j).first)
@@ -32,14 +34,15 @@ namespace Squeal
   {
     FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
                                update_values | update_gradients | update_quadrature_points | update_JxW_values);
-    const CellPredicate is_disc  = [](const Cell &cell) { return cell->material_id() == 0; };
+    const CellPredicate is_disc   = [](const Cell &cell) { return cell->material_id() == 0; };
     const auto          assembled = [&](const auto &integrand) {
       return assemble_cells(model, is_disc, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
         values.reinit(cell);
         integrate(values, cell_matrix, integrand);
       });
     };
-    const auto G = assembled([](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
+    const auto G =
+      assembled([](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
     const auto N = assembled([](double, const double turned_v, double, const double turned_u) { return turned_v * turned_u; });
 
     const char *const speed = "angular velocity of the disc", *const density = "density, disc";

@@ -8,7 +8,9 @@ namespace Squeal
 {
   namespace
   {
-    [[noreturn]] void refuse(const std::string &what, const std::string &word, const std::string &change = "squeal --help lists the options")
+    [[noreturn]] void refuse(const std::string &what,
+                             const std::string &word,
+                             const std::string &change = "squeal --help lists the options")
     {
       throw ParameterError(what, "command line, `" + word + "`", change);
     }
@@ -21,13 +23,13 @@ namespace Squeal
 
   CommandLine parse_command_line(const std::vector<std::string> &words)
   {
-    CommandLine                               line;
-    const std::map<std::string, bool *>       switches = {{"--dry-run", &line.dry_run},
-                                                          {"--print-parameters", &line.print_parameters},
-                                                          {"--version", &line.version},
-                                                          {"--help", &line.help},
-                                                          {"-h", &line.help}};
-    std::vector<std::string>                  outputs, files;
+    CommandLine                                             line;
+    const std::map<std::string, bool *>                     switches = {{"--dry-run", &line.dry_run},
+                                                                        {"--print-parameters", &line.print_parameters},
+                                                                        {"--version", &line.version},
+                                                                        {"--help", &line.help},
+                                                                        {"-h", &line.help}};
+    std::vector<std::string>                                outputs, files;
     const std::map<std::string, std::vector<std::string> *> with_value = {{"--set", &line.overrides}, {"--output", &outputs}};
 
     bool options_end = false;

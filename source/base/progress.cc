@@ -85,8 +85,8 @@ namespace Squeal
     if (!current.empty())
       finish();
     const std::lock_guard<std::mutex> lock(mutex);
-    current    = name;
-    step_start = Clock::now();
+    current        = name;
+    step_start     = Clock::now();
     cpu_step_start = cpu_time();
     state.clear();
   }

@@ -56,7 +56,8 @@ namespace Squeal
     while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
       --length;
     std::string result = text.substr(0, length);
-    std::replace_if(result.begin(), result.end(), [](const unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+    std::replace_if(
+      result.begin(), result.end(), [](const unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
     return length == text.size() ? result : result + "... (" + std::to_string(text.size()) + " characters)";
   }
 

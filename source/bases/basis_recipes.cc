@@ -47,29 +47,33 @@ namespace Squeal
 
     // --------------------------------------------------------- uncoupled bodies
 
-    const BasisPart disc_free = {"Phi_f^D",
-                                 [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_free, basis, "Phi_f^D"); },
-                                 &Counts::disc_free,
-                                 {Source::disc_free},
-                                 true};
+    const BasisPart disc_free = {
+      "Phi_f^D",
+      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_free, basis, "Phi_f^D"); },
+      &Counts::disc_free,
+      {Source::disc_free},
+      true};
 
-    const BasisPart disc_sliding = {"Phi_s^D",
-                                    [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_sliding, basis, "Phi_s^D"); },
-                                    &Counts::disc_sliding,
-                                    {Source::disc_sliding},
-                                    true};
+    const BasisPart disc_sliding = {
+      "Phi_s^D",
+      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_sliding, basis, "Phi_s^D"); },
+      &Counts::disc_sliding,
+      {Source::disc_sliding},
+      true};
 
-    const BasisPart pins_free = {"Phi_f^P",
-                                 [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_free, basis, "Phi_f^P"); },
-                                 &Counts::pins_free,
-                                 {Source::pins_free},
-                                 true};
+    const BasisPart pins_free = {
+      "Phi_f^P",
+      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_free, basis, "Phi_f^P"); },
+      &Counts::pins_free,
+      {Source::pins_free},
+      true};
 
-    const BasisPart pins_sliding = {"Phi_s^P",
-                                    [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_sliding, basis, "Phi_s^P"); },
-                                    &Counts::pins_sliding,
-                                    {Source::pins_sliding},
-                                    true};
+    const BasisPart pins_sliding = {
+      "Phi_s^P",
+      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_sliding, basis, "Phi_s^P"); },
+      &Counts::pins_sliding,
+      {Source::pins_sliding},
+      true};
 
     const BasisPart normal_attachment = {"(Psi_an^D - Psi_an^P)",
                                          [](const In &in, const std::string &basis) { return statics(in, basis).normal_attachment(); },
@@ -77,17 +81,19 @@ namespace Squeal
                                          {Source::uncoupled_factor, Source::normal_attachment},
                                          true};
 
-    const BasisPart normal_attachment_disc = {"Psi_an^D",
-                                              [](const In &in, const std::string &basis) { return statics(in, basis).normal_attachment(Component::disc); },
-                                              &Counts::contact,
-                                              {Source::uncoupled_factor, Source::normal_attachment},
-                                              true};
+    const BasisPart normal_attachment_disc = {
+      "Psi_an^D",
+      [](const In &in, const std::string &basis) { return statics(in, basis).normal_attachment(Component::disc); },
+      &Counts::contact,
+      {Source::uncoupled_factor, Source::normal_attachment},
+      true};
 
-    const BasisPart tangential_attachment = {"(Psi_at^D - Psi_at^P)",
-                                             [](const In &in, const std::string &basis) { return statics(in, basis).tangential_attachment(); },
-                                             &Counts::contact,
-                                             {Source::uncoupled_factor, Source::tangential_attachment},
-                                             true};
+    const BasisPart tangential_attachment = {
+      "(Psi_at^D - Psi_at^P)",
+      [](const In &in, const std::string &basis) { return statics(in, basis).tangential_attachment(); },
+      &Counts::contact,
+      {Source::uncoupled_factor, Source::tangential_attachment},
+      true};
 
     const BasisPart rubbing_attachment = {
       "(Psi_amu^D - Psi_amu^P)",
@@ -96,17 +102,19 @@ namespace Squeal
       {Source::uncoupled_factor, Source::normal_attachment, Source::tangential_attachment},
       true};
 
-    const BasisPart constraint_disc = {"Psi_cn^D",
-                                       [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::disc); },
-                                       &Counts::contact,
-                                       {Source::constraint_disc},
-                                       true};
+    const BasisPart constraint_disc = {
+      "Psi_cn^D",
+      [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::disc); },
+      &Counts::contact,
+      {Source::constraint_disc},
+      true};
 
-    const BasisPart constraint_pins = {"Psi_cn^P",
-                                       [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::pins); },
-                                       &Counts::contact,
-                                       {Source::constraint_pins},
-                                       true};
+    const BasisPart constraint_pins = {
+      "Psi_cn^P",
+      [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::pins); },
+      &Counts::contact,
+      {Source::constraint_pins},
+      true};
 
     // ----------------------------------------------------------- coupled system
 
@@ -115,14 +123,16 @@ namespace Squeal
                             &Counts::real,
                             {Source::coupled_factor, Source::real}};
 
-    const BasisPart coupled_tangential_attachment = {"(Psi_cat^D - Psi_cat^P)",
-                                                     [](const In &in, const std::string &basis) -> MultiVector { return inverse(in, basis).attachment_modes(); },
-                                                     &Counts::contact,
-                                                     {Source::coupled_factor}};
+    const BasisPart coupled_tangential_attachment = {
+      "(Psi_cat^D - Psi_cat^P)",
+      [](const In &in, const std::string &basis) -> MultiVector { return inverse(in, basis).attachment_modes(); },
+      &Counts::contact,
+      {Source::coupled_factor}};
 
     const BasisPart friction_right = {"Psi_Rmu",
                                       [](const In &in, const std::string &basis) {
-                                        return friction_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis), Side::right);
+                                        return friction_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis),
+                                                                 Side::right);
                                       },
                                       &Counts::real,
                                       {}};
@@ -136,7 +146,8 @@ namespace Squeal
 
     const BasisPart damping = {"K_c^-1 C_c Phi_R",
                                [](const In &in, const std::string &basis) {
-                                 return damping_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis), in.friction_coefficient);
+                                 return damping_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis),
+                                                         in.friction_coefficient);
                                },
                                &Counts::real,
                                {}};
@@ -167,8 +178,12 @@ namespace Squeal
       {Kind::mixed, "mixed", {&disc_free, &pins_sliding, &normal_attachment_disc, &constraint_pins}, false},
       {Kind::free_tangential, "free + t.a.m.", {&disc_free, &pins_free, &normal_attachment, &tangential_attachment}},
       {Kind::free_rubbing, "free with r.a.m.", {&disc_free, &pins_free, &rubbing_attachment}},
-      {Kind::fixed_tangential, "fixed + t.a.m.", {&disc_sliding, &pins_sliding, &constraint_disc, &constraint_pins, &tangential_attachment}},
-      {Kind::mixed_tangential, "mixed + t.a.m.", {&disc_free, &pins_sliding, &normal_attachment_disc, &constraint_pins, &tangential_attachment}},
+      {Kind::fixed_tangential,
+       "fixed + t.a.m.",
+       {&disc_sliding, &pins_sliding, &constraint_disc, &constraint_pins, &tangential_attachment}},
+      {Kind::mixed_tangential,
+       "mixed + t.a.m.",
+       {&disc_free, &pins_sliding, &normal_attachment_disc, &constraint_pins, &tangential_attachment}},
       {Kind::real, "real", {&real}},
       {Kind::real_tangential, "real + t.a.m.", {&real, &coupled_tangential_attachment}},
       {Kind::real_first_order, "real + 1st-ord.", {&real, &friction_right}},

@@ -138,7 +138,7 @@ namespace Squeal
       if (!(n_orders >= 1.))
         return 0.;
       const double n_samples = std::min(n_orders, most_orders), width = n_orders / n_samples;
-      double       sum       = 0.;
+      double       sum = 0.;
       for (double i = 0.; i < n_samples; ++i)
         {
           const double k_n = ((i + 0.5) * width + 0.5 - offset) * M_PI / body.height;
@@ -176,8 +176,9 @@ namespace Squeal
     return disc + pins;
   }
 
-  ModeCountEstimate
-  expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, const double largest_circular_frequency)
+  ModeCountEstimate expected_number_of_modes(const HexMesh            &mesh,
+                                             const MaterialParameters &materials,
+                                             const double              largest_circular_frequency)
   {
     ModeCountEstimate estimate;
     for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)

@@ -38,7 +38,7 @@ namespace Squeal
                   subtract(basis, s, i, j);
                   subtract(combinations, s, i, j);
                 }
-            const double norm = std::sqrt(inner(basis.column(j), basis.column(j)));
+            const double norm   = std::sqrt(inner(basis.column(j), basis.column(j)));
             const double factor = independent.exceeded_by(norm / before) ? 1. / norm : 0.;
             scale(basis, factor, j);
             scale(combinations, factor, j);
@@ -191,8 +191,8 @@ namespace Squeal
             ab += a * b;
             bb += b * b;
           }
-        const double angle = 0.5 * std::atan2(2. * ab, aa - bb);
-        double       largest = 0.;
+        const double        angle   = 0.5 * std::atan2(2. * ab, aa - bb);
+        double              largest = 0.;
         std::vector<double> amplitude;
         for (const auto &[a, b] : profile)
           {
@@ -245,8 +245,8 @@ namespace Squeal
         const auto fields = disc.cylindrical(modes.column(j));
 
         // Harmonic of the largest energy, the three directions together
-        double largest = -1.;
-        int    n_best  = 0;
+        double                largest = -1.;
+        int                   n_best  = 0;
         std::array<double, 3> energies{};
         for (int n = 0; n <= largest_harmonic; ++n)
           {
@@ -309,8 +309,8 @@ namespace Squeal
         }
 
     // Energies of bending, torsion and stretching: projections on polynomials of the height
-    constexpr int         n_height_functions = 4;
-    std::vector<unsigned> family(modes.n_columns());
+    constexpr int                      n_height_functions = 4;
+    std::vector<unsigned>              family(modes.n_columns());
     std::vector<std::array<double, 3>> energies(modes.n_columns(), std::array<double, 3>{});
     for (const auto &[number, pin] : pins)
       {
@@ -355,12 +355,12 @@ namespace Squeal
           {
             for (std::size_t i = 0; i < n; ++i)
               {
-                const auto u = displacement(*pin.nodes[i], modes.column(m));
-                u_1[i]       = u[0] * e_1[0] + u[1] * e_1[1] + u[2] * e_1[2];
-                u_2[i]       = u[0] * e_2[0] + u[1] * e_2[1] + u[2] * e_2[2];
-                u_axial[i]   = u[0] * pin.axis[0] + u[1] * pin.axis[1] + u[2] * pin.axis[2];
+                const auto u   = displacement(*pin.nodes[i], modes.column(m));
+                u_1[i]         = u[0] * e_1[0] + u[1] * e_1[1] + u[2] * e_1[2];
+                u_2[i]         = u[0] * e_2[0] + u[1] * e_2[1] + u[2] * e_2[2];
+                u_axial[i]     = u[0] * pin.axis[0] + u[1] * pin.axis[1] + u[2] * pin.axis[2];
                 const double r = std::hypot(x[i], y[i]);
-                u_phi[i]     = r > 0. ? (x[i] * u_2[i] - y[i] * u_1[i]) / r : 0.;
+                u_phi[i]       = r > 0. ? (x[i] * u_2[i] - y[i] * u_1[i]) / r : 0.;
               }
             energies[m][0] += translation.energy(u_1) + translation.energy(u_2);
             energies[m][1] += torsion.energy(u_phi);
@@ -369,8 +369,8 @@ namespace Squeal
       }
 
     // Numbers within each family, by the number of modes that every pin has of it
-    std::vector<std::string> labels;
-    std::array<std::size_t, 3> count{};
+    std::vector<std::string>         labels;
+    std::array<std::size_t, 3>       count{};
     const std::array<std::size_t, 3> per_order = {{2 * pins.size(), pins.size(), pins.size()}};
     for (const auto &e : energies)
       {

@@ -72,7 +72,8 @@ namespace Squeal
       for (int j = 0; j < X.NumVectors(); ++j)
         {
           if (!(squares[j] > 0.))
-            throw SolverError("column " + std::to_string(j) + " of T_r0 is zero or undefined", where(recipe), "check the step that computed it");
+            throw SolverError("column " + std::to_string(j) + " of T_r0 is zero or undefined", where(recipe),
+                              "check the step that computed it");
           X(j)->Scale(1. / std::sqrt(squares[j]));
         }
     }
@@ -85,7 +86,11 @@ namespace Squeal
     }
 
     /// T_r0 T_cr in coupled coordinates; the columns of T_r0 get scaled.
-    MultiVector connect(MultiVector &T_r0, const BasisRecipe &recipe, const BasisIngredients &in, const double tolerance, ConnectionRank &connection)
+    MultiVector connect(MultiVector            &T_r0,
+                        const BasisRecipe      &recipe,
+                        const BasisIngredients &in,
+                        const double            tolerance,
+                        ConnectionRank         &connection)
     {
       const SparseMatrix &P_n = *in.contact->normal;
       scale_to_unit_norm(*in.uncoupled->mass, recipe, T_r0);
@@ -94,9 +99,8 @@ namespace Squeal
 
       const double largest = values.front();
       const int    n_r0    = T_r0.NumVectors();
-      connection.rank      = std::count_if(values.begin(), values.end(), [&](const double value) {
-        return connected.exceeded_by(value / largest / tolerance);
-      });
+      connection.rank =
+        std::count_if(values.begin(), values.end(), [&](const double value) { return connected.exceeded_by(value / largest / tolerance); });
       if (connection.rank == n_r0)
         throw SolverError("no combination of its " + std::to_string(n_r0) + " vectors keeps the contact closed", where(recipe),
                           "take more component modes");
@@ -135,8 +139,8 @@ namespace Squeal
 
     // ------------------------------------------------- T_r0 and its nominal size
     BasisCounts counts;
-    counts.contact      = in.coupled->n_contact();
-    MultiVector     X   = join_parts(recipe, in, counts);
+    counts.contact       = in.coupled->n_contact();
+    MultiVector     X    = join_parts(recipe, in, counts);
     const BasisSize size = nominal_size(recipe, counts);
     const int       n    = M.NumGlobalRows();
     if (size.n_r > n && kind != BasisKind::pod)

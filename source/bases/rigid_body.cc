@@ -12,7 +12,7 @@ namespace Squeal
   namespace
   {
     /// Far above rounding, far below any mount worth the name.
-    const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency * zero_frequency);
+    const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency *zero_frequency);
     const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
 
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
@@ -48,7 +48,7 @@ namespace Squeal
     for (const Node &node : model.nodes())
       if (node.component == component)
         {
-          const auto  &p              = node.position;
+          const auto  &p            = node.position;
           const double values[6][3] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}, {0., -p[2], p[1]}, {p[2], 0., -p[0]}, {-p[1], p[0], 0.}};
           for (int j = 0; j < 6; ++j)
             for (int k = 0; k < 3; ++k)
@@ -71,8 +71,9 @@ namespace Squeal
     const double      size = max_norm(replicate(motions)) * std::sqrt(D.n_rows());
     auto [values, V]       = singular_values(D); // descending
     agree(motions.Comm(), V, values);
-    const int k    = motions.NumVectors();
-    const int rank = std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
+    const int k = motions.NumVectors();
+    const int rank =
+      std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
 
     ContactMotions result;
     if (rank > 0)
@@ -85,10 +86,9 @@ namespace Squeal
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, const double largest_circular_frequency)
   {
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
-    const double limit     = largest_circular_frequency * largest_circular_frequency;
-    const int    n_free    = std::count_if(eigenvalues.begin(), eigenvalues.end(), [limit](const double value) {
-      return !elastic_resistance.exceeded_by(value / limit);
-    });
+    const double limit              = largest_circular_frequency * largest_circular_frequency;
+    const int    n_free             = std::count_if(eigenvalues.begin(), eigenvalues.end(),
+                                                    [limit](const double value) { return !elastic_resistance.exceeded_by(value / limit); });
     if (n_free == 0)
       return {};
     return view(modes, 0, n_free);
@@ -96,7 +96,8 @@ namespace Squeal
 
   double stabilizing_shift(const Model &model, const CoupledSystem &system, const double largest_circular_frequency)
   {
-    const std::vector<double> eigenvalues = rayleigh_ritz(rigid_disc_motions(model, system), {system.mass, nullptr, system.stiffness}).second;
+    const std::vector<double> eigenvalues =
+      rayleigh_ritz(rigid_disc_motions(model, system), {system.mass, nullptr, system.stiffness}).second;
     return shift_for(eigenvalues, largest_circular_frequency);
   }
 

@@ -108,7 +108,8 @@ namespace Squeal
 
     // u = u_0 + T q, u_0 = n at one node; TᵀK (u_0 + T q) = 0
     MultiVector         u = restricted(model, component, transposed(*contact.normal), disc ? 1. : -1.);
-    const InertiaRelief sliding(congruence(*system.stiffness, *T), congruence(*system.mass, *T), motions, largest_circular_frequency, library,
+    const InertiaRelief sliding(congruence(*system.stiffness, *T), congruence(*system.mass, *T), motions, largest_circular_frequency,
+                                library,
                                 disc ? "stiffness of the disc with sliding contact" : "stiffness of the pins with sliding contact");
     MultiVector         forces = transpose_times(*T, *system.stiffness * u);
     forces.Scale(-1.);

@@ -32,10 +32,9 @@ namespace Squeal
     /// Nodes of a named surface, in the order of their numbers.
     std::vector<SurfaceNode> surface_nodes(const Model &model, const char *surface)
     {
-      const types::boundary_id             id = model.surface_id(surface);
-      const auto                          &fe = model.dof_handler().get_fe();
-      FEFaceValues<3>                      values(model.mapping(), fe, QGauss<2>(model.degree() + 1),
-                             update_values | update_normal_vectors | update_JxW_values);
+      const types::boundary_id id = model.surface_id(surface);
+      const auto              &fe = model.dof_handler().get_fe();
+      FEFaceValues<3> values(model.mapping(), fe, QGauss<2>(model.degree() + 1), update_values | update_normal_vectors | update_JxW_values);
       std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
       std::map<unsigned int, SurfaceNode>  nodes;
       for (const auto &cell : model.dof_handler().active_cell_iterators())
@@ -98,8 +97,8 @@ namespace Squeal
         e_theta *= -1.;
       Tensor<1, 3> sliding = e_theta - (e_theta * normal) * normal;
       if (!(sliding.norm() > 1e-6))
-        throw MeshError("the sliding direction is normal to the contact face", "contact node at " + print(Point<3>(Tensor<1, 3>(
-                                                                                  {node.position[0], node.position[1], node.position[2]}))),
+        throw MeshError("the sliding direction is normal to the contact face",
+                        "contact node at " + print(Point<3>(Tensor<1, 3>({node.position[0], node.position[1], node.position[2]}))),
                         "contact faces must not be perpendicular to the circumferential direction");
       sliding /= sliding.norm();
       node.normal  = to_array(normal);
@@ -120,9 +119,9 @@ namespace Squeal
 
   ContactInterface pair_contact_nodes(const Model &model, const Rotation rotation, const double tolerance)
   {
-    const auto disc_nodes = surface_nodes(model, PhysicalNames::disc_contact);
-    const auto pin_nodes  = surface_nodes(model, PhysicalNames::pin_contact);
-    const char *advice    = "mesh both contact faces from the same plan, or raise Geometry/Pairing tolerance";
+    const auto  disc_nodes = surface_nodes(model, PhysicalNames::disc_contact);
+    const auto  pin_nodes  = surface_nodes(model, PhysicalNames::pin_contact);
+    const char *advice     = "mesh both contact faces from the same plan, or raise Geometry/Pairing tolerance";
 
     // Disc nodes sorted by x: a partner is looked for among the neighbours only
     std::vector<std::pair<double, const SurfaceNode *>> sorted;
@@ -131,11 +130,11 @@ namespace Squeal
     std::sort(sorted.begin(), sorted.end());
 
     // Partners
-    ContactInterface              interface;
-    std::map<unsigned int, int>   partners;
-    unsigned int                  n_single = 0;
-    double                        largest_gap = 0.;
-    Point<3>                      example;
+    ContactInterface            interface;
+    std::map<unsigned int, int> partners;
+    unsigned int                n_single    = 0;
+    double                      largest_gap = 0.;
+    Point<3>                    example;
     for (const SurfaceNode &pin_node : pin_nodes)
       {
         const Point<3>     p       = position(model, pin_node.node);
@@ -144,8 +143,7 @@ namespace Squeal
         // Far partners are sought in a wider window so that the message can name the distance.
         const double window = std::max(tolerance, 1e-2);
         for (auto it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(p[0] - window, (const SurfaceNode *)nullptr));
-             it != sorted.end() && it->first <= p[0] + window;
-             ++it)
+             it != sorted.end() && it->first <= p[0] + window; ++it)
           if (const double distance = position(model, it->second->node).distance(p); distance < gap)
             {
               gap     = distance;

@@ -84,8 +84,8 @@ namespace Squeal
     }
 
     /// Rows v_c·(u_D − u_P) for the vector v of each contact node that @p direction picks.
-    std::shared_ptr<SparseMatrix> relative_displacement(const Model                                &model,
-                                                        const ContactInterface                     &interface,
+    std::shared_ptr<SparseMatrix> relative_displacement(const Model                &model,
+                                                        const ContactInterface     &interface,
                                                         const std::array<double, 3> ContactNode::*const direction)
     {
       const Epetra_Map rows(static_cast<int>(interface.size()), 0, model.free_map().Comm());
@@ -112,8 +112,7 @@ namespace Squeal
     SlaveRows slaves;
     for (const ContactNode &contact : interface)
       eliminate(slaves, model, contact, contact.pin_node, contact.disc_node);
-    return {relative_displacement(model, interface, &ContactNode::normal),
-            relative_displacement(model, interface, &ContactNode::sliding),
+    return {relative_displacement(model, interface, &ContactNode::normal), relative_displacement(model, interface, &ContactNode::sliding),
             relative_displacement(model, interface, &ContactNode::radial),
             kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().NumGlobalElements(), true), slaves)};
   }

@@ -101,7 +101,8 @@ namespace Squeal
 
   CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping)
   {
-    std::vector<Term> terms = {sparse_term("stiffness of the bodies", 0, {}, bodies.stiffness), sparse_term("mass of the bodies", 2, {}, bodies.mass)};
+    std::vector<Term> terms = {sparse_term("stiffness of the bodies", 0, {}, bodies.stiffness),
+                               sparse_term("mass of the bodies", 2, {}, bodies.mass)};
     if (bodies.damping)
       terms.push_back(sparse_term("damping of the bodies", 1, {}, bodies.damping));
     return couple(terms, contact, damping);

@@ -32,7 +32,7 @@ namespace Squeal
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
   {
     const int n_c = system.n_contact();
-    factor        = factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction");
+    factor = factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction");
 
     const MultiVector A = system.friction_forces->columns(0, n_c);
     X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());
@@ -44,8 +44,7 @@ namespace Squeal
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
     friction_coefficient = mu;
-    correction           = std::make_unique<DenseLU>(add(identity(VX.n_rows()), VX, -mu),
-                                           "stiffness with friction, condensed to the contact nodes");
+    correction = std::make_unique<DenseLU>(add(identity(VX.n_rows()), VX, -mu), "stiffness with friction, condensed to the contact nodes");
   }
 
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const

@@ -85,8 +85,7 @@ namespace Squeal
     Teuchos::RCP<Vectors> start = Teuchos::rcp(new Vectors(random_vectors(A.mass().DomainMap(), block_size, request.seed)));
     A.project(*start);
 
-    const Teuchos::RCP<Problem> problem = Teuchos::rcp(new Problem(
-      Teuchos::RCP<Operator>(Teuchos::rcp(new EpetraShiftInvert(A))), start));
+    const Teuchos::RCP<Problem> problem = Teuchos::rcp(new Problem(Teuchos::RCP<Operator>(Teuchos::rcp(new EpetraShiftInvert(A))), start));
     // Anasazi takes the mass matrix non-const but only applies it.
     problem->setM(Teuchos::rcp(const_cast<SparseMatrix *>(&A.mass()), false));
     problem->setHermitian(true);
@@ -97,8 +96,7 @@ namespace Squeal
     // Room for convergence without a restart: the memory is small beside the
     // time that a restart would lose.
     const int n_blocks =
-      std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)),
-               n / block_size - 1);
+      std::min(std::max(3, (5 * request.n_wanted / 2 + block_size - 1) / block_size + 10 * (1 + request.attempt)), n / block_size - 1);
 
     Teuchos::ParameterList parameters;
     parameters.set("Verbosity", static_cast<int>(Anasazi::Errors));

@@ -63,8 +63,7 @@ namespace Squeal
   {
     [[noreturn]] void throw_arpack(const char *routine, const int info, const std::string &what)
     {
-      throw SolverError("ARPACK's " + std::string(routine) + " failed with info = " + std::to_string(info),
-                        what,
+      throw SolverError("ARPACK's " + std::string(routine) + " failed with info = " + std::to_string(info), what,
                         "try Anasazi as solver of the real modes");
     }
   } // namespace
@@ -100,7 +99,8 @@ namespace Squeal
     int        ido = 0, info = 1;
     while (true)
       {
-        pdsaupd_(&comm, &ido, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 2);
+        pdsaupd_(&comm, &ido, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(),
+                 &lworkl, &info, 1, 2);
         if (ido == 99)
           break;
         MultiVector x = vector(workd.data() + ipntr[0] - 1), y = vector(workd.data() + ipntr[1] - 1);
@@ -131,7 +131,8 @@ namespace Squeal
     const double        sigma        = 0.; // only moves the eigenvalues, which are not used
     std::vector<int>    select(ncv);
     std::vector<double> values(nev);
-    pdseupd_(&comm, &want_vectors, "A", select.data(), values.data(), v.data(), &n, &sigma, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 1, 2);
+    pdseupd_(&comm, &want_vectors, "A", select.data(), values.data(), v.data(), &n, &sigma, "G", &n, "LM", &nev, &tol, resid.data(), &ncv,
+             v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 1, 2);
     if (info != 0)
       throw_arpack("pdseupd", info, request.what);
     const int n_converged = iparam[4];

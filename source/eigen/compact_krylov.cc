@@ -276,10 +276,10 @@ namespace Squeal
 
   int CompactKrylov::inject(const MultiVector &directions)
   {
-    MultiVector               X           = directions;
-    const DenseMatrix         coordinates = absorb(X, column_norms(directions));
-    const DenseMatrix         states      = enlarged(coordinates, degree * r, coordinates.n_columns());
-    const int                 n_before    = m + b;
+    MultiVector       X           = directions;
+    const DenseMatrix coordinates = absorb(X, column_norms(directions));
+    const DenseMatrix states      = enlarged(coordinates, degree * r, coordinates.n_columns());
+    const int         n_before    = m + b;
     append_active(states, n_before);
     b = G.n_columns() - m;
     H = enlarged(H, m + b, m);
@@ -313,8 +313,8 @@ namespace Squeal
       }
 
     // ------------------------------------------------- new columns of [H; B]
-    const int         m_new   = m + b;
-    const DenseMatrix entries = append_active(coordinates, m_new);
+    const int         m_new    = m + b;
+    const DenseMatrix entries  = append_active(coordinates, m_new);
     const int         m_before = m;
     b                          = G.n_columns() - m_new;
     m                          = m_new;
@@ -330,8 +330,8 @@ namespace Squeal
       return ritz;
 
     // ------------------------------------------------- real Schur form and eigenvectors
-    ritz.schur_form    = rows(H, 0, m);
-    ritz.schur_vectors = DenseMatrix(m, m);
+    ritz.schur_form       = rows(H, 0, m);
+    ritz.schur_vectors    = DenseMatrix(m, m);
     DenseMatrix        &T = ritz.schur_form, &Z = ritz.schur_vectors;
     std::vector<double> real(m), imaginary(m);
     lapack_int          n_sorted = 0;
@@ -346,10 +346,9 @@ namespace Squeal
     replicate(map->Comm(), real.data(), m);
     replicate(map->Comm(), imaginary.data(), m);
 
-    ritz.eigenvectors = Z;
+    ritz.eigenvectors    = Z;
     lapack_int n_vectors = 0;
-    LAPACKE_dtrevc(
-      LAPACK_COL_MAJOR, 'R', 'B', nullptr, m, T.column(), m, nullptr, 1, ritz.eigenvectors.column(), m, m, &n_vectors);
+    LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'R', 'B', nullptr, m, T.column(), m, nullptr, 1, ritz.eigenvectors.column(), m, m, &n_vectors);
 
     // ------------------------------------------------- unit vectors and their errors
     DenseMatrix &Y = ritz.eigenvectors;
@@ -378,9 +377,7 @@ namespace Squeal
         entries.push_back({{real[j], std::abs(imaginary[j])}, norm(errors.column(j), width * b), j});
         j += width - 1;
       }
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) {
-      return std::abs(a.value) > std::abs(b.value);
-    });
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return std::abs(a.value) > std::abs(b.value); });
     for (const Entry &entry : entries)
       for (const bool conjugate : {false, true})
         if (!conjugate || entry.value.imag() != 0.)
@@ -404,31 +401,15 @@ namespace Squeal
           selected[ritz.positions[i] + 1] = 1;
       }
     std::vector<double> real(m), imaginary(m);
-    lapack_int          q = 0;
+    lapack_int          q         = 0;
     double              condition = 0., separation = 0.;
     std::vector<double> work(std::max(m, 1));
     lapack_int          integer_work = 0;
     // A positive result means that two values too close to be exchanged stay
     // where they are: the Schur form is valid all the same. LAPACKE's driver
     // without "_work" hands over no integer work space here, and crashes.
-    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR,
-                        'N',
-                        'V',
-                        selected.data(),
-                        m,
-                        T.column(),
-                        m,
-                        Z.column(),
-                        m,
-                        real.data(),
-                        imaginary.data(),
-                        &q,
-                        &condition,
-                        &separation,
-                        work.data(),
-                        m,
-                        &integer_work,
-                        1);
+    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), m, T.column(), m, Z.column(), m, real.data(), imaginary.data(), &q,
+                        &condition, &separation, work.data(), m, &integer_work, 1);
     if (q > 0 && q < m && T(q, q - 1) != 0.)
       ++q;
     replicate(map->Comm(), T);

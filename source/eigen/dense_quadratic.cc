@@ -108,7 +108,7 @@ namespace Squeal
     const DenseEigenpairs pairs = eigenpairs(companion, true);
 
     // ------------------------------------------------- values wanted, in order
-    const auto value = [&](const int j) { return unit * (linear ? upper_root(pairs.values[j]) : pairs.values[j]); };
+    const auto       value = [&](const int j) { return unit * (linear ? upper_root(pairs.values[j]) : pairs.values[j]); };
     std::vector<int> wanted;
     for (int j = 0; j < companion.n_rows(); ++j)
       {

@@ -17,8 +17,7 @@ namespace Squeal
           return {n_modes, limit};
         limit *= 1. + 1e-8;
       }
-    throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M stays singular",
-                      what,
+    throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M stays singular", what,
                       "check that M is positive definite and that no dof is without stiffness and mass");
   }
 

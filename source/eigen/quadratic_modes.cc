@@ -78,7 +78,7 @@ namespace Squeal
       /// λ of ν; of the two for degree one, the one with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
       Complex value(const Complex nu) const
       {
-        const double tiny  = std::numeric_limits<double>::min();
+        const double  tiny  = std::numeric_limits<double>::min();
         const Complex theta = std::abs(nu) > tiny ? 1. / nu : Complex(1. / tiny);
         if (degree == 2)
           return s + radius * theta;
@@ -233,7 +233,7 @@ namespace Squeal
             {
               // The members of a conjugate pair ν share two columns; of degree
               // one both have a λ with Im λ > 0, of degree two only one.
-              auto found = std::find(positions.begin(), positions.end(), ritz.positions[i]);
+              auto      found  = std::find(positions.begin(), positions.end(), ritz.positions[i]);
               const int column = static_cast<int>(found - positions.begin());
               if (found == positions.end())
                 for (int part = 0; part < (pair ? 2 : 1); ++part)
@@ -288,7 +288,8 @@ namespace Squeal
         const std::vector<double> real_norms = column_norms(real), imaginary_norms = column_norms(imaginary);
         std::vector<double>       result;
         for (std::size_t j = 0; j < stiffness_norms.size(); ++j)
-          result.push_back(std::hypot(real_norms[j], imaginary_norms[j]) / std::max(stiffness_norms[j], std::numeric_limits<double>::min()));
+          result.push_back(std::hypot(real_norms[j], imaginary_norms[j]) /
+                           std::max(stiffness_norms[j], std::numeric_limits<double>::min()));
         return result;
       }
     };
@@ -301,8 +302,8 @@ namespace Squeal
       const int   width = static_cast<int>(values.size());
       PencilImage image{MultiVector(real_part.Map(), width), MultiVector(real_part.Map(), width), std::vector<double>(width, 0.)};
       MultiVector product(real_part.Map(), width, false);
-      const std::vector<double> norms = column_norms(imaginary_part);
-      const bool is_real = std::all_of(norms.begin(), norms.end(), [](const double x) { return x == 0.; });
+      const std::vector<double> norms   = column_norms(imaginary_part);
+      const bool                is_real = std::all_of(norms.begin(), norms.end(), [](const double x) { return x == 0.; });
       for (const bool imaginary_input : {false, true})
         {
           if (imaginary_input && is_real)
@@ -377,24 +378,27 @@ namespace Squeal
         return worst / options.tolerance;
 
       // ‖φ‖ is one.
-      const double              rounding = 10. * std::numeric_limits<double>::epsilon() * options.stiffness_norm;
-      MultiVector               product(*modes.real_part);
+      const double rounding = 10. * std::numeric_limits<double>::epsilon() * options.stiffness_norm;
+      MultiVector  product(*modes.real_part);
       pencil.stiffness->apply(*modes.real_part, product);
       const std::vector<double> real_norms = column_norms(product);
       pencil.stiffness->apply(*modes.imaginary_part, product);
       const std::vector<double> imaginary_norms = column_norms(product);
       double                    largest         = 0.;
       for (std::size_t j = 0; j < modes.residuals.size(); ++j)
-        largest = std::max(largest,
-                           modes.residuals[j] / std::max(options.tolerance, rounding / std::hypot(real_norms[j], imaginary_norms[j])));
+        largest =
+          std::max(largest, modes.residuals[j] / std::max(options.tolerance, rounding / std::hypot(real_norms[j], imaginary_norms[j])));
       return largest;
     }
 
-    [[noreturn]] void throw_unconverged(const Convergence &state, const double worst, const std::string &reason, const QuadraticModesOptions &options)
+    [[noreturn]] void throw_unconverged(const Convergence           &state,
+                                        const double                 worst,
+                                        const std::string           &reason,
+                                        const QuadraticModesOptions &options)
     {
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
-                          " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) +
-                          ", allowed is " + scientific(options.tolerance) + ": " + reason,
+                          " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) + ", allowed is " +
+                          scientific(options.tolerance) + ": " + reason,
                         "complex modes up to " + scientific(options.largest_frequency) + " rad/s",
                         "raise the tolerance, the number of basis vectors or of restarts, or lower the largest frequency");
     }
@@ -460,7 +464,7 @@ namespace Squeal
         const int b         = std::max(krylov.block_size(), 1);
         const int n_missing = state.n_inside - state.n_converged;
         // Between one and a half and two and a half vectors for each missing value is what it takes in the end.
-        int       n_more    = std::max(3 * b, 3 * n_missing / 2);
+        int n_more = std::max(3 * b, 3 * n_missing / 2);
         if (krylov.dimension() + n_more > largest_basis())
           {
             // Half of the room beyond the wanted vectors keeps what is on its way.
@@ -490,10 +494,9 @@ namespace Squeal
         const bool fewer = transformation.degree * options.expected > state.n_inside;
         for (int step = 0; step < (fewer ? n_searching_steps : n_proving_steps) && proof.block_size() > 0; ++step)
           proof.expand(shift_invert());
-        const RitzPairs more  = proof.ritz_pairs();
-        const auto      count = std::count_if(more.values.begin(), more.values.end(), [this](const Complex &nu) {
-          return transformation.inside(nu);
-        });
+        const RitzPairs more = proof.ritz_pairs();
+        const auto      count =
+          std::count_if(more.values.begin(), more.values.end(), [this](const Complex &nu) { return transformation.inside(nu); });
         if (count <= state.n_inside)
           return true;
         if (options.report)
@@ -520,7 +523,7 @@ namespace Squeal
       double                       tolerance; ///< on the estimate of the residual
       RitzPairs                    ritz;
       Convergence                  state;
-      bool                         exhausted = false; ///< the basis spans all states
+      bool                         exhausted  = false; ///< the basis spans all states
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
@@ -559,7 +562,7 @@ namespace Squeal
           {
             QuadraticModes modes = extract(pencil, search.transformation, search.krylov, search.ritz, options);
             correct(pencil, inverse_at_shift, modes, options.tolerance);
-            const double   excessive = excess(pencil, modes, options);
+            const double excessive = excess(pencil, modes, options);
             if (excessive <= 1.)
               {
                 if (!search.proven())
@@ -586,16 +589,14 @@ namespace Squeal
                                 const MultiVector          &real_part,
                                 const MultiVector          &imaginary_part)
   {
-    constexpr int             chunk = 16;
-    const int                 k     = static_cast<int>(values.size());
-    std::vector<double>       result(k);
+    constexpr int       chunk = 16;
+    const int           k     = static_cast<int>(values.size());
+    std::vector<double> result(k);
     for (int first = 0; first < k; first += chunk)
       {
-        const int         width = std::min(chunk, k - first);
-        const PencilImage image = apply_pencil(pencil,
-                                               {values.begin() + first, values.begin() + first + width},
-                                               view(real_part, first, width),
-                                               view(imaginary_part, first, width));
+        const int                 width  = std::min(chunk, k - first);
+        const PencilImage         image  = apply_pencil(pencil, {values.begin() + first, values.begin() + first + width},
+                                                        view(real_part, first, width), view(imaginary_part, first, width));
         const std::vector<double> ratios = image.residuals();
         std::copy(ratios.begin(), ratios.end(), result.begin() + first);
       }

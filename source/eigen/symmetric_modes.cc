@@ -61,7 +61,7 @@ namespace Squeal
         SymmetricModes modes;
         if (count.n_modes > 0)
           {
-            RitzPairs pairs = find_all();
+            RitzPairs       pairs  = find_all();
             const Residuals result = refine(pairs);
             modes                  = accept(pairs, result);
           }
@@ -110,7 +110,7 @@ namespace Squeal
               {
                 const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &*fresh}) : *fresh;
                 RitzPairs         all   = rayleigh_ritz(K, M, space);
-                const int n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
+                const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
                 if (n_all > n_found)
                   {
                     // Vectors above the limit must not be deflated: they may be far from modes.
@@ -131,7 +131,7 @@ namespace Squeal
       {
         DenseMatrix A = to_dense(K);
         RitzPairs   pairs;
-        pairs.values     = symmetric_eigenvalues(A, to_dense(M));
+        pairs.values = symmetric_eigenvalues(A, to_dense(M));
         agree(K.Comm(), A, pairs.values);
         const int n_kept = std::min<int>(std::max(1, count.n_modes), pairs.values.size());
         pairs.values.resize(n_kept);
@@ -143,8 +143,10 @@ namespace Squeal
         return pairs;
       }
 
-      std::optional<MultiVector>
-      krylov(const int n_wanted, const unsigned int attempt, const int n_fruitless, const std::optional<MultiVector> &deflated)
+      std::optional<MultiVector> krylov(const int                         n_wanted,
+                                        const unsigned int                attempt,
+                                        const int                         n_fruitless,
+                                        const std::optional<MultiVector> &deflated)
       {
         const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
         KrylovRequest     request;
@@ -179,16 +181,16 @@ namespace Squeal
       /// Residuals of Ritz pairs, and how they compare with what is accepted.
       struct Residuals
       {
-        std::vector<double> values;        ///< as SymmetricModes defines them
-        double              excess = 0.;   ///< largest ratio of a residual to what is accepted
-        int                 worst  = 0;    ///< the mode where it occurs
+        std::vector<double> values;      ///< as SymmetricModes defines them
+        double              excess = 0.; ///< largest ratio of a residual to what is accepted
+        int                 worst  = 0;  ///< the mode where it occurs
       };
 
       Residuals residuals(const RitzPairs &pairs) const
       {
-        const int           n_modes = pairs.values.size();
-        const MultiVector   KV = K * *pairs.vectors, MV = M * *pairs.vectors;
-        MultiVector         R(KV);
+        const int         n_modes = pairs.values.size();
+        const MultiVector KV = K * *pairs.vectors, MV = M * *pairs.vectors;
+        MultiVector       R(KV);
         for (int j = 0; j < n_modes; ++j)
           if (!is_rigid(pairs.values[j]))
             for (int i = 0; i < R.MyLength(); ++i)
@@ -227,7 +229,7 @@ namespace Squeal
             const ShiftInvert A(inverse(), M, nullptr);
             A.apply(*pairs.vectors, W);
             RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
-            pairs.values = std::move(refined.values);
+            pairs.values      = std::move(refined.values);
             pairs.vectors.emplace(*refined.vectors);
             result = residuals(pairs);
           }
@@ -285,8 +287,7 @@ namespace Squeal
       std::unique_ptr<Factorization> factorization;
     };
     /// The modes of all uncoupled parts in one order.
-    SymmetricModes
-    modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
+    SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
     {
       const std::vector<Epetra_Map> maps = uncoupled_parts(K);
       std::vector<SymmetricModes>   parts;
@@ -328,12 +329,13 @@ namespace Squeal
 
 
 
-  SymmetricModes
-  symmetric_modes(const SparseMatrix &K, const SparseMatrix &M, const double largest_eigenvalue, const SymmetricModesOptions &options)
+  SymmetricModes symmetric_modes(const SparseMatrix          &K,
+                                 const SparseMatrix          &M,
+                                 const double                 largest_eigenvalue,
+                                 const SymmetricModesOptions &options)
   {
     if (!(largest_eigenvalue > 0.))
-      throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²",
-                        options.what,
+      throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²", options.what,
                         "give a positive end of the band");
     return options.by_parts ? modes_by_parts(K, M, largest_eigenvalue, options) : Solver(K, M, largest_eigenvalue, options).modes();
   }

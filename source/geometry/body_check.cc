@@ -59,7 +59,9 @@ namespace Squeal
     }
 
     /// Nodes of a named surface, by the volume they belong to.
-    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh &mesh, const std::vector<unsigned int> &volume_of_node, const std::string &name)
+    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh                   &mesh,
+                                                        const std::vector<unsigned int> &volume_of_node,
+                                                        const std::string               &name)
     {
       std::vector<std::set<unsigned int>> result(mesh.volume_names.size());
       for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
@@ -91,7 +93,7 @@ namespace Squeal
     const std::set<unsigned int> disc     = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
     const auto                   contacts = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
     const auto                   clamps   = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
-    std::vector<bool> is_held(mesh.volume_names.size(), false);
+    std::vector<bool>            is_held(mesh.volume_names.size(), false);
     for (const std::string &surface : mounted_surfaces)
       {
         const auto mounted = nodes_by_volume(mesh, volume_of_node, surface);
@@ -105,11 +107,12 @@ namespace Squeal
           throw MeshError("'" + name + "' has no face on 'pin_contact', so it touches nothing", where,
                           "put its face on the disc into the physical surface 'pin_contact', or leave the volume out");
         if (clamps[pin].empty() && !is_held[pin])
-          throw MeshError("'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
-                          "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts");
+          throw MeshError(
+            "'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
+            "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
-          throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it", where,
-                          "exchange the names 'pin_clamp' and 'pin_contact' there");
+          throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it",
+                          where, "exchange the names 'pin_clamp' and 'pin_contact' there");
       }
   }
 } // namespace Squeal

@@ -99,10 +99,10 @@ namespace Squeal
           vv += w * symmetrize(outer_product(face.normal, face.normal));
           av += w * outer_product(q, face.normal);
         }
-      constexpr double              regularisation = 1e-12; // of a surface that may slide along a direction
-      const auto                    inverse = dealii::Tensor<2, 3>(invert(vv + regularisation * dealii::unit_symmetric_tensor<3>()));
-      const dealii::SymmetricTensor<2, 3> S = symmetrize(dealii::Tensor<2, 3>(aa) - av * inverse * transpose(av));
-      const Vector                        a = eigenvectors(S, dealii::SymmetricTensorEigenvectorMethod::jacobi)[2].second;
+      constexpr double                    regularisation = 1e-12; // of a surface that may slide along a direction
+      const auto                          inverse = dealii::Tensor<2, 3>(invert(vv + regularisation * dealii::unit_symmetric_tensor<3>()));
+      const dealii::SymmetricTensor<2, 3> S       = symmetrize(dealii::Tensor<2, 3>(aa) - av * inverse * transpose(av));
+      const Vector                        a       = eigenvectors(S, dealii::SymmetricTensorEigenvectorMethod::jacobi)[2].second;
       return {a, -(inverse * (transpose(av) * a))};
     }
 

@@ -71,9 +71,8 @@ namespace Squeal
       {
         for (unsigned int layer = 0; layer < n_layers; ++layer)
           for (const Plan::Edge &edge : edges)
-            mesh.quadrilaterals.push_back({{{nodes[layer][edge[0]], nodes[layer][edge[1]], nodes[layer + 1][edge[1]],
-                                             nodes[layer + 1][edge[0]]}},
-                                           surface});
+            mesh.quadrilaterals.push_back(
+              {{{nodes[layer][edge[0]], nodes[layer][edge[1]], nodes[layer + 1][edge[1]], nodes[layer + 1][edge[0]]}}, surface});
       }
 
     private:
@@ -120,8 +119,7 @@ namespace Squeal
       pin_side,
       first_curve
     };
-    mesh.surface_names = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
-                          PhysicalNames::pin_side};
+    mesh.surface_names = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side};
     for (const Plan::Curve &curve : plan.curves)
       mesh.surface_names.push_back(curve.name);
     mesh.volume_names = {PhysicalNames::disc};
@@ -135,7 +133,7 @@ namespace Squeal
       all_faces[i] = i;
     const std::vector<Plan::Point> top    = points_on_side(plan, Plan::Side::top);
     const std::vector<Plan::Point> bottom = points_on_side(plan, Plan::Side::bottom);
-    Stack disc(plan, bottom, top, all_faces, heights(-z_top, z_top, parameters.disc_layers), 0, mesh);
+    Stack                          disc(plan, bottom, top, all_faces, heights(-z_top, z_top, parameters.disc_layers), 0, mesh);
     for (const Plan::Pin &pin : plan.pins)
       if (pin.side == Plan::Side::top)
         disc.name_top(pin.faces, disc_contact);

@@ -61,8 +61,8 @@ namespace Squeal
     }
 
     // Statements of Gmsh by which a script reaches beyond the mesh
-    const std::vector<std::string> shell_statements = {"SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print",
-                                                       "Printf", "Plugin"};
+    const std::vector<std::string> shell_statements = {
+      "SystemCall", "NonBlockingSystemCall", "OnelabRun", "CreateDir", "Save", "Print", "Printf", "Plugin"};
 
     MesherInput mesher_input(const GeometryParameters &parameters, const std::string &geometry)
     {
@@ -141,8 +141,8 @@ namespace Squeal
         if (exponent != 0)
           length = std::stod(text.str());
       };
-      for (double *length : {&parameters.disc_inner_radius, &parameters.disc_outer_radius, &parameters.disc_thickness, &parameters.pin_diameter,
-                             &parameters.pin_height, &parameters.element_size, &parameters.pairing_tolerance})
+      for (double *length : {&parameters.disc_inner_radius, &parameters.disc_outer_radius, &parameters.disc_thickness,
+                             &parameters.pin_diameter, &parameters.pin_height, &parameters.element_size, &parameters.pairing_tolerance})
         move_point(*length);
       for (std::vector<double> *lengths : {&parameters.top.radii, &parameters.bottom.radii})
         std::for_each(lengths->begin(), lengths->end(), move_point);
@@ -175,9 +175,7 @@ namespace Squeal
     constexpr double smaller_next_time = 0.9;
   } // namespace
 
-  HexMesh generate_mesh(const GeometryParameters       &given,
-                        const std::vector<std::string> &additional_surfaces,
-                        MPI_Comm                        communicator)
+  HexMesh generate_mesh(const GeometryParameters &given, const std::vector<std::string> &additional_surfaces, MPI_Comm communicator)
   {
     given.check();
     const std::string  where       = given.path();
@@ -186,10 +184,11 @@ namespace Squeal
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
       check_memory(expected_size(parameters), least_degree, no_modes, where);
-    HexMesh            mesh        = mesh_once(parameters, where, additional_surfaces, communicator);
+    HexMesh mesh = mesh_once(parameters, where, additional_surfaces, communicator);
     check_parts(mesh, additional_surfaces, where);
     check_bodies(mesh, additional_surfaces, where);
-    for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian; ++attempt)
+    for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian;
+         ++attempt)
       {
         parameters.element_size *= smaller_next_time;
         mesh = mesh_once(parameters, where, additional_surfaces, communicator);

@@ -43,8 +43,7 @@ namespace Squeal
     {
       std::vector<std::size_t> order(block.tags.size());
       std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(),
-                [&](std::size_t a, std::size_t b) { return block.tags[a] < block.tags[b]; });
+      std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return block.tags[a] < block.tags[b]; });
 
       GmshMesh::Block sorted = block;
       for (std::size_t i = 0; i < order.size(); ++i)
@@ -95,8 +94,8 @@ namespace Squeal
                   GmshMesh::Block    &block = blocks[types[t]];
                   int                 element_dimension, element_order, n_nodes, n_primary_nodes;
                   std::vector<double> local_coordinates;
-                  gmsh::model::mesh::getElementProperties(types[t], block.type, element_dimension, element_order,
-                                                          n_nodes, local_coordinates, n_primary_nodes);
+                  gmsh::model::mesh::getElementProperties(types[t], block.type, element_dimension, element_order, n_nodes,
+                                                          local_coordinates, n_primary_nodes);
                   block.nodes_per_element = n_nodes;
                   block.tags.insert(block.tags.end(), element_tags[t].begin(), element_tags[t].end());
                   for (const std::size_t node : element_nodes[t])
@@ -194,8 +193,8 @@ namespace Squeal
 
   int GmshSession::dimension() const
   {
-    int                dimension = 0;
-    gmsh::vectorpair   groups;
+    int              dimension = 0;
+    gmsh::vectorpair groups;
     gmsh::model::getPhysicalGroups(groups);
     for (const auto &group : groups)
       dimension = std::max(dimension, group.first);
@@ -278,8 +277,7 @@ namespace Squeal
             std::vector<std::size_t> node_tags(block.nodes.begin(), block.nodes.end());
             for (std::size_t &node : node_tags)
               ++node;
-            gmsh::model::mesh::addElementsByType(tags[g], block.nodes_per_element == 8 ? 5 : 3, block.tags,
-                                                 node_tags);
+            gmsh::model::mesh::addElementsByType(tags[g], block.nodes_per_element == 8 ? 5 : 3, block.tags, node_tags);
           }
     });
   }

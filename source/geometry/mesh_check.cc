@@ -23,16 +23,13 @@ namespace Squeal
 
     double triple_product(const Point &a, const Point &b, const Point &c)
     {
-      return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-             a[2] * (b[0] * c[1] - b[1] * c[0]);
+      return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
     }
 
     /// For each corner, the corners at the ends of its edges, as a right-handed triple.
-    constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
-                                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+    constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 
-    constexpr unsigned int face_corners[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                                 {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    constexpr unsigned int face_corners[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
     std::string describe(const HexMesh &mesh, const unsigned int element)
     {
@@ -42,8 +39,8 @@ namespace Squeal
         for (unsigned int d = 0; d < 3; ++d)
           centre[d] += mesh.points[node][d] / 8.;
       std::ostringstream text;
-      text << "element " << element << " of volume '" << mesh.volume_names[hexahedron.volume] << "', near ("
-           << centre[0] << ", " << centre[1] << ", " << centre[2] << ") m";
+      text << "element " << element << " of volume '" << mesh.volume_names[hexahedron.volume] << "', near (" << centre[0] << ", "
+           << centre[1] << ", " << centre[2] << ") m";
       return text.str();
     }
 
@@ -99,9 +96,8 @@ namespace Squeal
     if (!(quality.worst_scaled_jacobian >= smallest_scaled_jacobian))
       {
         std::ostringstream what;
-        what << (quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate")
-             << ": scaled Jacobian " << quality.worst_scaled_jacobian << ", at least " << smallest_scaled_jacobian
-             << " is needed";
+        what << (quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate") << ": scaled Jacobian "
+             << quality.worst_scaled_jacobian << ", at least " << smallest_scaled_jacobian << " is needed";
         throw MeshError(what.str(), describe(mesh, quality.worst_element),
                         "change the element size or the number of nodes per pin face; keep pins away from "
                         "edges and from each other, and in a mesh of your own correct this element");
@@ -109,9 +105,7 @@ namespace Squeal
     return quality;
   }
 
-  void check_parts(const HexMesh                  &mesh,
-                   const std::vector<std::string> &additional_surfaces,
-                   const std::string              &where)
+  void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
     // Volumes
     std::vector<std::size_t> n_elements(mesh.volume_names.size(), 0);
@@ -121,8 +115,7 @@ namespace Squeal
     for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
       {
         if (n_elements[v] == 0)
-          throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where,
-                          "mesh it with hexahedra, or remove the name");
+          throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh it with hexahedra, or remove the name");
         ++(mesh.volume_names[v] == PhysicalNames::disc ? n_discs : n_pins);
       }
     if (n_discs == 0 || n_pins == 0)
@@ -131,8 +124,7 @@ namespace Squeal
                       where, "name the disc's volume 'disc' and each pin's or pad's with a name that begins with 'pin_'");
 
     // Surfaces
-    std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact,
-                                       PhysicalNames::pin_clamp};
+    std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
     std::vector<std::size_t> n_faces(mesh.surface_names.size(), 0);
     for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
@@ -141,9 +133,8 @@ namespace Squeal
       {
         const auto position = std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name);
         if (position == mesh.surface_names.end() || n_faces[position - mesh.surface_names.begin()] == 0)
-          throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " +
-                            list(mesh.surface_names),
-                          where, "give the surface this name");
+          throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
+                          "give the surface this name");
       }
 
     // Nodes belong to one volume
@@ -153,8 +144,8 @@ namespace Squeal
         {
           int &volume = volume_of_node[node];
           if (volume >= 0 && volume != int(hexahedron.volume))
-            throw MeshError("Volumes '" + mesh.volume_names[volume] + "' and '" +
-                              mesh.volume_names[hexahedron.volume] + "' share nodes, so nothing could slide",
+            throw MeshError("Volumes '" + mesh.volume_names[volume] + "' and '" + mesh.volume_names[hexahedron.volume] +
+                              "' share nodes, so nothing could slide",
                             where, "give each volume surfaces and nodes of its own where they touch");
           volume = hexahedron.volume;
         }
@@ -164,7 +155,10 @@ namespace Squeal
     {
       std::array<unsigned int, 4> nodes;
       unsigned int                volume;
-      bool                        operator<(const Owner &other) const { return nodes < other.nodes; }
+      bool                        operator<(const Owner &other) const
+      {
+        return nodes < other.nodes;
+      }
     };
     std::vector<Owner> faces;
     faces.reserve(6 * mesh.hexahedra.size());
@@ -191,13 +185,11 @@ namespace Squeal
                           where, "name only outer faces of the disc and the pins");
 
         const bool on_disc = mesh.volume_names[first->volume] == PhysicalNames::disc;
-        const bool of_disc = name == PhysicalNames::disc_contact || name == PhysicalNames::disc_bore ||
-                             name == PhysicalNames::disc_rim;
-        const bool of_pin = name == PhysicalNames::pin_contact || name == PhysicalNames::pin_clamp ||
-                            name == PhysicalNames::pin_side;
+        const bool of_disc = name == PhysicalNames::disc_contact || name == PhysicalNames::disc_bore || name == PhysicalNames::disc_rim;
+        const bool of_pin  = name == PhysicalNames::pin_contact || name == PhysicalNames::pin_clamp || name == PhysicalNames::pin_side;
         if ((of_disc && !on_disc) || (of_pin && on_disc))
-          throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'",
-                          where, "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
+          throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'", where,
+                          "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
       }
   }
 } // namespace Squeal

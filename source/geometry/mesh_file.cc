@@ -15,39 +15,33 @@ namespace Squeal
   {
     constexpr unsigned int no_node = static_cast<unsigned int>(-1);
 
-    const std::vector<std::string> known_surfaces = {
-      PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
-      PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
+    const std::vector<std::string> known_surfaces = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
+                                                     PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
 
     void check_type(const GmshMesh::Group &group, const std::string &wanted, const std::string &where)
     {
       for (const GmshMesh::Block &block : group.blocks)
         if (block.type != wanted)
-          throw MeshError("'" + group.name + "' has " + std::to_string(block.tags.size()) + " elements of type '" +
-                            block.type + "'",
-                          where, "mesh it with elements of type '" + wanted + "' only");
+          throw MeshError("'" + group.name + "' has " + std::to_string(block.tags.size()) + " elements of type '" + block.type + "'", where,
+                          "mesh it with elements of type '" + wanted + "' only");
     }
   } // namespace
 
-  HexMesh make_hex_mesh(const GmshMesh                 &mesh,
-                        const std::vector<std::string> &additional_surfaces,
-                        const std::string              &where)
+  HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
     HexMesh result;
 
     // Volumes, the disc first
     if (mesh.n_unnamed_volume_elements > 0)
-      throw MeshError(std::to_string(mesh.n_unnamed_volume_elements) +
-                        " volume elements belong to no physical volume",
-                      where, "name every volume that is meshed 'disc' or 'pin_...'");
+      throw MeshError(std::to_string(mesh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
+                      "name every volume that is meshed 'disc' or 'pin_...'");
     std::vector<const GmshMesh::Group *> volumes, surfaces;
     for (const GmshMesh::Group &group : mesh.groups)
       if (group.dimension == 3)
         {
           const bool is_disc = group.name == PhysicalNames::disc;
           if (!is_disc && group.name.rfind(PhysicalNames::pin_prefix, 0) != 0)
-            throw MeshError("There is a physical volume '" + group.name + "'", where,
-                            "known names of volumes: disc, pin_...");
+            throw MeshError("There is a physical volume '" + group.name + "'", where, "known names of volumes: disc, pin_...");
           check_type(group, "Hexahedron 8", where);
           volumes.insert(is_disc ? volumes.begin() : volumes.end(), &group);
         }
@@ -57,8 +51,7 @@ namespace Squeal
       if (group.dimension == 2)
         {
           if (std::find(known_surfaces.begin(), known_surfaces.end(), group.name) == known_surfaces.end() &&
-              std::find(additional_surfaces.begin(), additional_surfaces.end(), group.name) ==
-                additional_surfaces.end())
+              std::find(additional_surfaces.begin(), additional_surfaces.end(), group.name) == additional_surfaces.end())
             {
               std::string known;
               for (const std::vector<std::string> &names : {known_surfaces, additional_surfaces})
@@ -72,7 +65,7 @@ namespace Squeal
         }
 
     // Hexahedra
-    std::vector<bool> used(mesh.points.size(), false);
+    std::vector<bool>                                        used(mesh.points.size(), false);
     std::vector<std::pair<std::size_t, HexMesh::Hexahedron>> tagged_hexahedra;
     for (const GmshMesh::Group *group : volumes)
       {
@@ -94,8 +87,8 @@ namespace Squeal
     for (std::size_t i = 0; i < tagged_hexahedra.size(); ++i)
       {
         if (i > 0 && tagged_hexahedra[i].first == tagged_hexahedra[i - 1].first)
-          throw MeshError("A hexahedron belongs to '" + result.volume_names[tagged_hexahedra[i - 1].second.volume] +
-                            "' and to '" + result.volume_names[tagged_hexahedra[i].second.volume] + "'",
+          throw MeshError("A hexahedron belongs to '" + result.volume_names[tagged_hexahedra[i - 1].second.volume] + "' and to '" +
+                            result.volume_names[tagged_hexahedra[i].second.volume] + "'",
                           where, "put every volume into one physical group");
         result.hexahedra.push_back(tagged_hexahedra[i].second);
       }
@@ -124,8 +117,8 @@ namespace Squeal
                 {
                   quadrilateral.nodes[v] = new_index[block.nodes[4 * i + v]];
                   if (quadrilateral.nodes[v] == no_node)
-                    throw MeshError("Surface '" + group->name + "' has a face that is not a face of any hexahedron",
-                                    where, "name only outer faces of the disc and the pins");
+                    throw MeshError("Surface '" + group->name + "' has a face that is not a face of any hexahedron", where,
+                                    "name only outer faces of the disc and the pins");
                 }
               quadrilateral.surface = result.surface_names.size();
               tagged_quadrilaterals.emplace_back(block.tags[i], quadrilateral);
@@ -186,8 +179,7 @@ namespace Squeal
       {
         const std::string reason = failure.message();
         std::filesystem::remove(temporary, failure);
-        throw FileError("The mesh could not be moved to its place: " + reason, file,
-                        "check that nothing else has this name");
+        throw FileError("The mesh could not be moved to its place: " + reason, file, "check that nothing else has this name");
       }
   }
 } // namespace Squeal

@@ -118,10 +118,12 @@ namespace Squeal
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-        for (const auto &[from, to] : {std::make_pair(*printed, STDOUT_FILENO), std::make_pair(*printed, STDERR_FILENO),
-                                       std::make_pair(*writing, mesher_reply_descriptor), std::make_pair(*script_file, mesher_script_descriptor)})
+        for (const auto &[from, to] :
+             {std::make_pair(*printed, STDOUT_FILENO), std::make_pair(*printed, STDERR_FILENO),
+              std::make_pair(*writing, mesher_reply_descriptor), std::make_pair(*script_file, mesher_script_descriptor)})
           posix_spawn_file_actions_adddup2(&actions, from, to);
-        const int error = posix_spawn(&process, installation().mesher.c_str(), &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
+        const int error =
+          posix_spawn(&process, installation().mesher.c_str(), &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
         posix_spawn_file_actions_destroy(&actions);
         if (error != 0)
           {
@@ -153,8 +155,8 @@ namespace Squeal
             const std::chrono::duration<double, std::milli> left = end - std::chrono::steady_clock::now();
             if (left.count() <= 0.)
               return {};
-            pollfd     waiting{**reply, POLLIN, 0};
-            const int  longest_wait = 1000; // [ms]
+            pollfd    waiting{**reply, POLLIN, 0};
+            const int longest_wait = 1000; // [ms]
             if (poll(&waiting, 1, std::min<double>(left.count() + 1., longest_wait)) <= 0)
               continue;
             const ssize_t n = ::read(**reply, buffer.data(), buffer.size());
@@ -221,8 +223,9 @@ namespace Squeal
       for (std::string line; std::getline(stream, line);)
         if (!line.empty())
           lines.push_back(line);
-      const auto  first_error = std::find_if(lines.begin(), lines.end(), [](const std::string &line) { return line.rfind("Error", 0) == 0; });
-      std::size_t first       = std::min<std::size_t>(first_error - lines.begin(), lines.size() - std::min(lines.size(), quoted_lines));
+      const auto first_error =
+        std::find_if(lines.begin(), lines.end(), [](const std::string &line) { return line.rfind("Error", 0) == 0; });
+      std::size_t first = std::min<std::size_t>(first_error - lines.begin(), lines.size() - std::min(lines.size(), quoted_lines));
       std::string text;
       for (const std::size_t end = std::min(lines.size(), first + quoted_lines); first < end; ++first)
         text += "\n    | " + lines[first];
@@ -245,8 +248,7 @@ namespace Squeal
         throw ForbiddenAction("starts another program");
       if (WIFSIGNALED(status))
         throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
-      throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where,
-                      "remove Exit or Abort from the geometry");
+      throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where, "remove Exit or Abort from the geometry");
     }
 
     GmshMesh mesh_from(const std::string &reply, const MesherLimits &limits, const std::string &where)
@@ -276,8 +278,9 @@ namespace Squeal
 
   GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits)
   {
-    std::vector<std::string> arguments = {installation().mesher.string(), input.script.empty() ? input.file : mesher_script_name, exact_text(limits.bytes),
-                                          exact_text(limits.seconds), limits.is_confined ? mesher_confined : mesher_free};
+    std::vector<std::string> arguments = {installation().mesher.string(), input.script.empty() ? input.file : mesher_script_name,
+                                          exact_text(limits.bytes), exact_text(limits.seconds),
+                                          limits.is_confined ? mesher_confined : mesher_free};
     for (const auto &[name, value] : input.numbers)
       arguments.insert(arguments.end(), {name, exact_text(value)});
 

@@ -73,8 +73,7 @@ namespace Squeal
       const double              tolerance = 1e-3 * smallest_edge;
       std::vector<unsigned int> order(plan.points.size());
       std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(),
-                [&](unsigned int a, unsigned int b) { return plan.points[a] < plan.points[b]; });
+      std::sort(order.begin(), order.end(), [&](unsigned int a, unsigned int b) { return plan.points[a] < plan.points[b]; });
       for (std::size_t i = 0; i < order.size(); ++i)
         for (std::size_t j = i + 1; j < order.size(); ++j)
           {
@@ -83,10 +82,9 @@ namespace Squeal
             if (b[0] - a[0] > tolerance)
               break;
             if (std::abs(b[1] - a[1]) <= tolerance)
-              throw MeshError("Two nodes of the plan coincide at (" + std::to_string(a[0]) + ", " +
-                                std::to_string(a[1]) + ") m: surfaces lie side by side without being joined",
-                              where,
-                              "let neighbouring surfaces use the same curves, or join them with Coherence");
+              throw MeshError("Two nodes of the plan coincide at (" + std::to_string(a[0]) + ", " + std::to_string(a[1]) +
+                                ") m: surfaces lie side by side without being joined",
+                              where, "let neighbouring surfaces use the same curves, or join them with Coherence");
           }
     }
 
@@ -146,8 +144,7 @@ namespace Squeal
         for (unsigned int i = 1; i < k; ++i)
           {
             const double t = double(i) / k;
-            spokes[s].push_back(add_point({{(1. - t) * centre[0] + t * points[end][0],
-                                            (1. - t) * centre[1] + t * points[end][1]}}));
+            spokes[s].push_back(add_point({{(1. - t) * centre[0] + t * points[end][0], (1. - t) * centre[1] + t * points[end][1]}}));
           }
         spokes[s].push_back(end);
       }
@@ -172,9 +169,8 @@ namespace Squeal
               const double s = double(i) / k, t = double(j) / k;
               Plan::Point  point;
               for (unsigned int d = 0; d < 2; ++d)
-                point[d] = (1. - t) * points[node[i][0]][d] + t * points[node[i][k]][d] +
-                           (1. - s) * points[node[0][j]][d] + s * points[node[k][j]][d] -
-                           (1. - s) * (1. - t) * points[node[0][0]][d] - s * (1. - t) * points[node[k][0]][d] -
+                point[d] = (1. - t) * points[node[i][0]][d] + t * points[node[i][k]][d] + (1. - s) * points[node[0][j]][d] +
+                           s * points[node[k][j]][d] - (1. - s) * (1. - t) * points[node[0][0]][d] - s * (1. - t) * points[node[k][0]][d] -
                            (1. - s) * t * points[node[0][k]][d] - s * t * points[node[k][k]][d];
               node[i][j] = add_point(point);
             }
@@ -235,8 +231,7 @@ namespace Squeal
             return (points[node][0] * centre[0] + points[node][1] * centre[1]) / radius;
           };
           std::rotate(loop.begin(),
-                      std::max_element(loop.begin(), loop.end(),
-                                       [&](unsigned int a, unsigned int b) { return outward(a) < outward(b); }),
+                      std::max_element(loop.begin(), loop.end(), [&](unsigned int a, unsigned int b) { return outward(a) < outward(b); }),
                       loop.end());
         }
       return loop;
@@ -263,8 +258,8 @@ namespace Squeal
     };
 
     // Surfaces: disc and pins
-    bool                                disc_found = false;
-    std::map<Plan::Face, unsigned int>  face_index; // by ascending nodes
+    bool                               disc_found = false;
+    std::map<Plan::Face, unsigned int> face_index; // by ascending nodes
     for (const GmshMesh::Group &group : mesh.groups)
       if (group.dimension == 2)
         {
@@ -278,8 +273,8 @@ namespace Squeal
           for (const GmshMesh::Block &block : group.blocks)
             {
               if (block.type != "Quadrilateral 4")
-                throw MeshError("Surface '" + group.name + "' has " + std::to_string(block.tags.size()) +
-                                  " elements of type '" + block.type + "'",
+                throw MeshError("Surface '" + group.name + "' has " + std::to_string(block.tags.size()) + " elements of type '" +
+                                  block.type + "'",
                                 where, "only four-node quadrilaterals can be extruded to hexahedra");
               for (std::size_t i = 0; i < block.tags.size(); ++i)
                 {
@@ -301,8 +296,7 @@ namespace Squeal
             plan.pins.push_back({group.name, side_of(group.name), faces, {{0., 0.}}, false});
         }
     if (!disc_found)
-      throw MeshError("The plan has no physical surface 'disc'", where,
-                      "give the surface of the disc that is not under a pin this name");
+      throw MeshError("The plan has no physical surface 'disc'", where, "give the surface of the disc that is not under a pin this name");
 
     // Curves, as edges between nodes of the surfaces
     std::vector<Plan::Curve> pin_curves;
@@ -322,10 +316,9 @@ namespace Squeal
                 curve.edges.push_back(edge);
               }
           if (group.name.empty())
-            throw MeshError("The plan has a physical curve without a name", where,
-                            "write Physical Curve(\"name\") = {...}");
-          for (const char *reserved : {PhysicalNames::disc_contact, PhysicalNames::pin_contact,
-                                       PhysicalNames::pin_clamp, PhysicalNames::pin_side})
+            throw MeshError("The plan has a physical curve without a name", where, "write Physical Curve(\"name\") = {...}");
+          for (const char *reserved :
+               {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
             if (group.name == reserved)
               throw MeshError("The plan has a physical curve '" + group.name + "'", where,
                               "choose another name; the extrusion gives this one to faces of its own");
@@ -361,13 +354,12 @@ namespace Squeal
           }
         std::vector<unsigned int> &faces = filled[edges];
         if (faces.empty())
-          for (const Plan::Face &face :
-               fill_with_o_grid(closed_loop(curve.edges, plan.points, curve.name, where), plan.points))
+          for (const Plan::Face &face : fill_with_o_grid(closed_loop(curve.edges, plan.points, curve.name, where), plan.points))
             {
               faces.push_back(plan.faces.size());
               plan.faces.push_back(face);
             }
-        const auto place = centres.find(curve.name);
+        const auto  place        = centres.find(curve.name);
         Plan::Point displacement = {{0., 0.}};
         if (place != centres.end())
           {

@@ -29,7 +29,7 @@ namespace Squeal
           const double       ax = next[0] - corner[0], ay = next[1] - corner[1];
           const double       bx = last[0] - corner[0], by = last[1] - corner[1];
           const double       squares = ax * ax + ay * ay + bx * bx + by * by;
-          worst = std::min(worst, squares > 0. ? 2. * (ax * by - ay * bx) / squares : -1.);
+          worst                      = std::min(worst, squares > 0. ? 2. * (ax * by - ay * bx) / squares : -1.);
         }
       return worst;
     }
@@ -110,7 +110,7 @@ namespace Squeal
               double      best          = before;
               Plan::Point best_position = points[node];
               const auto  attempt       = [&](const Plan::Point &position) {
-                points[node]  = position;
+                points[node]       = position;
                 const double worst = worst_at(node);
                 if (worst > best)
                   {

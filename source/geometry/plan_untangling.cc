@@ -13,7 +13,7 @@ namespace Squeal
     // Rows of faces around the bad ones that move along; a pin and its neighbour are fewer apart.
     constexpr int n_rings = 6;
 
-    constexpr int    max_sweeps        = 100;  ///< ε has been least for a third of them
+    constexpr int    max_sweeps        = 100; ///< ε has been least for a third of them
     constexpr double epsilon_decrease  = 0.9;
     constexpr double smallest_epsilon  = 1e-3;
     constexpr double converged         = 1e-3; ///< relative decrease of a node's energy in a sweep
@@ -155,8 +155,8 @@ namespace Squeal
             const Plan::Point from = position;
             for (int direction = 0; direction < n_step_directions; ++direction)
               {
-                const double angle  = direction * 2. * std::acos(-1.) / n_step_directions;
-                points[node]        = {{from[0] + step * std::cos(angle), from[1] + step * std::sin(angle)}};
+                const double angle        = direction * 2. * std::acos(-1.) / n_step_directions;
+                points[node]              = {{from[0] + step * std::cos(angle), from[1] + step * std::sin(angle)}};
                 const double energy_there = energy(faces_at[node]);
                 if (energy_there < least)
                   {
@@ -175,7 +175,7 @@ namespace Squeal
         for (const unsigned int node : part.nodes)
           {
             const double x = points[node][0] - part.centre[0], y = points[node][1] - part.centre[1];
-            points[node]   = {{part.centre[0] + c * x - s * y, part.centre[1] + s * x + c * y}};
+            points[node] = {{part.centre[0] + c * x - s * y, part.centre[1] + s * x + c * y}};
           }
       }
 

@@ -18,7 +18,7 @@ namespace Squeal
     constexpr double reference_dofs     = 3e4;
     constexpr double growth             = 0.15;
     constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
-    constexpr double vectors_per_node   = 2., vectors_per_mode = 3.;
+    constexpr double vectors_per_node = 2., vectors_per_mode = 3.;
 
     /// Layers of nodes share those of neighbouring layers.
     double nodes_of_stack(const double plan_nodes, const double layers)
@@ -48,7 +48,8 @@ namespace Squeal
 
   ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters)
   {
-    ProblemSize size{double(plan.faces.size()) * parameters.disc_layers, 3. * nodes_of_stack(plan.points.size(), parameters.disc_layers), 0.};
+    ProblemSize size{double(plan.faces.size()) * parameters.disc_layers, 3. * nodes_of_stack(plan.points.size(), parameters.disc_layers),
+                     0.};
     for (const Plan::Pin &pin : plan.pins)
       {
         std::set<unsigned int> nodes;

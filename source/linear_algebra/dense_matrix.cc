@@ -30,8 +30,7 @@ namespace Squeal
     void require(const bool condition, const char *operation)
     {
       if (!condition)
-        throw SolverError("the shapes of two dense matrices do not fit together",
-                          operation,
+        throw SolverError("the shapes of two dense matrices do not fit together", operation,
                           "this is a mistake in the program: please report it");
     }
 
@@ -39,8 +38,7 @@ namespace Squeal
     {
       if (info != 0)
         throw SolverError(std::string(routine) + " failed with info = " + std::to_string(info),
-                          "a small dense eigenvalue or singular value problem",
-                          "check that the reduced matrices are finite");
+                          "a small dense eigenvalue or singular value problem", "check that the reduced matrices are finite");
     }
   } // namespace
 
@@ -55,18 +53,7 @@ namespace Squeal
 
     DenseMatrix C(m, n);
     if (m > 0 && n > 0 && k > 0)
-      gemm(transpose_A,
-           transpose_B,
-           m,
-           n,
-           k,
-           alpha,
-           A.column(),
-           leading_dimension(A),
-           B.column(),
-           leading_dimension(B),
-           0.,
-           C.column(),
+      gemm(transpose_A, transpose_B, m, n, k, alpha, A.column(), leading_dimension(A), B.column(), leading_dimension(B), 0., C.column(),
            leading_dimension(C));
     return C;
   }
@@ -82,15 +69,7 @@ namespace Squeal
 
     ComplexDenseMatrix C(m, n);
     if (m > 0 && n > 0 && k > 0)
-      gemm(conjugate_transpose_A,
-           m,
-           n,
-           k,
-           A.column(),
-           leading_dimension(A),
-           B.column(),
-           leading_dimension(B),
-           C.column(),
+      gemm(conjugate_transpose_A, m, n, k, A.column(), leading_dimension(A), B.column(), leading_dimension(B), C.column(),
            leading_dimension(C));
     return C;
   }
@@ -275,9 +254,7 @@ namespace Squeal
         LAPACKE_dgecon_work(LAPACK_COL_MAJOR, '1', n, factors.column(), n, norm, &rcond, work.data(), iwork.data());
       }
     if (info != 0 || !regular.exceeded_by(rcond) || !std::isfinite(norm))
-      throw SolverError("a dense matrix of size " + std::to_string(n) +
-                          " is singular to working precision",
-                        what,
+      throw SolverError("a dense matrix of size " + std::to_string(n) + " is singular to working precision", what,
                         "check for linearly dependent vectors or a parameter value at which the problem degenerates");
   }
 
@@ -289,8 +266,7 @@ namespace Squeal
     require(n == B.n_rows(), "solution with dense LU factors");
     if (n == 0 || B.n_columns() == 0)
       return;
-    LAPACKE_dgetrs_work(
-      LAPACK_COL_MAJOR, transpose ? 'T' : 'N', n, B.n_columns(), factors.column(), n, pivots.data(), B.column(), n);
+    LAPACKE_dgetrs_work(LAPACK_COL_MAJOR, transpose ? 'T' : 'N', n, B.n_columns(), factors.column(), n, pivots.data(), B.column(), n);
   }
 
 
@@ -330,7 +306,8 @@ namespace Squeal
         LAPACKE_zgecon_work(LAPACK_COL_MAJOR, '1', n, entries(factors.column()), n, norm, &rcond, entries(work.data()), rwork.data());
       }
     // Written so that a NaN counts as singular, too.
-    norm_of_inverse = complex_regular.exceeded_by(rcond) && std::isfinite(norm) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
+    norm_of_inverse =
+      complex_regular.exceeded_by(rcond) && std::isfinite(norm) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
   }
 
 
@@ -341,15 +318,8 @@ namespace Squeal
     require(n == B.n_rows(), "solution with complex dense LU factors");
     if (n == 0 || B.n_columns() == 0)
       return;
-    LAPACKE_zgetrs_work(LAPACK_COL_MAJOR,
-                        'N',
-                        n,
-                        B.n_columns(),
-                        reinterpret_cast<const lapack_complex_double *>(factors.column()),
-                        n,
-                        pivots.data(),
-                        reinterpret_cast<lapack_complex_double *>(B.column()),
-                        n);
+    LAPACKE_zgetrs_work(LAPACK_COL_MAJOR, 'N', n, B.n_columns(), reinterpret_cast<const lapack_complex_double *>(factors.column()), n,
+                        pivots.data(), reinterpret_cast<lapack_complex_double *>(B.column()), n);
   }
 
 
@@ -433,8 +403,7 @@ namespace Squeal
     require(n == A.n_columns() && n == B.n_rows() && n == B.n_columns(), "eigenvalues of a symmetric dense pair");
     std::vector<double> values(n);
     if (n > 0)
-      check_lapack(LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'U', n, A.column(), n, B.column(), n, values.data()),
-                   "LAPACK's dsygvd");
+      check_lapack(LAPACKE_dsygvd(LAPACK_COL_MAJOR, 1, 'V', 'U', n, A.column(), n, B.column(), n, values.data()), "LAPACK's dsygvd");
     return values;
   }
 
@@ -447,8 +416,9 @@ namespace Squeal
     if (k == 0)
       return result;
     DenseMatrix left(m, m);
-    check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', m, n, A.column(), m, result.values.data(), left.column(), m, result.right.column(), n),
-                 "LAPACK's dgesdd");
+    check_lapack(
+      LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', m, n, A.column(), m, result.values.data(), left.column(), m, result.right.column(), n),
+      "LAPACK's dgesdd");
     result.right = transpose(result.right);
     return result;
   }
@@ -470,18 +440,8 @@ namespace Squeal
 
     std::vector<double> real(n), imaginary(n);
     DenseMatrix         right(n, n), left(left_vectors ? n : 0, left_vectors ? n : 0);
-    check_lapack(LAPACKE_dgeev(LAPACK_COL_MAJOR,
-                               left_vectors ? 'V' : 'N',
-                               'V',
-                               n,
-                               A.column(),
-                               n,
-                               real.data(),
-                               imaginary.data(),
-                               left_vectors ? left.column() : nullptr,
-                               n,
-                               right.column(),
-                               n),
+    check_lapack(LAPACKE_dgeev(LAPACK_COL_MAJOR, left_vectors ? 'V' : 'N', 'V', n, A.column(), n, real.data(), imaginary.data(),
+                               left_vectors ? left.column() : nullptr, n, right.column(), n),
                  "LAPACK's dgeev");
 
     // LAPACK stores the vector of a conjugate pair as two real columns, real part first.

@@ -13,17 +13,14 @@ namespace Squeal
       if (!A.DomainMap().SameAs(A.RangeMap()) || !A.RowMap().SameAs(A.RangeMap()))
         throw SolverError("a matrix of " + std::to_string(A.NumGlobalRows()) + " rows and " + std::to_string(A.NumGlobalCols()) +
                             " columns, or with rows and columns distributed differently, cannot be factorised",
-                          what,
-                          "this is a mistake in the program: please report it");
+                          what, "this is a mistake in the program: please report it");
     }
 
     void check_one_process(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
     {
       if (A.Comm().NumProc() > 1)
-        throw SolverError(to_string(library) + " was asked for on " + std::to_string(A.Comm().NumProc()) +
-                            " processes but works on one",
-                          what,
-                          "choose MUMPS or automatic as factorisation library, or run on one process");
+        throw SolverError(to_string(library) + " was asked for on " + std::to_string(A.Comm().NumProc()) + " processes but works on one",
+                          what, "choose MUMPS or automatic as factorisation library, or run on one process");
     }
   } // namespace
 
@@ -31,8 +28,7 @@ namespace Squeal
 
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
-    throw SolverError("the matrix is not positive definite to working precision (" + library + ")",
-                      what,
+    throw SolverError("the matrix is not positive definite to working precision (" + library + ")", what,
                       "check the boundary conditions: a body that can move rigidly has a singular stiffness");
   }
 
@@ -40,8 +36,7 @@ namespace Squeal
 
   void throw_singular(const std::string &library, const std::string &what)
   {
-    throw SolverError("the matrix is singular to working precision (" + library + ")",
-                      what,
+    throw SolverError("the matrix is singular to working precision (" + library + ")", what,
                       "check the boundary conditions, or move the shift away from an eigenvalue");
   }
 
@@ -49,15 +44,15 @@ namespace Squeal
 
   void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what)
   {
-    throw SolverError(library + " failed: " + failure,
-                      what,
+    throw SolverError(library + " failed: " + failure, what,
                       "choose another factorisation library, a coarser mesh, or a machine with more memory");
   }
 
 
 
-  std::unique_ptr<Factorization>
-  factorize_positive_definite(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
+  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,
+                                                             const FactorizationLibrary library,
+                                                             const std::string         &what)
   {
     check_square(A, what);
     switch (library)
@@ -96,8 +91,7 @@ namespace Squeal
           check_one_process(A, library, what);
           return umfpack_factorization(A, what);
         case FactorizationLibrary::cholmod:
-          throw SolverError("CHOLMOD was asked for but factorises positive definite matrices only",
-                            what,
+          throw SolverError("CHOLMOD was asked for but factorises positive definite matrices only", what,
                             "choose automatic, UMFPACK or MUMPS as factorisation library");
         case FactorizationLibrary::mumps:
           break;

@@ -20,8 +20,7 @@ namespace Squeal
     void require(const bool condition, const char *operation)
     {
       if (!condition)
-        throw SolverError("the shapes of two sets of vectors do not fit together",
-                          operation,
+        throw SolverError("the shapes of two sets of vectors do not fit together", operation,
                           "this is a mistake in the program: please report it");
     }
 
@@ -142,18 +141,7 @@ namespace Squeal
         return;
       }
     const LocalValues x(X);
-    gemm(false,
-         false,
-         Y.MyLength(),
-         Y.NumVectors(),
-         X.NumVectors(),
-         alpha,
-         x.values,
-         x.stride,
-         S.column(),
-         S.n_rows(),
-         beta,
-         Y.Values(),
+    gemm(false, false, Y.MyLength(), Y.NumVectors(), X.NumVectors(), alpha, x.values, x.stride, S.column(), S.n_rows(), beta, Y.Values(),
          Y.Stride());
   }
 
@@ -299,8 +287,7 @@ namespace Squeal
         for (int j = 0; j < X.NumVectors(); ++j)
           {
             if (!std::isfinite(G(j, j)))
-              throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values",
-                                "orthonormalisation",
+              throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values", "orthonormalisation",
                                 "check the step that computed the vectors");
             if (G(j, j) > 0.)
               {
@@ -348,14 +335,15 @@ namespace Squeal
 
           MultiVector W = *remaining * largest_axes(V, values, k - n_rest);
           if (axes != nullptr)
-            std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms), [](const double x) { return std::sqrt(x); });
+            std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms),
+                           [](const double x) { return std::sqrt(x); });
           for (int pass = 0; pass < 2; ++pass)
             {
               project(W);
               // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
               DenseMatrix               U       = gram(W, M * W);
               const std::vector<double> squares = common_eigenvalues(X.Comm(), U);
-              W = W * inverse_root(U, squares);
+              W                                 = W * inverse_root(U, squares);
             }
           kept.push_back(std::move(W));
 
@@ -394,25 +382,23 @@ namespace Squeal
 
 
 
-  MultiVector
-  orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance, PrincipalAxes *axes)
+  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance, PrincipalAxes *axes)
   {
     std::optional<MultiVector> W = orthonormalize_if_any(M, Q, X, tolerance, axes);
     if (!W)
       throw SolverError("all " + std::to_string(X.NumVectors()) + " vectors are zero or depend linearly on those already there",
-                        "orthonormalisation",
-                        "give other vectors, or a smaller tolerance");
+                        "orthonormalisation", "give other vectors, or a smaller tolerance");
     return *W;
   }
 
 
 
-  MultiVector
-  principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
+  MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
   {
     const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(X.NumVectors()) + " vectors are zero", "proper orthogonal decomposition", "give other vectors");
+      throw SolverError("all " + std::to_string(X.NumVectors()) + " vectors are zero", "proper orthogonal decomposition",
+                        "give other vectors");
     if (maximum < 1)
       throw SolverError("a basis of " + std::to_string(maximum) + " vectors was asked for", "proper orthogonal decomposition",
                         "ask for one vector at least");

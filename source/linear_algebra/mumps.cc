@@ -101,8 +101,7 @@ namespace Squeal
             };
 
             for (int j = 0; j < n_columns; ++j)
-              MPI_Gatherv(
-                X[first + j], n_local_rows, MPI_DOUBLE, column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, 0, comm);
+              MPI_Gatherv(X[first + j], n_local_rows, MPI_DOUBLE, column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, 0, comm);
             id.rhs       = centralised.data();
             id.nrhs      = n_columns;
             id.lrhs      = rows.n_rows;
@@ -111,8 +110,7 @@ namespace Squeal
             run(3);
             check("solution");
             for (int j = 0; j < n_columns; ++j)
-              MPI_Scatterv(
-                column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, Y[first + j], n_local_rows, MPI_DOUBLE, 0, comm);
+              MPI_Scatterv(column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, Y[first + j], n_local_rows, MPI_DOUBLE, 0, comm);
           }
       }
 
@@ -122,9 +120,9 @@ namespace Squeal
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
         id.icntl[3]  = 0;
-        id.icntl[17] = 3;  // every process brings its rows
-        id.icntl[12] = 1;  // no dense parallel root, which would hide signs of pivots
-        id.icntl[23] = 1;  // pivots that vanish are reported, not divided by ...
+        id.icntl[17] = 3;     // every process brings its rows
+        id.icntl[12] = 1;     // no dense parallel root, which would hide signs of pivots
+        id.icntl[23] = 1;     // pivots that vanish are reported, not divided by ...
         id.cntl[2]   = 1e-14; // ... where they are below this, relative to the scaled matrix
         id.icntl[10] = 0;
 
@@ -177,10 +175,8 @@ namespace Squeal
       void check(const std::string &step) const
       {
         if (id.infog[0] < 0)
-          throw_library_failure("MUMPS",
-                                "INFOG(1) = " + std::to_string(id.infog[0]) + ", INFOG(2) = " + std::to_string(id.infog[1]) +
-                                  " of the " + step,
-                                what);
+          throw_library_failure(
+            "MUMPS", "INFOG(1) = " + std::to_string(id.infog[0]) + ", INFOG(2) = " + std::to_string(id.infog[1]) + " of the " + step, what);
       }
 
       const std::string   what;
@@ -233,8 +229,7 @@ namespace Squeal
 
 
 
-  std::unique_ptr<Factorization>
-  mumps_factorization(const SparseMatrix &A, const bool positive_definite, const std::string &what)
+  std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, const bool positive_definite, const std::string &what)
   {
     return std::make_unique<MumpsFactorization>(A, positive_definite ? Symmetry::positive_definite : Symmetry::general, what);
   }

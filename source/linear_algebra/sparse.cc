@@ -21,15 +21,14 @@ namespace Squeal
     {
       // Positive values are warnings of Epetra.
       if (error < 0)
-        throw SolverError("Epetra returned error " + std::to_string(error),
-                          operation,
+        throw SolverError("Epetra returned error " + std::to_string(error), operation,
                           "check that the shapes and distributions of the matrices fit together");
     }
 
     /// Number of the first local element when the elements of all processes are numbered without gaps.
     int first_number(const Epetra_Map &map)
     {
-      const int n_mine = map.NumMyElements();
+      const int n_mine      = map.NumMyElements();
       int       n_upto_mine = 0;
       // ScanSum is not const-correct about its input.
       int n = n_mine;
@@ -54,8 +53,7 @@ namespace Squeal
 
 
 
-  std::shared_ptr<SparseMatrix>
-  multiply(const SparseMatrix &A, const SparseMatrix &B, const bool transpose_A, const bool transpose_B)
+  std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, const bool transpose_A, const bool transpose_B)
   {
     // Where three processes share the rows Epetra's product of two transposed matrices loses entries: (B A)ᵀ I instead
     if (transpose_A && transpose_B)
@@ -64,8 +62,7 @@ namespace Squeal
     const Epetra_Map &rows    = transpose_A ? A.DomainMap() : A.RangeMap();
     const Epetra_Map &columns = transpose_B ? B.RangeMap() : B.DomainMap();
     auto              C       = std::make_shared<SparseMatrix>(Copy, rows, 0);
-    check_epetra(EpetraExt::MatrixMatrix::Multiply(A, transpose_A, B, transpose_B, *C, false),
-                 "product of two sparse matrices");
+    check_epetra(EpetraExt::MatrixMatrix::Multiply(A, transpose_A, B, transpose_B, *C, false), "product of two sparse matrices");
     check_epetra(C->FillComplete(columns, rows), "product of two sparse matrices");
     return C;
   }
@@ -91,8 +88,7 @@ namespace Squeal
     const SparseMatrix &first = *summands.front().second;
     for (const auto &[factor, A] : summands)
       if (!A->RowMap().SameAs(first.RowMap()) || !A->DomainMap().SameAs(first.DomainMap()))
-        throw SolverError("matrices of different shape or distribution",
-                          "sum of sparse matrices",
+        throw SolverError("matrices of different shape or distribution", "sum of sparse matrices",
                           "this is a mistake in the program: please report it");
 
     // Where one pattern contains the other, as those of K and M mostly do,
@@ -200,7 +196,7 @@ namespace Squeal
     int problem = 0; // errno of the first error
     if (is_writer)
       {
-        const int base    = A.RowMap().IndexBase();
+        const int  base    = A.RowMap().IndexBase();
         const auto for_all = [&](const auto &action) {
           for (int i = 0; i < gathered.NumMyRows(); ++i)
             {
@@ -226,12 +222,8 @@ namespace Squeal
           problem = errno;
         else
           {
-            if (std::fprintf(stream,
-                             "%%%%MatrixMarket matrix coordinate real %s\n%d %d %lld\n",
-                             symmetric ? "symmetric" : "general",
-                             A.NumGlobalRows(),
-                             A.NumGlobalCols(),
-                             n_entries) < 0)
+            if (std::fprintf(stream, "%%%%MatrixMarket matrix coordinate real %s\n%d %d %lld\n", symmetric ? "symmetric" : "general",
+                             A.NumGlobalRows(), A.NumGlobalCols(), n_entries) < 0)
               problem = errno;
             for_all([&](const int i, const int j, const double entry) {
               if (problem == 0 && std::fprintf(stream, "%d %d %.17g\n", i + 1, j + 1, entry) < 0)
@@ -247,8 +239,7 @@ namespace Squeal
       }
     A.Comm().Broadcast(&problem, 1, 0);
     if (problem != 0)
-      throw FileError(std::string("a matrix could not be written: ") + std::strerror(problem),
-                      "file `" + file + "`",
+      throw FileError(std::string("a matrix could not be written: ") + std::strerror(problem), "file `" + file + "`",
                       "check that the directory exists, is writable and has space left");
   }
 
@@ -260,8 +251,7 @@ namespace Squeal
     , n_columns(A.DomainMap().NumGlobalElements())
   {
     if (!A.RowMap().PointSameAs(A.RangeMap()))
-      throw SolverError("a matrix whose rows are distributed differently from its results",
-                        "access to the rows of a sparse matrix",
+      throw SolverError("a matrix whose rows are distributed differently from its results", "access to the rows of a sparse matrix",
                         "this is a mistake in the program: please report it");
 
     // Number the domain without gaps and look the numbers up for all columns stored here.

@@ -53,8 +53,8 @@ namespace Squeal
     {
       umfpack_zi_defaults(control.data());
       control[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
-      const int status          = umfpack_zi_symbolic(
-        pattern.n_rows, pattern.n_rows, pattern.start.data(), pattern.column.data(), nullptr, nullptr, &symbolic, control.data(), nullptr);
+      const int status = umfpack_zi_symbolic(pattern.n_rows, pattern.n_rows, pattern.start.data(), pattern.column.data(), nullptr, nullptr,
+                                             &symbolic, control.data(), nullptr);
       if (status != UMFPACK_OK)
         throw_library_failure("UMFPACK", "status " + std::to_string(status) + " of the analysis", what);
     }
@@ -77,8 +77,7 @@ namespace Squeal
     if (M.Comm().NumProc() > 1)
       throw SolverError("determinants of sparse matrices are computed by UMFPACK, which runs on one process, not on " +
                           std::to_string(M.Comm().NumProc()),
-                        what,
-                        "run on one process, or take the determinant condensed to the contact nodes");
+                        what, "run on one process, or take the determinant condensed to the contact nodes");
     implementation = std::make_unique<Implementation>(M, C, K);
   }
 
@@ -104,14 +103,8 @@ namespace Squeal
 
     // UMFPACK takes rows for columns: the determinant is the same.
     void     *numeric = nullptr;
-    const int status  = umfpack_zi_numeric(pattern.start.data(),
-                                          pattern.column.data(),
-                                          real.data(),
-                                          imaginary.data(),
-                                          implementation->symbolic,
-                                          &numeric,
-                                          implementation->control.data(),
-                                          nullptr);
+    const int status  = umfpack_zi_numeric(pattern.start.data(), pattern.column.data(), real.data(), imaginary.data(),
+                                           implementation->symbolic, &numeric, implementation->control.data(), nullptr);
     // determinant = (mantissa_re + i mantissa_im) · 10^exponent
     double mantissa_re = 0., mantissa_im = 0., exponent = 0.;
     int    evaluated = status;

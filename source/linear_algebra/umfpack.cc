@@ -27,13 +27,13 @@ namespace Squeal
         // Callers check residuals themselves; a refinement would double the time of every solution.
         control[UMFPACK_IRSTEP] = 0;
 
-        void     *symbolic = nullptr;
-        const int analysed = umfpack_di_symbolic(
-          rows.n_rows, rows.n_rows, rows.start.data(), rows.column.data(), rows.value.data(), &symbolic, control.data(), info.data());
-        int factorised = UMFPACK_OK;
+        void     *symbolic   = nullptr;
+        const int analysed   = umfpack_di_symbolic(rows.n_rows, rows.n_rows, rows.start.data(), rows.column.data(), rows.value.data(),
+                                                   &symbolic, control.data(), info.data());
+        int       factorised = UMFPACK_OK;
         if (analysed == UMFPACK_OK)
-          factorised = umfpack_di_numeric(
-            rows.start.data(), rows.column.data(), rows.value.data(), symbolic, &numeric, control.data(), info.data());
+          factorised =
+            umfpack_di_numeric(rows.start.data(), rows.column.data(), rows.value.data(), symbolic, &numeric, control.data(), info.data());
         umfpack_di_free_symbolic(&symbolic);
 
         const bool singular = factorised == UMFPACK_WARNING_singular_matrix ||
@@ -85,17 +85,8 @@ namespace Squeal
         std::vector<double> reals(5 * static_cast<std::size_t>(rows.n_rows)), solve_info(UMFPACK_INFO);
         for (int j = 0; j < X.NumVectors(); ++j)
           {
-            const int status = umfpack_di_wsolve(system,
-                                                 rows.start.data(),
-                                                 rows.column.data(),
-                                                 rows.value.data(),
-                                                 Y[j],
-                                                 X[j],
-                                                 numeric,
-                                                 control.data(),
-                                                 solve_info.data(),
-                                                 integers.data(),
-                                                 reals.data());
+            const int status = umfpack_di_wsolve(system, rows.start.data(), rows.column.data(), rows.value.data(), Y[j], X[j], numeric,
+                                                 control.data(), solve_info.data(), integers.data(), reals.data());
             if (status != UMFPACK_OK)
               throw_library_failure("UMFPACK", "status " + std::to_string(status) + " while solving", what);
           }

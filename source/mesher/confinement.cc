@@ -49,7 +49,8 @@ namespace Squeal
 
     constexpr int starting_programs[] = {SYS_execve, SYS_execveat
 #  if defined(__x86_64__)
-                                         , SYS_fork, SYS_vfork
+                                         ,
+                                         SYS_fork, SYS_vfork
 #  endif
     };
 
@@ -58,23 +59,38 @@ namespace Squeal
     // File name first
     constexpr int changing_files[] = {SYS_truncate
 #  if defined(__x86_64__)
-                                      , SYS_creat, SYS_mkdir, SYS_mknod, SYS_rename, SYS_link, SYS_symlink, SYS_chmod,
-                                      SYS_chown, SYS_lchown
+                                      ,
+                                      SYS_creat,
+                                      SYS_mkdir,
+                                      SYS_mknod,
+                                      SYS_rename,
+                                      SYS_link,
+                                      SYS_symlink,
+                                      SYS_chmod,
+                                      SYS_chown,
+                                      SYS_lchown
 #  endif
     };
 
     // Directory first, then file name
-    constexpr int changing_files_at[] = {SYS_mkdirat, SYS_mknodat, SYS_renameat2, SYS_linkat, SYS_symlinkat, SYS_fchmodat,
+    constexpr int changing_files_at[] = {SYS_mkdirat,
+                                         SYS_mknodat,
+                                         SYS_renameat2,
+                                         SYS_linkat,
+                                         SYS_symlinkat,
+                                         SYS_fchmodat,
                                          SYS_fchownat
 #  if defined(SYS_renameat)
-                                         , SYS_renameat
+                                         ,
+                                         SYS_renameat
 #  endif
     };
 
     // No script asks for these; Gmsh itself tries to remove files that it did not make.
     constexpr int removing_files[] = {SYS_unlinkat
 #  if defined(__x86_64__)
-                                      , SYS_unlink, SYS_rmdir
+                                      ,
+                                      SYS_unlink, SYS_rmdir
 #  endif
     };
 
@@ -112,7 +128,8 @@ namespace Squeal
       {
         program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)(call), 0, 4));
         load(offsetof(seccomp_data, args) + 8 * argument); // both processors store the low half first
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, (unsigned char)(where_set ? 0 : 1), (unsigned char)(where_set ? 1 : 0)));
+        program.push_back(
+          BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, (unsigned char)(where_set ? 0 : 1), (unsigned char)(where_set ? 1 : 0)));
         program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP));
         program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
       }
@@ -167,7 +184,7 @@ namespace Squeal
 
     void on_forbidden_call(int, siginfo_t *info, void *context)
     {
-      const int         call = info->si_syscall;
+      const int         call  = info->si_syscall;
       const ucontext_t &where = *static_cast<const ucontext_t *>(context);
       if (contains(using_network, call))
         reply_and_end(MesherReply::uses_network, nullptr);

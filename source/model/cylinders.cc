@@ -43,8 +43,8 @@ namespace Squeal
       Vector<double>     rhs(3), solution(3);
       for (const auto &p : points)
         {
-          const Tensor<1, 3>   d   = p - centre;
-          const double         row[3] = {2 * d[0], 2 * d[1], 1.}, value = d[0] * d[0] + d[1] * d[1];
+          const Tensor<1, 3> d      = p - centre;
+          const double       row[3] = {2 * d[0], 2 * d[1], 1.}, value = d[0] * d[0] + d[1] * d[1];
           for (unsigned int i = 0; i < 3; ++i)
             {
               for (unsigned int j = 0; j < 3; ++j)

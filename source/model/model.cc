@@ -108,8 +108,8 @@ namespace Squeal
     map = std::make_unique<Epetra_Map>(n_free, n_own, 0, epetra_communicator);
 
     // Nodes: the dofs of the three directions at each support point
-    constexpr unsigned int    none = -1;
-    std::vector<Point<3>>     support(dofs.n_dofs());
+    constexpr unsigned int none = -1;
+    std::vector<Point<3>>  support(dofs.n_dofs());
     DoFTools::map_dofs_to_support_points(geometry_mapping, dofs, support);
     dof_nodes.assign(dofs.n_dofs(), none);
     for (const auto &cell : dofs.active_cell_iterators())

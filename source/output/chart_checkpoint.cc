@@ -23,7 +23,7 @@ namespace Squeal
   namespace
   {
     /// First words of every archive; the number after them is the version of its format.
-    const std::string title = "squeal sweep";
+    const std::string title             = "squeal sweep";
     constexpr int     version_of_format = 2;
 
     constexpr const char *csv_header =
@@ -122,7 +122,10 @@ namespace Squeal
     const Epetra_Map  rows;
   };
 
-  ChartCheckpoint::ChartCheckpoint(const std::string &folder, const std::string &key, const MPI_Comm communicator, const double largest_circular_frequency)
+  ChartCheckpoint::ChartCheckpoint(const std::string &folder,
+                                   const std::string &key,
+                                   const MPI_Comm     communicator,
+                                   const double       largest_circular_frequency)
     : folder(folder)
     , identity(title + ' ' + std::to_string(version_of_format) + '\n' + key)
     , archive(fs::path(folder) / archive_name)
@@ -182,7 +185,7 @@ namespace Squeal
                         "` begins; choose another --output; or delete the folder");
     if (!read())
       parts.clear(); // the first record begins another archive
-    is_begun = !parts.empty();
+    is_begun         = !parts.empty();
     std::string text = csv_header;
     for (const auto &[name, contents] : parts)
       for (const auto &[place, result] : contents.results)

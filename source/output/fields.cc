@@ -83,9 +83,9 @@ namespace Squeal
       components(cell->active_cell_index()) = cell->material_id();
 
     // The pins' contact faces as a surface mesh of their own
-    const types::boundary_id    id = model.surface_id(PhysicalNames::pin_contact);
-    std::vector<Point<3>>       vertices(model.triangulation().get_vertices());
-    std::vector<CellData<2>>    cells;
+    const types::boundary_id id = model.surface_id(PhysicalNames::pin_contact);
+    std::vector<Point<3>>    vertices(model.triangulation().get_vertices());
+    std::vector<CellData<2>> cells;
     for (const auto &cell : model.triangulation().active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary() && face->boundary_id() == id)
@@ -107,7 +107,7 @@ namespace Squeal
     std::map<std::array<long, 3>, unsigned int> numbers;
     for (unsigned int c = 0; c < interface.size(); ++c)
       {
-        const auto &p                             = model.nodes()[interface[c].pin_node].position;
+        const auto &p                           = model.nodes()[interface[c].pin_node].position;
         numbers[position_key(p[0], p[1], p[2])] = c;
       }
     std::vector<Point<3>> support(contact_dofs.n_dofs());
@@ -159,8 +159,8 @@ namespace Squeal
 
   void FieldWriter::write_contact(const ModeField &mode) const
   {
-    using Complex      = std::complex<double>;
-    const double scale = 1. / largest_amplitude(mode);
+    using Complex       = std::complex<double>;
+    const double  scale = 1. / largest_amplitude(mode);
     DataOut<2, 3> output;
     output.set_flags(compressed());
     output.attach_dof_handler(contact_dofs);
@@ -174,7 +174,7 @@ namespace Squeal
   void FieldWriter::write_contact_state(const ContactField &state) const
   {
     // Clamped dofs follow their backplate
-    Vector<double> u = dof_vector(state.displacement, [](const double value) { return value; });
+    Vector<double>   u = dof_vector(state.displacement, [](const double value) { return value; });
     std::vector<int> side(state.approach.size(), 0);
     for (const ContactNode &node : interface)
       side[node.pin] = node.side();
@@ -195,13 +195,10 @@ namespace Squeal
     std::vector<double> pressure;
     for (unsigned int c = 0; c < interface.size(); ++c)
       pressure.push_back(-state.reactions[c] / interface[c].area);
-    const auto identity = [](const double value) { return value; };
-    const std::vector<std::pair<const std::vector<double> *, const char *>> fields = {{&pressure, "pressure"},
-                                                                                      {&state.reactions, "normal_reaction"},
-                                                                                      {&state.gaps, "gap"},
-                                                                                      {&closed, "closed"},
-                                                                                      {&state.radial_damping, "c_b"},
-                                                                                      {&state.sliding_damping, "c_t"}};
+    const auto                                                              identity = [](const double value) { return value; };
+    const std::vector<std::pair<const std::vector<double> *, const char *>> fields   = {
+        {&pressure, "pressure"}, {&state.reactions, "normal_reaction"}, {&state.gaps, "gap"},
+        {&closed, "closed"},     {&state.radial_damping, "c_b"},        {&state.sliding_damping, "c_t"}};
     DataOut<2, 3> faces;
     faces.set_flags(compressed());
     faces.attach_dof_handler(contact_dofs);
@@ -213,8 +210,8 @@ namespace Squeal
 
   void FieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
   {
-    const double scale  = 1. / largest_amplitude(mode);
-    const double period = 2. * M_PI / mode.lambda.imag();
+    const double                                scale  = 1. / largest_amplitude(mode);
+    const double                                period = 2. * M_PI / mode.lambda.imag();
     std::vector<std::pair<double, std::string>> frames;
     for (unsigned int frame = 0; frame < n_frames; ++frame)
       {

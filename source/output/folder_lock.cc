@@ -73,7 +73,8 @@ namespace Squeal
       {
         descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor < 0)
-          throw fail(std::string("the result folder cannot be locked: ") + std::strerror(errno), "choose a folder beside which you may write");
+          throw fail(std::string("the result folder cannot be locked: ") + std::strerror(errno),
+                     "choose a folder beside which you may write");
         if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
           {
             const FileError error = refusal(folder, content(descriptor));

@@ -58,9 +58,9 @@ namespace Squeal
   {
     if (!is_root)
       return;
-    place      = result_place(directory);
-    unfinished = place.string() + ".unfinished";
-    replaced   = place.string() + ".replaced";
+    place           = result_place(directory);
+    unfinished      = place.string() + ".unfinished";
+    replaced        = place.string() + ".replaced";
     const auto held = uninterrupted();
     try
       {
@@ -119,7 +119,7 @@ namespace Squeal
   void ResultFolder::try_writing() const
   {
     constexpr std::size_t longest_name = 200, size = 4096;
-    const fs::path        file = unfinished / std::string(longest_name, 'x');
+    const fs::path        file    = unfinished / std::string(longest_name, 'x');
     const int             problem = write_file(file, O_TRUNC, {std::string(size, ' ')}, true);
     fs::remove(file);
     if (problem != 0)
@@ -213,7 +213,7 @@ namespace Squeal
   std::vector<std::string> ResultFolder::bring_user_files() const
   {
     std::vector<std::string> remarks;
-    const auto               listed = read_file_list(place / run_record);
+    const auto               listed    = read_file_list(place / run_record);
     const bool               is_result = fs::exists(place / run_record);
     const auto               is_of_run = [&](const std::string &file) {
       return file == run_record || (listed ? listed->count(file) > 0 : is_result && is_name_of_result(file));

@@ -28,7 +28,8 @@ namespace Squeal
 
     std::string cholmod_version()
     {
-      return std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) + "." + std::to_string(CHOLMOD_SUBSUB_VERSION);
+      return std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) + "." +
+             std::to_string(CHOLMOD_SUBSUB_VERSION);
     }
   } // namespace
 
@@ -45,26 +46,24 @@ namespace Squeal
     Json tree;
     tree["command"]  = record.command;
     tree["finished"] = utc_time();
-    tree["versions"] = {{"squeal", version},
-                        {"revision", record.revision},
-                        {"deal.II", DEAL_II_PACKAGE_VERSION},
-                        {"Trilinos", TRILINOS_VERSION_STRING},
-                        {"MUMPS", MUMPS_VERSION},
-                        {"CHOLMOD", cholmod_version()},
-                        {"UMFPACK", UMFPACK_VERSION},
-                        {"Gmsh", GMSH_API_VERSION}};
-    tree["machine"]  = {{"cores", std::thread::hardware_concurrency()},
-                        {"processes", record.n_processes},
-                        {"BLAS threads per process", record.blas_threads}};
+    tree["versions"] = {
+      {"squeal", version},      {"revision", record.revision},  {"deal.II", DEAL_II_PACKAGE_VERSION}, {"Trilinos", TRILINOS_VERSION_STRING},
+      {"MUMPS", MUMPS_VERSION}, {"CHOLMOD", cholmod_version()}, {"UMFPACK", UMFPACK_VERSION},         {"Gmsh", GMSH_API_VERSION}};
+    tree["machine"] = {{"cores", std::thread::hardware_concurrency()},
+                       {"processes", record.n_processes},
+                       {"BLAS threads per process", record.blas_threads}};
     for (const auto &[name, count] : record.counts)
       tree["counts"][name] = count;
     for (const auto &[name, value] : record.quantities)
       tree["quantities"][name] = value;
-    tree["warnings"] = record.warnings;
+    tree["warnings"]      = record.warnings;
     tree["wall time [s]"] = progress.elapsed();
     for (const StepRecord &step : progress.steps())
-      tree["steps"].push_back(
-        {{"name", step.name}, {"wall time [s]", step.seconds}, {"CPU time [s]", step.cpu_seconds}, {"peak memory so far [byte]", step.peak_memory}, {"result", step.summary}});
+      tree["steps"].push_back({{"name", step.name},
+                               {"wall time [s]", step.seconds},
+                               {"CPU time [s]", step.cpu_seconds},
+                               {"peak memory so far [byte]", step.peak_memory},
+                               {"result", step.summary}});
     // Infinite where no value lay on a side: JSON has null for it
     for (const DecisionRecord &decision : Decision::records())
       tree["decisions"].push_back({{"quantity", decision.quantity},

@@ -49,8 +49,8 @@ namespace Squeal
     add_enum_parameter(prm, "Shift inverse", shift_inverse,
                        "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
                        "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
-    add_number_parameter(prm, "Tolerance", complex_tolerance,
-                         "Largest relative residual of a complex mode found by Krylov. Units: none.", Double(1e-13, 1e-4));
+    add_number_parameter(prm, "Tolerance", complex_tolerance, "Largest relative residual of a complex mode found by Krylov. Units: none.",
+                         Double(1e-13, 1e-4));
     add_number_parameter(prm, "Iteration tolerance", iteration_tolerance,
                          "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.",
                          Double(1e-12, 1e-2));
@@ -61,8 +61,7 @@ namespace Squeal
     add_enum_parameter(prm, "Factorization", library,
                        "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
     prm.add_parameter("BLAS threads", blas_threads,
-                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.",
-                      Integer(1, 256));
+                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", Integer(1, 256));
     prm.leave_subsection();
   }
 

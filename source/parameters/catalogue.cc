@@ -182,10 +182,12 @@ namespace Squeal
       {
         const auto parts = dealii::Utilities::split_string_list(value, ',');
         if (parts.size() > list->largest_number)
-          return parameter.path + " has " + std::to_string(parts.size()) + " values, but takes at most " + std::to_string(list->largest_number);
+          return parameter.path + " has " + std::to_string(parts.size()) + " values, but takes at most " +
+                 std::to_string(list->largest_number);
         for (std::size_t i = 0; i < parts.size(); ++i)
           if (!dealii::Patterns::pattern_factory(list->element)->match(parts[i]))
-            return refusal({parameter.path + ", value " + std::to_string(i + 1) + ",", "", parameter.documentation, list->element}, parts[i]);
+            return refusal({parameter.path + ", value " + std::to_string(i + 1) + ",", "", parameter.documentation, list->element},
+                           parts[i]);
       }
     return parameter.path + " must be " + accepted_values(parameter) + but_is(value);
   }

@@ -52,9 +52,8 @@ namespace Squeal
   {
     if (modal_ratios.empty())
       return 0.;
-    const auto above = std::upper_bound(modal_ratios.begin(), modal_ratios.end(), frequency, [](const double f, const ModalDampingRatio &entry) {
-      return f < entry.frequency;
-    });
+    const auto above = std::upper_bound(modal_ratios.begin(), modal_ratios.end(), frequency,
+                                        [](const double f, const ModalDampingRatio &entry) { return f < entry.frequency; });
     if (above == modal_ratios.begin())
       return above->ratio;
     const ModalDampingRatio &below = *(above - 1);

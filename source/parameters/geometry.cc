@@ -50,8 +50,9 @@ namespace Squeal
     {
       const std::string format = std::filesystem::path(file).extension().string();
       if (!is_script(file) && format != ".msh")
-        refuse("The format of Geometry/File = " + legible(file) + (format.empty() ? " is unknown" : ", " + legible(format) + ", is not supported"), "File",
-               "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts meshes of other formats to .msh");
+        refuse("The format of Geometry/File = " + legible(file) +
+                 (format.empty() ? " is unknown" : ", " + legible(format) + ", is not supported"),
+               "File", "give a Gmsh geometry (.geo) or a Gmsh mesh (.msh) with named parts; Gmsh converts meshes of other formats to .msh");
     }
 
     void check_positive(const double value, const std::string &name)
@@ -77,9 +78,7 @@ namespace Squeal
       if (nodes(below) == nodes_per_pin_face)
         return;
       const unsigned int above   = nodes_per_pin_face < 7 ? 1 : below + 1;
-      const unsigned int nearest = nodes_per_pin_face - nodes(below) <= nodes(above) - nodes_per_pin_face ?
-                                     nodes(below) :
-                                     nodes(above);
+      const unsigned int nearest = nodes_per_pin_face - nodes(below) <= nodes(above) - nodes_per_pin_face ? nodes(below) : nodes(above);
       refuse(text("Geometry/Nodes per pin face is ", nodes_per_pin_face,
                   ", but a pin is filled by three blocks of k x k elements, which gives 3 k (k + 1) + 1 nodes: "
                   "7, 19, 37, 61, ..."),
@@ -98,9 +97,9 @@ namespace Squeal
           const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
           const double outside = layout.radii[i] + pin_radius - parameters.disc_outer_radius;
           if (inside >= 0. || outside >= 0.)
-            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", layout.radii[i],
-                        " m with diameter ", parameters.pin_diameter, " m, reaches ", rounded(std::max(inside, outside)),
-                        " m beyond the ", inside >= outside ? "inner" : "outer", " radius of the disc (",
+            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", layout.radii[i], " m with diameter ",
+                        parameters.pin_diameter, " m, reaches ", rounded(std::max(inside, outside)), " m beyond the ",
+                        inside >= outside ? "inner" : "outer", " radius of the disc (",
                         inside >= outside ? parameters.disc_inner_radius : parameters.disc_outer_radius, " m)"),
                    radii_name,
                    text("a radius between ", rounded(parameters.disc_inner_radius + pin_radius), " m and ",
@@ -113,10 +112,9 @@ namespace Squeal
       for (std::size_t i = 0; i < layout.radii.size(); ++i)
         for (std::size_t j = i + 1; j < layout.radii.size(); ++j)
           {
-            const double angle = (layout.angles[i] - layout.angles[j]) * to_radians;
-            const double distance =
-              std::sqrt(std::pow(layout.radii[i] - layout.radii[j], 2) +
-                        4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
+            const double angle    = (layout.angles[i] - layout.angles[j]) * to_radians;
+            const double distance = std::sqrt(std::pow(layout.radii[i] - layout.radii[j], 2) +
+                                              4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
             if (distance <= parameters.pin_diameter)
               refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
                           rounded(parameters.pin_diameter - distance), " m: their axes are ", rounded(distance),
@@ -130,9 +128,8 @@ namespace Squeal
   {
     /// Variables by which a script takes over the parameters themselves.
     const std::vector<std::string> own_variables = {
-      "disc_inner_radius", "disc_outer_radius", "disc_thickness",    "pin_diameter",       "pin_height", "top_pin_radii",
-      "top_pin_angles",    "bottom_pin_radii",  "bottom_pin_angles", "nodes_per_pin_face", "pin_layers", "disc_layers",
-      "element_size",      "pairing_tolerance"};
+      "disc_inner_radius", "disc_outer_radius", "disc_thickness",     "pin_diameter", "pin_height",  "top_pin_radii", "top_pin_angles",
+      "bottom_pin_radii",  "bottom_pin_angles", "nodes_per_pin_face", "pin_layers",   "disc_layers", "element_size",  "pairing_tolerance"};
 
     void declare_variable(dealii::ParameterHandler &prm, GeometryParameters::Variable &variable)
     {
@@ -188,8 +185,8 @@ namespace Squeal
                       Anything());
     add_number_parameter(prm, "Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
     add_number_parameter(prm, "Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
-    add_number_parameter(prm, "Disc thickness", disc_thickness,
-                         "Thickness of the disc, half of it on each side of z = 0. Units: m.", Double(0.));
+    add_number_parameter(prm, "Disc thickness", disc_thickness, "Thickness of the disc, half of it on each side of z = 0. Units: m.",
+                         Double(0.));
     add_number_parameter(prm, "Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", Double(0.));
     add_number_parameter(prm, "Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", Double(0.));
     add_number_parameter(prm, "Top pin radii", top.radii,
@@ -197,24 +194,21 @@ namespace Squeal
                          "separated by commas; empty for none. Units: m.",
                          List(Double(0.), 0));
     add_number_parameter(prm, "Top pin angles", top.angles,
-                         "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.",
-                         List(Double(), 0));
+                         "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.", List(Double(), 0));
     add_number_parameter(prm, "Bottom pin radii", bottom.radii,
                          "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
                          "separated by commas; empty for none. Units: m.",
                          List(Double(0.), 0));
     add_number_parameter(prm, "Bottom pin angles", bottom.angles,
-                         "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.",
-                         List(Double(), 0));
+                         "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.", List(Double(), 0));
     prm.add_parameter("Nodes per pin face", nodes_per_pin_face,
-                      "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.",
-                      Integer(1));
-    prm.add_parameter("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.",
-                      Integer(1));
+                      "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.", Integer(1));
+    prm.add_parameter("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.", Integer(1));
     prm.add_parameter("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", Integer(1));
     add_number_parameter(prm, "Element size", element_size,
                          "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
-                         "smaller ones where these do not fit between the pins. Units: m.", Double(0.));
+                         "smaller ones where these do not fit between the pins. Units: m.",
+                         Double(0.));
     add_number_parameter(prm, "Pairing tolerance", pairing_tolerance,
                          "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
                          "Units: m.",
@@ -252,8 +246,7 @@ namespace Squeal
 
     const auto check_lengths = [](const PinLayout &layout, const char *side) {
       if (layout.radii.size() != layout.angles.size())
-        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, ", side,
-                    " pin angles has ", layout.angles.size()),
+        refuse(text("Geometry/", side, " pin radii has ", layout.radii.size(), " values, ", side, " pin angles has ", layout.angles.size()),
                text(side, " pin angles"), "give every pin one radius and one angle");
     };
     check_lengths(top, "Top");
@@ -261,28 +254,26 @@ namespace Squeal
 
     // Pairs must be unambiguous: neighbours on a contact face are at least one element apart.
     if (pairing_tolerance >= element_size / 2.)
-      refuse(text("Geometry/Pairing tolerance is ", pairing_tolerance, " m with elements of ", element_size, " m"),
-             "Pairing tolerance", "set it far below the element size; 1e-6 m suits most geometries");
+      refuse(text("Geometry/Pairing tolerance is ", pairing_tolerance, " m with elements of ", element_size, " m"), "Pairing tolerance",
+             "set it far below the element size; 1e-6 m suits most geometries");
 
     // The built-in plan; in files of the user's own these need not mean anything
     if (std::filesystem::path(file).filename() != "disc_pins.geo")
       return;
     if (disc_inner_radius >= disc_outer_radius)
-      refuse(text("Geometry/Disc inner radius is ", disc_inner_radius,
-                  " m, not smaller than Geometry/Disc outer radius, ", disc_outer_radius, " m"),
+      refuse(text("Geometry/Disc inner radius is ", disc_inner_radius, " m, not smaller than Geometry/Disc outer radius, ",
+                  disc_outer_radius, " m"),
              "Disc inner radius", "set it below the outer radius");
     const double width = disc_outer_radius - disc_inner_radius;
     if (element_size > width / 2.)
-      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", rounded(width),
-                  " m wide between its radii"),
+      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", rounded(width), " m wide between its radii"),
              "Element size", text("set it to at most ", rounded(width / 2.), " m, better a fraction of that"));
     if (element_size > disc_inner_radius)
-      refuse(text("Geometry/Element size is ", element_size, " m, but the bore has a radius of only ",
-                  disc_inner_radius, " m"),
+      refuse(text("Geometry/Element size is ", element_size, " m, but the bore has a radius of only ", disc_inner_radius, " m"),
              "Element size", text("set it to at most ", disc_inner_radius, " m, better a fraction of that"));
     if (top.radii.empty() && bottom.radii.empty())
-      refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty, so there is no contact",
-             "Top pin radii", "place at least one pin");
+      refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty, so there is no contact", "Top pin radii",
+             "place at least one pin");
     check_layout(top, "Top", *this);
     check_layout(bottom, "Bottom", *this);
   }

@@ -172,7 +172,7 @@ namespace Squeal
   std::string find_geometry(const std::string &name, const std::string &parameter_directory)
   {
     const fs::path        given(name);
-    const fs::path        beside = fs::absolute(parameter_directory.empty() ? "." : parameter_directory);
+    const fs::path        beside      = fs::absolute(parameter_directory.empty() ? "." : parameter_directory);
     std::vector<fs::path> directories = {beside};
     if (given.is_relative() && !fs::equivalent(beside, fs::current_path()))
       directories.push_back(fs::current_path());
@@ -219,7 +219,7 @@ namespace Squeal
     for (const char *statement : {"Include", "Merge"})
       for (const std::size_t at : positions_after(here, statement))
         {
-          const std::string name = leading_string(here.substr(at, here.find('\n', at) - at));
+          const std::string name  = leading_string(here.substr(at, here.find('\n', at) - at));
           const fs::path    other = (fs::path(file).parent_path() / name).lexically_normal();
           std::error_code   ignored;
           if (name.empty() || !fs::is_regular_file(other, ignored))
@@ -284,9 +284,8 @@ namespace Squeal
     const fs::path original(geometry), folder("geometry");
     if (is_supplied(geometry))
       return {{}, original.filename().string()};
-    const std::vector<std::string> files =
-      is_script(geometry) ? GeometryScript(geometry).files() : std::vector<std::string>{geometry};
-    GeometryCopy copy{{}, (folder / original.filename()).string()};
+    const std::vector<std::string> files = is_script(geometry) ? GeometryScript(geometry).files() : std::vector<std::string>{geometry};
+    GeometryCopy                   copy{{}, (folder / original.filename()).string()};
     for (const std::string &file : files)
       {
         const fs::path relative = fs::path(file).lexically_relative(original.parent_path());

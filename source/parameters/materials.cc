@@ -70,8 +70,8 @@ namespace Squeal
     void check_material(const std::string &section, const Material &material)
     {
       if (!(material.young_modulus > 0.))
-        throw ParameterError("Young's modulus is " + exact_text(material.young_modulus) + " Pa",
-                             "parameter " + section + "/Young modulus", "give a positive value");
+        throw ParameterError("Young's modulus is " + exact_text(material.young_modulus) + " Pa", "parameter " + section + "/Young modulus",
+                             "give a positive value");
       if (!(material.poisson_ratio > -1. && material.poisson_ratio < 0.4999))
         throw ParameterError("Poisson's ratio is " + exact_text(material.poisson_ratio), "parameter " + section + "/Poisson ratio",
                              "give a value above -1 and below 0.4999 (displacement elements lock for incompressible materials)");

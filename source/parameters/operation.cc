@@ -16,9 +16,10 @@ namespace Squeal
                       "convective stiffness.",
                       dealii::Patterns::Bool());
     add_number_parameter(prm, "Load per side", load_per_side, "Normal force with which the pins of one side press. Units: N.", Double(0.));
-    add_enum_parameter(prm, "Radial dissipation", radial_dissipation,
-                       "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
-                       "published, c_b = R_n0 / w_0 (as the paper prints it). R_n0 follows from Steady sliding/Contact state. c_b in N s/m.");
+    add_enum_parameter(
+      prm, "Radial dissipation", radial_dissipation,
+      "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
+      "published, c_b = R_n0 / w_0 (as the paper prints it). R_n0 follows from Steady sliding/Contact state. c_b in N s/m.");
     add_number_parameter(prm, "Friction slope", friction_slope,
                          "Slope dmu/dw of the friction coefficient at the sliding speed w_0; damps along the sliding direction with "
                          "c_t = slope R_n0 per node, so that a falling slope destabilises. Units: s/m.",

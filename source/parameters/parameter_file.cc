@@ -47,7 +47,8 @@ namespace Squeal
       if (starts_with(text, "\xFF\xFE") || starts_with(text, "\xFE\xFF"))
         throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
       if (const auto zero = text.find('\0'); zero != std::string::npos)
-        throw ParameterError("the parameter file is no text: it holds a zero byte", "file " + legible(file) + ", line " +
+        throw ParameterError("the parameter file is no text: it holds a zero byte",
+                             "file " + legible(file) + ", line " +
                                std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
                              "give a text file in UTF-8");
       constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
@@ -99,8 +100,8 @@ namespace Squeal
       void refuse_cycle(const std::string &file, const std::string &where) const
       {
         std::error_code ignored;
-        const auto is_same = [&](const std::string &other) { return fs::equivalent(file, other, ignored); };
-        const auto begin   = std::find_if(open_files.begin(), open_files.end(), is_same);
+        const auto      is_same = [&](const std::string &other) { return fs::equivalent(file, other, ignored); };
+        const auto      begin   = std::find_if(open_files.begin(), open_files.end(), is_same);
         if (begin == open_files.end())
           return;
         std::string chain;

@@ -93,8 +93,7 @@ namespace Squeal
       const auto [candidate_section, candidate_name] = split(candidate);
       const auto distance = [](const std::string &a, const std::string &b) { return std::min(edit_distance(a, b), word_distance(a, b)); };
       constexpr unsigned int wrong_section = 4;
-      return wrong_section * distance(written_name, candidate_name) +
-             std::min(distance(written_section, candidate_section), wrong_section);
+      return wrong_section * distance(written_name, candidate_name) + std::min(distance(written_section, candidate_section), wrong_section);
     }
 
     /// Refuses a name that was not declared.
@@ -123,7 +122,8 @@ namespace Squeal
       for (const CataloguedParameter &parameter : declared)
         {
           for (auto slash = parameter.path.find('/'); slash != std::string::npos; slash = parameter.path.find('/', slash + 1))
-            if (const std::string section = parameter.path.substr(0, slash + 1); std::find(names.begin(), names.end(), section) == names.end())
+            if (const std::string section = parameter.path.substr(0, slash + 1);
+                std::find(names.begin(), names.end(), section) == names.end())
               names.push_back(section);
           names.push_back(parameter.path);
         }
@@ -277,10 +277,12 @@ namespace Squeal
       {
         ParameterHandler documented;
         document(prm, documented);
-        documented.print_parameters(stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder));
+        documented.print_parameters(
+          stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder));
       }
     else
-      prm.print_parameters(stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::ShortPRM | ParameterHandler::KeepDeclarationOrder));
+      prm.print_parameters(stream,
+                           static_cast<ParameterHandler::OutputStyle>(ParameterHandler::ShortPRM | ParameterHandler::KeepDeclarationOrder));
   }
 
   bool Parameters::needs_steady_sliding() const
@@ -316,7 +318,8 @@ namespace Squeal
     if (is_steady)
       sliding.check_steady();
     if (uses_load_per_side() && !(operation.load_per_side > 0.))
-      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero", "parameter Operation/Load per side",
+      throw ParameterError("contact damping and steady sliding need a contact force, but the load is zero",
+                           "parameter Operation/Load per side",
                            "give a positive load; or set Operation/Radial dissipation = none, Operation/Friction slope = 0 and "
                            "Steady sliding/Contact state = equal load");
     if ((is_steady || has_contact_damping()) && !(operation.rotation_speed > 0.))
@@ -333,8 +336,10 @@ namespace Squeal
     const double radius = clear_of_accumulation * band_radius(circular_frequency(discretization.maximum_frequency));
     for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
-        throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) + " s, gathers the real eigenvalues of all "
-                             "overdamped waves at -1/beta = " + exact_text(-1. / beta) + " 1/s, within reach of the band",
+        throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) +
+                               " s, gathers the real eigenvalues of all "
+                               "overdamped waves at -1/beta = " +
+                               exact_text(-1. / beta) + " 1/s, within reach of the band",
                              std::string("parameter ") + section + "/Rayleigh beta",
                              "give less than " + short_text(1. / radius) + " s, let the band end below " +
                                short_text(hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius))) +

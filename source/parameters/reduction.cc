@@ -52,13 +52,13 @@ namespace Squeal
             {
               for (const double number : numbers)
                 if (number != std::floor(number) || number < 0. || number > 1e6)
-                  throw ParameterError(in_quotes(part) + " has a number of modes that is not a count", "parameter Reduction/Component modes",
-                                       std::string("write ") + truncation_format);
+                  throw ParameterError(in_quotes(part) + " has a number of modes that is not a count",
+                                       "parameter Reduction/Component modes", std::string("write ") + truncation_format);
               result.push_back({0., static_cast<int>(numbers[0]), static_cast<int>(numbers[1]), static_cast<int>(numbers[2])});
             }
           else
-            throw ParameterError(in_quotes(part) + " is neither a frequency nor three numbers of modes", "parameter Reduction/Component modes",
-                                 std::string("write ") + truncation_format);
+            throw ParameterError(in_quotes(part) + " is neither a frequency nor three numbers of modes",
+                                 "parameter Reduction/Component modes", std::string("write ") + truncation_format);
         }
       return result;
     }
@@ -67,21 +67,19 @@ namespace Squeal
     {
       std::string text;
       for (const ModeTruncation &truncation : truncations)
-        text += (text.empty() ? "" : "; ") +
-                (truncation.frequency > 0. ? exact_text(truncation.frequency) :
-                                             std::to_string(truncation.disc) + ", " + std::to_string(truncation.pins_free) + ", " +
-                                               std::to_string(truncation.pins_sliding));
+        text += (text.empty() ? "" : "; ") + (truncation.frequency > 0. ?
+                                                exact_text(truncation.frequency) :
+                                                std::to_string(truncation.disc) + ", " + std::to_string(truncation.pins_free) + ", " +
+                                                  std::to_string(truncation.pins_sliding));
       return text;
     }
 
     /// Binds a list of numbers.
-    void add_list(dealii::ParameterHandler &prm,
-                  const std::string        &name,
-                  std::vector<double>      &numbers,
-                  const std::string        &documentation)
+    void add_list(dealii::ParameterHandler &prm, const std::string &name, std::vector<double> &numbers, const std::string &documentation)
     {
       prm.declare_entry(name, print_numbers(numbers), dealii::Patterns::Anything(), documentation);
-      prm.add_action(name, [&numbers, name](const std::string &text) { numbers = parse_numbers(text, "Reduction/" + name, "a list of numbers"); });
+      prm.add_action(
+        name, [&numbers, name](const std::string &text) { numbers = parse_numbers(text, "Reduction/" + name, "a list of numbers"); });
     }
   } // namespace
 
@@ -96,9 +94,10 @@ namespace Squeal
   {
     using dealii::Patterns::Double;
     prm.enter_subsection("Reduction");
-    add_enum_parameter(prm, "Problem", problem,
-                       "What the bases are measured on: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
-                       "Operation/Friction coefficient (section 6).");
+    add_enum_parameter(
+      prm, "Problem", problem,
+      "What the bases are measured on: frictionless, real coupled modes (section 5 of the paper); friction, complex modes at "
+      "Operation/Friction coefficient (section 6).");
     std::string names;
     for (const std::string &name : bases)
       names += (names.empty() ? "" : ", ") + name;
@@ -115,13 +114,14 @@ namespace Squeal
                       "modes `disc, pins free, pins sliding`, those of all pins together. Units: Hz.");
     prm.add_action("Component modes", [this](const std::string &text) { truncations = parse_truncations(text); });
     add_number_parameter(prm, "Coupled frequency", coupled_frequency,
-                         "Real coupled modes below this frequency go into the bases `real ...`; 0: those of the band. Units: Hz.", Double(0.));
+                         "Real coupled modes below this frequency go into the bases `real ...`; 0: those of the band. Units: Hz.",
+                         Double(0.));
     add_number_parameter(prm, "Rank tolerance", rank_tolerance,
-                         "Directions of a basis whose M-norm is below this part of the largest are dropped. Units: none.", Double(1e-14, 1e-2));
+                         "Directions of a basis whose M-norm is below this part of the largest are dropped. Units: none.",
+                         Double(1e-14, 1e-2));
     add_list(prm, "Grown tolerances", grown_tolerances,
              "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these. Units: none.");
-    add_list(prm, "Snapshots", snapshots,
-             "Friction coefficients whose complex modes make the basis `POD`. Units: none.");
+    add_list(prm, "Snapshots", snapshots, "Friction coefficients whose complex modes make the basis `POD`. Units: none.");
     add_number_parameter(prm, "POD tolerance", pod_tolerance,
                          "Principal axes of the snapshots below this part of the largest are left out. Units: none.", Double(1e-13, 1.));
     prm.leave_subsection();

@@ -23,7 +23,10 @@ namespace Squeal
       std::vector<double> numbers;
     };
 
-    std::vector<PinNumbers> parse(const std::string &text, const char *parameter, const std::set<std::size_t> &n_numbers, const char *format)
+    std::vector<PinNumbers> parse(const std::string           &text,
+                                  const char                  *parameter,
+                                  const std::set<std::size_t> &n_numbers,
+                                  const char                  *format)
     {
       std::vector<PinNumbers> entries;
       std::set<std::string>   seen;
@@ -41,12 +44,13 @@ namespace Squeal
             {
               const auto number = parse_number(value);
               if (!number)
-                throw ParameterError(in_quotes(value) + " is not a finite number", std::string("parameter ") + parameter + ", pin " + legible(entry.pin),
-                                     std::string("write ") + format);
+                throw ParameterError(in_quotes(value) + " is not a finite number",
+                                     std::string("parameter ") + parameter + ", pin " + legible(entry.pin), std::string("write ") + format);
               entry.numbers.push_back(*number);
             }
           if (!seen.insert(entry.pin).second)
-            throw ParameterError("pin " + in_quotes(entry.pin) + " is given twice", std::string("parameter ") + parameter, "give each pin once");
+            throw ParameterError("pin " + in_quotes(entry.pin) + " is given twice", std::string("parameter ") + parameter,
+                                 "give each pin once");
           entries.push_back(entry);
         }
       return entries;

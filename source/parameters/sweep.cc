@@ -33,7 +33,8 @@ namespace Squeal
     {
       for (const double value : values)
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
-          throw ParameterError("the friction coefficient " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
+          throw ParameterError("the friction coefficient " + exact_text(value) + " is outside of the sweep",
+                               std::string("parameter Sweep/") + name,
                                "give values between Sweep/First friction coefficient and Sweep/Last friction coefficient");
     }
   } // namespace
@@ -59,21 +60,25 @@ namespace Squeal
     using dealii::Patterns::Integer;
     const dealii::Patterns::List coefficients(Double(0., 10.), 0, 1000);
     prm.enter_subsection("Sweep");
-    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.", Double(0., 10.));
+    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.",
+                         Double(0., 10.));
     add_number_parameter(prm, "Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", Double(0., 10.));
     prm.add_parameter("Number of friction coefficients", friction_coefficients.number,
                       "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", Integer(1, 100000));
     add_number_parameter(prm, "Tolerance", tolerance,
                          "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.",
                          Double(1e-10, 1e-2));
-    prm.add_parameter("Maximum basis", maximum_basis,
-                      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.", Integer(1));
+    prm.add_parameter(
+      "Maximum basis", maximum_basis,
+      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.",
+      Integer(1));
     add_number_parameter(prm, "Threshold tolerance", threshold_tolerance,
-                         "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", Double(1e-13, 1e-2));
-    prm.add_parameter("Compare dissipation", compare_dissipation,
-                      "With radial dissipation, sweep also without it and show both.");
+                         "Width of the interval of the friction coefficient to which a threshold is located. Units: none.",
+                         Double(1e-13, 1e-2));
+    prm.add_parameter("Compare dissipation", compare_dissipation, "With radial dissipation, sweep also without it and show both.");
     add_number_parameter(prm, "Mode shapes at", mode_shapes,
-                         "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.", coefficients);
+                         "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.",
+                         coefficients);
     add_number_parameter(prm, "Count modes at", counts,
                          "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
                          "in finding them, separated by commas. Units: none.",
@@ -82,7 +87,8 @@ namespace Squeal
                        "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
     add_number_parameter(prm, "First map value", map_values.first, "Smallest load or speed of the map. Units: N or rad/s.", Double(0.));
     add_number_parameter(prm, "Last map value", map_values.last, "Largest load or speed of the map. Units: N or rad/s.", Double(0.));
-    prm.add_parameter("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.", Integer(1, 10000));
+    prm.add_parameter("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.",
+                      Integer(1, 10000));
     prm.add_parameter("Map friction coefficients", map_friction_coefficients,
                       "Friction coefficients of the map, equally spaced over the sweep. Units: none.", Integer(1, 10000));
     prm.leave_subsection();

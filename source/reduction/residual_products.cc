@@ -75,9 +75,8 @@ namespace Squeal
               (transposed ? known->in_left : known->in_right) = true;
             }
         }
-    std::stable_sort(factors.begin(), factors.end(), [](const Factor &a, const Factor &b) {
-      return a.in_right - a.in_left < b.in_right - b.in_left;
-    });
+    std::stable_sort(factors.begin(), factors.end(),
+                     [](const Factor &a, const Factor &b) { return a.in_right - a.in_left < b.in_right - b.in_left; });
     int first = 0;
     for (Factor &f : factors)
       {

@@ -93,7 +93,7 @@ namespace Squeal
         b = add(b, rest);
 
         Iterate result{{std::vector<double>(G.n_rows(), 0.), problem.initial_gap, {}, std::move(closed), 0}, {}, 0., 0.};
-        auto   &[r, g, z, active, n_steps] = result.solution;
+        auto &[r, g, z, active, n_steps] = result.solution;
         for (int i = 0; i < n; ++i)
           r[nodes[i]] = b(i, 0);
         for (int k = 0; k < n_z; ++k)
@@ -155,7 +155,7 @@ namespace Squeal
     private:
       const ContactProblem &problem;
       DenseMatrix           G;
-      double                unit = 0.; ///< mean diagonal entry of G [m/N]
+      double                unit = 0.;                   ///< mean diagonal entry of G [m/N]
       std::vector<double>   motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
     };
 
@@ -169,10 +169,10 @@ namespace Squeal
 
     Attempt pivot(const ActiveSetSolver &solver, std::vector<bool> closed, const std::vector<double> &initial_gap)
     {
-      const int   most_steps = 30 + 2 * closed.size();
-      Attempt     best;
-      std::size_t fewest = closed.size() + 1;
-      int         left   = patience;
+      const int                   most_steps = 30 + 2 * closed.size();
+      Attempt                     best;
+      std::size_t                 fewest = closed.size() + 1;
+      int                         left   = patience;
       std::set<std::vector<bool>> seen; // by single flips: one of them twice is a cycle
       solver.support_backplates(closed, initial_gap);
       for (int step = 0; step <= most_steps; ++step)
@@ -268,7 +268,8 @@ namespace Squeal
            << best->pull << " N of tension and " << best->overlap << " m of overlap";
     else
       text << ": with all nodes closed, the reactions are not determined";
-    throw SolverError(text.str(), "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
+    throw SolverError(text.str(), "steady sliding",
+                      "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
   }
 
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, const unsigned int n_searches)

@@ -81,7 +81,7 @@ namespace Squeal
   {
     const auto [B, sizes]  = unit_columns(problem.motions);
     const auto [values, V] = singular_values(B); // descending
-    const int  n           = B.n_columns();
+    const int n            = B.n_columns();
     if (static_cast<int>(values.size()) == n && gap_of_all_motions.exceeded_by(values.back() / values.front()))
       return;
     std::vector<double> y;

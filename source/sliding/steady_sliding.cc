@@ -87,7 +87,7 @@ namespace Squeal
       std::vector<double> result;
       for (const ContactNode &node : interface)
         {
-          const PinGap &gap         = of_pin[node.pin];
+          const PinGap &gap            = of_pin[node.pin];
           const auto [along, outwards] = offsets(node, centres[node.pin]);
           result.push_back(gap.gap + gap.sliding_taper * along + gap.radial_taper * outwards);
         }
@@ -109,9 +109,9 @@ namespace Squeal
     {
       const bool per_pin = parameters.control == BackplateControl::load_per_pin;
       // A backplate is known by its pin, or by its side
-      std::map<int, int>         numbers;
+      std::map<int, int>                         numbers;
       std::map<int, std::map<unsigned int, int>> pins_of_side;
-      Backplates                 result{{}, {}, 0};
+      Backplates                                 result{{}, {}, 0};
       for (const ContactNode &node : interface)
         {
           const int key = per_pin ? static_cast<int>(node.pin) : node.side();
@@ -182,8 +182,8 @@ namespace Squeal
     if (parameters.control == BackplateControl::displacement)
       for (const double gap : smallest)
         if (gap >= parameters.displacement)
-          throw ParameterError("the displacement of " + exact_text(parameters.displacement) + " m closes no gap on one side, where the smallest is " +
-                                 exact_text(gap) + " m",
+          throw ParameterError("the displacement of " + exact_text(parameters.displacement) +
+                                 " m closes no gap on one side, where the smallest is " + exact_text(gap) + " m",
                                "parameters Steady sliding/Displacement and Gaps", "raise the displacement or lower the gaps");
   }
 
@@ -220,12 +220,18 @@ namespace Squeal
     const bool       moves  = !plates.loads.empty();
 
     // Free motions of the disc
-    const MultiVector &Psi_n  = responses.normal, &Psi_t = responses.tangential;
-    const auto        motions = balanced_disc_motions(model, contact, system, response, mu);
-    const int         n_plates = moves ? plates.n : 0, n_z = n_plates + (motions ? motions->NumVectors() : 0);
+    const MultiVector &Psi_n = responses.normal, &Psi_t = responses.tangential;
+    const auto         motions  = balanced_disc_motions(model, contact, system, response, mu);
+    const int          n_plates = moves ? plates.n : 0, n_z = n_plates + (motions ? motions->NumVectors() : 0);
 
-    ContactProblem problem{replicate(*contact.normal * Psi_n), replicate(*contact.normal * Psi_t), mu, {}, DenseMatrix(n_c, n_z),
-                           DenseMatrix(n_z, n_c), plates.loads, {}};
+    ContactProblem problem{replicate(*contact.normal * Psi_n),
+                           replicate(*contact.normal * Psi_t),
+                           mu,
+                           {},
+                           DenseMatrix(n_c, n_z),
+                           DenseMatrix(n_z, n_c),
+                           plates.loads,
+                           {}};
     const auto     gaps = axial_gaps(model, interface, parameters);
     for (int c = 0; c < n_c; ++c)
       {
@@ -257,8 +263,15 @@ namespace Squeal
       hold_undetermined_motion(problem, n_plates);
 
     const ContactSolution solution = solve_contact(problem);
-    SlidingState          state{solution.reactions, solution.gaps, solution.closed, std::vector<double>(model.component_names().size(), 0.),
-                       nullptr, nullptr, {}, contact_uniqueness(problem, solution), solution.n_steps};
+    SlidingState          state{solution.reactions,
+                       solution.gaps,
+                       solution.closed,
+                       std::vector<double>(model.component_names().size(), 0.),
+                       nullptr,
+                       nullptr,
+                       {},
+                       contact_uniqueness(problem, solution),
+                       solution.n_steps};
 
     // Displacements
     const MultiVector r = from_column(state.reactions, contact.normal->RowMap());
@@ -283,7 +296,7 @@ namespace Squeal
         total.SumIntoGlobalValue(dof, 0, -side[node.component] * state.approach[node.component]);
 
     // Certificate: everything once more from the displacements of the full model
-    MultiVector forces = transpose_times(*contact.normal, r);
+    MultiVector  forces      = transpose_times(*contact.normal, r);
     const double normal_size = column_norms(forces)[0];
     forces.Update(mu, transpose_times(*contact.tangential, r), 1.);
     if (const MultiVector *N = response.rigid_body_modes()) // the moment that the drive takes
@@ -310,7 +323,7 @@ namespace Squeal
     certificate.complementarity = 0.;
     for (int c = 0; c < n_c; ++c)
       {
-        const double g = relative(c, 0) + std::abs(interface[c].normal[2]) * (state.approach[interface[c].pin] - gaps[c]);
+        const double g              = relative(c, 0) + std::abs(interface[c].normal[2]) * (state.approach[interface[c].pin] - gaps[c]);
         certificate.overlap         = std::max(certificate.overlap, g / way);
         certificate.complementarity = std::max(certificate.complementarity, std::abs(g * state.reactions[c]) / (way * load));
       }

@@ -72,7 +72,7 @@ namespace Squeal
       Kind kind;
       int  interval;
       int  branch, partner;
-      bool upward;        ///< onset, or entering the band
+      bool upward;           ///< onset, or entering the band
       bool at_once  = false; ///< neutral at the first point of the chart
       bool multiple = false; ///< two modes that nothing tells apart from the first point up to this interval
     };
@@ -117,7 +117,8 @@ namespace Squeal
       /// Intervals of this width are not searched further.
       double tolerance(const int k) const
       {
-        return std::max(options.threshold_tolerance, 8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
+        return std::max(options.threshold_tolerance,
+                        8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
       }
 
       int n_points() const
@@ -136,16 +137,16 @@ namespace Squeal
         for (std::size_t i = 0; i < values.size(); ++i)
           {
             found[i].friction_coefficient = values[i];
-            const int k = std::lower_bound(points.begin(), points.end(), values[i],
-                                           [](const ChartPoint &p, const double value) { return p.friction_coefficient < value; }) -
+            const int k                   = std::lower_bound(points.begin(), points.end(), values[i],
+                                                             [](const ChartPoint &p, const double value) { return p.friction_coefficient < value; }) -
                           points.begin();
             points.insert(points.begin() + k, std::move(found[i]));
             is_refinement.insert(is_refinement.begin() + k, refines);
             if (k > 0 && k + 1 < n_points())
               {
-                const int stalls = intervals[k - 1].stalls + 1;
+                const int  stalls      = intervals[k - 1].stalls + 1;
                 const bool left_halved = width(k - 1) <= width(k);
-                intervals[k - 1] = {std::nullopt, left_halved ? 0 : stalls};
+                intervals[k - 1]       = {std::nullopt, left_halved ? 0 : stalls};
                 intervals.insert(intervals.begin() + k, {std::nullopt, left_halved ? stalls : 0});
               }
             else if (n_points() > 1)
@@ -229,7 +230,8 @@ namespace Squeal
                 const auto first_comes_first = [](const Complex &x, const Complex &y, const int sign) {
                   return sign < 0 ? x.imag() < y.imag() : x.real() > y.real();
                 };
-                return first_comes_first(a1, a2, before) == first_comes_first(b1, b2, after) ? std::vector<int>{0, 1} : std::vector<int>{1, 0};
+                return first_comes_first(a1, a2, before) == first_comes_first(b1, b2, after) ? std::vector<int>{0, 1} :
+                                                                                               std::vector<int>{1, 0};
               }
           }
 
@@ -391,7 +393,8 @@ namespace Squeal
             search.partner = partner;
           }
         enclose(search);
-        search.at_once = search.interval == 0 && onset && is_neutral(lambda(branch, 0)) && (search.kind == Search::growth || is_double(search, 0));
+        search.at_once =
+          search.interval == 0 && onset && is_neutral(lambda(branch, 0)) && (search.kind == Search::growth || is_double(search, 0));
         if (onset && search.kind == Search::coalescence && search.interval > 0)
           {
             search.multiple = true;
@@ -428,13 +431,14 @@ namespace Squeal
       /// The branch with −R + iω where this one has R + iω, or -1.
       int mirror_branch(const int branch, const int k) const
       {
-        const Complex here = lambda(branch, k);
-        int           best = -1;
+        const Complex here  = lambda(branch, k);
+        int           best  = -1;
         double        least = mirror_tolerance * std::abs(here.real());
         // Close to a coalescence, R is small and known to rounding errors of λ only
         least = std::max(least, 1e-13 * std::abs(here));
         for (std::size_t j = 0; j < points[k].lambda.size(); ++j)
-          if (const double distance = std::abs(points[k].lambda[j] + std::conj(here)); static_cast<int>(j) != mode(branch, k) && distance <= least)
+          if (const double distance = std::abs(points[k].lambda[j] + std::conj(here));
+              static_cast<int>(j) != mode(branch, k) && distance <= least)
             {
               least = distance;
               best  = branch_of[k][j];
@@ -588,10 +592,10 @@ namespace Squeal
                                             padded(selected_columns(b.right, {mode(p, k + 1), mode(q, k + 1)}), r));
               if (!X.exists)
                 continue;
-              const double  t = before.imag() / (before.imag() - after.imag());
-              const Complex product = -X.X(0, 0) * X.inverse(0, 1) * X.X(1, 1) * X.inverse(1, 0) * after * after;
+              const double  t            = before.imag() / (before.imag() - after.imag());
+              const Complex product      = -X.X(0, 0) * X.inverse(0, 1) * X.X(1, 1) * X.inverse(1, 0) * after * after;
               const Complex discriminant = 4. * t * t * product;
-              const double  gap = std::sqrt(std::abs(discriminant));
+              const double  gap          = std::sqrt(std::abs(discriminant));
               // Frequencies that only repel each other do so over gap / slope
               const bool   repel  = discriminant.real() < 0. && is_neutral(lambda(p, k)) && is_neutral(lambda(q, k));
               const double extent = gap * width(k) / std::abs(after.imag() - before.imag());
@@ -655,7 +659,7 @@ namespace Squeal
         if (x.size() < 3 || ends >= 0.)
           return std::nullopt;
 
-        double peak = remaining * ends;
+        double                peak = remaining * ends;
         std::optional<double> result;
         constexpr int         n_samples = 16;
         for (int i = 1; i < n_samples; ++i)
@@ -817,15 +821,16 @@ namespace Squeal
         for (const Search &search : searches)
           {
             const auto [threshold, left] = zero(search);
-            const double total = left + uncertainty(search, threshold);
+            const double total           = left + uncertainty(search, threshold);
             if (search.kind == Search::growth || search.kind == Search::coalescence)
-              result.thresholds.push_back({threshold, total, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
-                                           search.kind == Search::growth ? ThresholdMechanism::zero_growth : ThresholdMechanism::coalescence,
-                                           search.branch, search.partner, lambda_at(search, threshold)});
+              result.thresholds.push_back(
+                {threshold, total, search.upward ? ThresholdEvent::onset : ThresholdEvent::restabilisation,
+                 search.kind == Search::growth ? ThresholdMechanism::zero_growth : ThresholdMechanism::coalescence, search.branch,
+                 search.partner, lambda_at(search, threshold)});
             else
               {
-                result.crossings.push_back(
-                  {threshold, total, search.branch, search.upward, search.kind == Search::real_axis ? BandEdge::real_axis : BandEdge::end_of_band});
+                result.crossings.push_back({threshold, total, search.branch, search.upward,
+                                            search.kind == Search::real_axis ? BandEdge::real_axis : BandEdge::end_of_band});
                 change[search.interval + 1] += search.upward ? 1 : -1;
               }
           }
@@ -882,7 +887,8 @@ namespace Squeal
                                          {options.threshold_tolerance, "tolerance of thresholds"},
                                          {options.smallest_step, "smallest step"}})
       if (!(quantity > 0.))
-        throw Error("the " + std::string(name) + " is " + std::to_string(quantity), "modes over the friction coefficient", "give a positive value");
+        throw Error("the " + std::string(name) + " is " + std::to_string(quantity), "modes over the friction coefficient",
+                    "give a positive value");
     return Sweep(evaluate, options).run(grid);
   }
 } // namespace Squeal

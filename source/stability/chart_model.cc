@@ -149,7 +149,7 @@ namespace Squeal
     DenseMatrix axes    = multiply(Y_w, Y_w, false, true);
     auto        squares = symmetric_eigenvalues(axes); // ascending
     agree(T.Comm(), axes, squares);
-    const int   r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
+    const int r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
     if (first == r)
       return real_modes;
     DenseMatrix Z = columns(axes, first, r - first);

@@ -38,7 +38,7 @@ namespace Squeal
       for (int j = 0; j < real_part.NumVectors(); ++j)
         {
           // The largest entry of all processes; ties go to the lowest process
-          double largest = -1.;
+          double largest  = -1.;
           double entry[2] = {1., 0.};
           for (int i = 0; i < real_part.MyLength(); ++i)
             if (const double modulus = std::hypot(real_part[j][i], imaginary_part[j][i]); modulus > largest)
@@ -117,7 +117,8 @@ namespace Squeal
     std::iota(order.begin(), order.end(), 0);
     constexpr double equal = 1e-9;
     std::sort(order.begin(), order.end(), [&](const int a, const int b) {
-      return std::make_pair(modes.lambda[a].imag(), modes.lambda[a].real()) < std::make_pair(modes.lambda[b].imag(), modes.lambda[b].real());
+      return std::make_pair(modes.lambda[a].imag(), modes.lambda[a].real()) <
+             std::make_pair(modes.lambda[b].imag(), modes.lambda[b].real());
     });
     for (int j = 0; j + 1 < k; ++j)
       {
@@ -128,7 +129,7 @@ namespace Squeal
     std::vector<std::complex<double>> sorted(k);
     for (int j = 0; j < k; ++j)
       sorted[j] = modes.lambda[order[j]];
-    modes.lambda         = sorted;
+    modes.lambda = sorted;
     for (const auto part : {&modes.real_part, &modes.imaginary_part, &modes.left_real_part, &modes.left_imaginary_part})
       if (*part)
         *part = std::make_shared<MultiVector>(permuted(**part, order));

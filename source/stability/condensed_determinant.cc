@@ -136,7 +136,8 @@ namespace Squeal
           int first_row = 0;
           for (auto factor = factors.begin(); factor != known; ++factor)
             first_row += (*factor)->rank();
-          blocks.push_back({&term, first_row, n_modes > 0 ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
+          blocks.push_back(
+            {&term, first_row, n_modes > 0 ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
         }
     for (const LowRankFactor *factor : factors)
       n_rows += factor->rank();
@@ -180,8 +181,7 @@ namespace Squeal
     for (n_terms = 1; !sufficient(n_terms); ++n_terms)
       if (n_terms == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
-                          "determinant condensed to the contact nodes",
-                          "take more real modes");
+                          "determinant condensed to the contact nodes", "take more real modes");
 
     // ----------------------------------------------------------------- moments
     for (Block &block : blocks)
@@ -225,18 +225,18 @@ namespace Squeal
   ComplexDenseMatrix CondensedDeterminant::complement(const Complex lambda, const double mu) const
   {
     const ParameterValues values = system.at(mu);
-    ComplexDenseMatrix   N(n_rows, n_rows);
-    const Ratio          ratio(lambda, deflation_square, shift);
-    std::vector<Complex> series(n_terms);
-    Complex              power = 1. / ratio.r;
+    ComplexDenseMatrix    N(n_rows, n_rows);
+    const Ratio           ratio(lambda, deflation_square, shift);
+    std::vector<Complex>  series(n_terms);
+    Complex               power = 1. / ratio.r;
     for (int k = 0; k < n_terms; ++k, power *= ratio.u)
       series[k] = (k == 0 ? 1. : 2.) * power;
     std::vector<double> real, imaginary;
     for (const Block &block : blocks)
       {
-        const int           n_here  = block.term->right->rank();
-        const DenseMatrix   weights = block.term->weighted(ones(n_here), system.values);
-        const Complex       scale   = block.scale(lambda, values);
+        const int         n_here  = block.term->right->rank();
+        const DenseMatrix weights = block.term->weighted(ones(n_here), system.values);
+        const Complex     scale   = block.scale(lambda, values);
         for (int j = 0; j < n_rows; ++j)
           {
             real.assign(n_here, 0.);
@@ -263,9 +263,9 @@ namespace Squeal
 
   CondensedDeterminant::OnModes CondensedDeterminant::on_modes(const Complex lambda, const double mu) const
   {
-    const ParameterValues values = system.at(mu);
-    const int n_modes = omega.size();
-    OnModes   result;
+    const ParameterValues values  = system.at(mu);
+    const int             n_modes = omega.size();
+    OnModes               result;
     for (const double frequency : omega)
       result.resonances.push_back(1. / (lambda + Complex(0., frequency)) / (lambda - Complex(0., frequency)));
 

@@ -46,8 +46,7 @@ namespace Squeal
         , multiplicity(damped ? 1 : 2)
       {
         if (!(high > low))
-          throw SolverError(number(hertz(high)) + " Hz as the end of the band, " + number(hertz(low)) + " Hz as its beginning",
-                            place,
+          throw SolverError(number(hertz(high)) + " Hz as the end of the band, " + number(hertz(low)) + " Hz as its beginning", place,
                             "let the band end above its beginning");
         if (damped)
           corners = {{0., low}, {width, low}, {width, high}, {-width, high}, {-width, low}, {0., low}};
@@ -87,8 +86,8 @@ namespace Squeal
     /// What a step to another point of the contour would be.
     struct Step
     {
-      double size;              ///< acceptable up to 1, and about proportional to the length
-      double phase;             ///< of the determinant [rad]
+      double size;               ///< acceptable up to 1, and about proportional to the length
+      double phase;              ///< of the determinant [rad]
       double largest_phase = 0.; ///< of its parts
     };
 
@@ -98,7 +97,7 @@ namespace Squeal
     public:
       virtual ~FollowedDeterminant() = default;
 
-      virtual void start(Complex lambda) = 0;
+      virtual void start(Complex lambda)   = 0;
       virtual Step attempt(Complex lambda) = 0;
 
       /// Goes to the point of the last attempt.
@@ -123,8 +122,8 @@ namespace Squeal
       struct Sample
       {
         ComplexDenseMatrix   matrix;
-        std::vector<Complex> scaling;           ///< diagonal B; empty: I
-        double               offset = 0.;       ///< the error is bounded by offset + factor ‖A⁻¹ B‖
+        std::vector<Complex> scaling;     ///< diagonal B; empty: I
+        double               offset = 0.; ///< the error is bounded by offset + factor ‖A⁻¹ B‖
         double               factor = 0.;
       };
       using Function = std::function<Sample(Complex)>;
@@ -260,8 +259,7 @@ namespace Squeal
         const Complex first = change(current.logarithm, middle), second = change(middle, next.logarithm);
         const double  largest = std::max(std::abs(first), std::abs(second));
         return {std::isfinite(largest) ? largest / largest_phase_step : std::numeric_limits<double>::infinity(),
-                first.imag() + second.imag(),
-                std::max(std::abs(first.imag()), std::abs(second.imag()))};
+                first.imag() + second.imag(), std::max(std::abs(first.imag()), std::abs(second.imag()))};
       }
 
       void accept() override
@@ -294,7 +292,11 @@ namespace Squeal
     // ------------------------------------------------------------------- following
 
     /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count take account of them.
-    int turns(FollowedDeterminant &determinant, const Contour &contour, const ContourOptions &options, ContourCount &count, Progress &progress)
+    int turns(FollowedDeterminant  &determinant,
+              const Contour        &contour,
+              const ContourOptions &options,
+              ContourCount         &count,
+              Progress             &progress)
     {
       double phase = 0., length = 0.1 * contour.width;
       determinant.start(contour.corners.front());
@@ -332,8 +334,7 @@ namespace Squeal
 
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
-        throw SolverError("the determinant does not return to its phase: " + Contour::number(turns) + " turns",
-                          place,
+        throw SolverError("the determinant does not return to its phase: " + Contour::number(turns) + " turns", place,
                           "choose another end of the band or another width of the contour");
       return whole;
     }
@@ -349,8 +350,11 @@ namespace Squeal
 
     // ------------------------------------------------------------------ both methods
 
-    std::vector<ContourCount>
-    count_condensed(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
+    std::vector<ContourCount> count_condensed(const CoupledSystem       &system,
+                                              const std::vector<double> &mu,
+                                              const ContourOptions      &options,
+                                              const Contour             &contour,
+                                              Progress                  &progress)
     {
       const SparseMatrix &K = *system.stiffness, &M = *system.mass;
 
@@ -380,10 +384,8 @@ namespace Squeal
               contour.refuse("a real mode lies on the contour", {0., end});
         }
       if (n_inside != n_frictionless)
-        throw SolverError(std::to_string(n_inside) + " real modes were found in the band, " + std::to_string(n_frictionless) +
-                            " exist",
-                          place,
-                          "move the end of the band off the mode next to it");
+        throw SolverError(std::to_string(n_inside) + " real modes were found in the band, " + std::to_string(n_frictionless) + " exist",
+                          place, "move the end of the band off the mode next to it");
 
       CondensedDeterminantRequest request;
       request.lambda = {{0., contour.low}, {contour.width, contour.low}, {contour.width, contour.high}, {0., contour.high}};
@@ -400,7 +402,7 @@ namespace Squeal
               progress.update("moments of the complement");
               determinant = std::make_unique<CondensedDeterminant>(system, modes, deflation_end, *real.inverse, real.shift, request);
             }
-          const double  friction    = mu[results.size()];
+          const double  friction = mu[results.size()];
           FollowedDense complement(
             [&](const Complex lambda) {
               return FollowedDense::Sample{determinant->complement(lambda, friction), {}, 0., determinant->truncation(lambda, friction)};
@@ -410,9 +412,7 @@ namespace Squeal
             [&](const Complex lambda) {
               CondensedDeterminant::OnModes sample = determinant->on_modes(lambda, friction);
               const double                  bound  = determinant->truncation(lambda, friction);
-              return FollowedDense::Sample{std::move(sample.matrix),
-                                           std::move(sample.resonances),
-                                           bound * sample.complement_inverse,
+              return FollowedDense::Sample{std::move(sample.matrix), std::move(sample.resonances), bound * sample.complement_inverse,
                                            bound * sample.gain};
             },
             determinant->frequencies(), options.largest_phase_step, M.Comm());
@@ -431,9 +431,9 @@ namespace Squeal
             }
           request.tolerance *= 0.2 * largest_truncation / count.truncation_bound;
           if (!(request.tolerance >= least_tolerance))
-            throw SolverError("the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely",
-                              place,
-                              "move the end of the band, or choose another width of the contour");
+            throw SolverError(
+              "the count is refused: the determinant is not known well enough on the contour, which passes a mode too closely", place,
+              "move the end of the band, or choose another width of the contour");
           determinant.reset();
         }
       return results;
@@ -441,8 +441,11 @@ namespace Squeal
 
 
 
-    std::vector<ContourCount>
-    count_sparse(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, const Contour &contour, Progress &progress)
+    std::vector<ContourCount> count_sparse(const CoupledSystem       &system,
+                                           const std::vector<double> &mu,
+                                           const ContourOptions      &options,
+                                           const Contour             &contour,
+                                           Progress                  &progress)
     {
       const int                 n_frictionless = n_frictionless_modes(system, contour);
       std::vector<ContourCount> results;
@@ -472,8 +475,10 @@ namespace Squeal
 
 
 
-  std::vector<ContourCount>
-  count_by_contour(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, Progress &progress)
+  std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,
+                                             const std::vector<double> &mu,
+                                             const ContourOptions      &options,
+                                             Progress                  &progress)
   {
     const Contour contour(options, system.has_damping());
     return options.method == ContourMethod::condensed ? count_condensed(system, mu, options, contour, progress) :

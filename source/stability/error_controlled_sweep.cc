@@ -79,7 +79,7 @@ namespace Squeal
                                    const MPI_Comm                                      communicator,
                                    const std::function<void(int, const ChartPoint &)> &each)
   {
-    const int               n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
+    const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     std::vector<ChartPoint> result;
     for (std::size_t first = 0; first < points.size(); first += n)
       {
@@ -98,23 +98,23 @@ namespace Squeal
   }
 
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
-                                 const std::vector<OperatingPoint> &points,
-                                 const std::vector<int>            &training,
-                                 const ErrorControlledSweepOptions       &options,
-                                 ChartStore                        *store,
-                                 const MPI_Comm                     communicator,
-                                 Progress                          &progress)
+                                              const std::vector<OperatingPoint> &points,
+                                              const std::vector<int>            &training,
+                                              const ErrorControlledSweepOptions &options,
+                                              ChartStore                        *store,
+                                              const MPI_Comm                     communicator,
+                                              Progress                          &progress)
   {
     if (points.empty())
       throw SolverError("there is no operating point to evaluate", "sweep", "give one at least");
     ErrorControlledSweep result{std::vector<std::optional<ChartPoint>>(points.size()), 0., 0, ""};
-    const auto     report = [&](const std::size_t n_finished, const double error) {
+    const auto           report = [&](const std::size_t n_finished, const double error) {
       std::ostringstream text;
       text << n_finished << " of " << points.size() << " operating points, " << model.size() << " vectors, estimated error " << error;
       progress.update(text.str());
     };
-    const auto is_finished = [](const std::optional<ChartPoint> &point) { return point.has_value(); };
-    const auto n_finished  = [&] { return std::count_if(result.points.begin(), result.points.end(), is_finished); };
+    const auto               is_finished = [](const std::optional<ChartPoint> &point) { return point.has_value(); };
+    const auto               n_finished  = [&] { return std::count_if(result.points.begin(), result.points.end(), is_finished); };
     std::vector<MultiVector> basis;
     if (store != nullptr)
       {
@@ -129,8 +129,8 @@ namespace Squeal
         std::vector<ChartPoint> charts;
         for (std::size_t t = 0; t < training.size();)
           {
-            const auto        here  = evaluate(model, {points[training[t]]}, communicator);
-            const Worst       worst = worst_of(model, {training[t]}, here);
+            const auto  here  = evaluate(model, {points[training[t]]}, communicator);
+            const Worst worst = worst_of(model, {training[t]}, here);
             report(0, worst.error);
             // Where the basis may not grow further, the points may still do
             if (worst.error <= training_factor * options.tolerance || !result.why_stopped.empty())
@@ -148,7 +148,8 @@ namespace Squeal
           chart = padded(chart, model.size());
         // Real modes first, then axes in their order: a basis that may not be larger ends earlier
         const MultiVector compressed = model.compressed_basis(charts, compression_factor * options.tolerance);
-        const MultiVector smaller    = view(compressed, 0, std::min(compressed.NumVectors(), std::max(options.maximum_basis, model.n_real_modes())));
+        const MultiVector smaller =
+          view(compressed, 0, std::min(compressed.NumVectors(), std::max(options.maximum_basis, model.n_real_modes())));
         if (store != nullptr)
           store->keep(smaller);
         model.restart(smaller);

@@ -15,7 +15,10 @@ namespace Squeal
     class DampingOperator : public LinearOperator
     {
     public:
-      DampingOperator(const Epetra_Map &rows, std::shared_ptr<const SparseMatrix> matrix, std::vector<Term> others, const ParameterValues &values)
+      DampingOperator(const Epetra_Map                   &rows,
+                      std::shared_ptr<const SparseMatrix> matrix,
+                      std::vector<Term>                   others,
+                      const ParameterValues              &values)
         : rows(rows)
         , matrix(std::move(matrix))
         , others(std::move(others))
@@ -97,8 +100,7 @@ namespace Squeal
     const bool has_full_terms = !terms_of(others, values, 1).empty(), symmetric = is_symmetric(sparse, values);
     // The inverse would hold them
     if (shift != 0. && has_full_terms)
-      throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver",
-                        "complex modes",
+      throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver", "complex modes",
                         "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
@@ -121,7 +123,8 @@ namespace Squeal
     std::unique_ptr<Factorization> lu;
     try
       {
-        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, symmetric, inverse, lu), options));
+        modes =
+          complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, symmetric, inverse, lu), options));
       }
     catch (const SolverError &)
       {
@@ -131,7 +134,8 @@ namespace Squeal
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
-        modes = complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, symmetric, shifted, lu), options));
+        modes = complex_modes(
+          quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, symmetric, shifted, lu), options));
         modes.summary += ", shifted";
       }
     finish_modes(system, values, inverse, modes);

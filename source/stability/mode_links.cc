@@ -25,8 +25,8 @@ namespace Squeal
     constexpr double dependent = 1e-13;
     /// The same of vectors so close to a coalescence that rounding decides on the rest.
     constexpr double defective = 1e-7;
-    const Decision complex_discriminant("Im / modulus of the square of a difference of two eigenvalues", 1e-6);
-    const Decision distinguishable("difference of two eigenvalues / their modulus", indistinguishable);
+    const Decision   complex_discriminant("Im / modulus of the square of a difference of two eigenvalues", 1e-6);
+    const Decision   distinguishable("difference of two eigenvalues / their modulus", indistinguishable);
 
     /// xᴴ y. Products of std::complex look for infinities first, which costs several times as much.
     Complex product(const Complex *x, const Complex *y, const int n)
@@ -180,7 +180,8 @@ namespace Squeal
       bool are_parallel(const int i, const int j) const
       {
         const int n = right.n_rows();
-        return std::norm(product(right.column(i), right.column(j), n)) > parallel && std::norm(product(left.column(i), left.column(j), n)) > parallel;
+        return std::norm(product(right.column(i), right.column(j), n)) > parallel &&
+               std::norm(product(left.column(i), left.column(j), n)) > parallel;
       }
 
       /// Whether all these modes are one cluster.
@@ -213,9 +214,10 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        links.resolved = std::all_of(links.blocks.begin(), links.blocks.end(), [&](const ModeBlock &block) {
-                           return block.resolved || (in_band(a, block.first) == 0 && in_band(b, block.second) == 0);
-                         }) &&
+        links.resolved = std::all_of(links.blocks.begin(), links.blocks.end(),
+                                     [&](const ModeBlock &block) {
+                                       return block.resolved || (in_band(a, block.first) == 0 && in_band(b, block.second) == 0);
+                                     }) &&
                          real_values_account_for_the_rest();
         return links;
       }
@@ -264,7 +266,8 @@ namespace Squeal
 
       int in_band(const Side &side, const std::vector<int> &modes) const
       {
-        return static_cast<int>(std::count_if(modes.begin(), modes.end(), [&](const int i) { return side.point.lambda[i].imag() <= limit; }));
+        return static_cast<int>(
+          std::count_if(modes.begin(), modes.end(), [&](const int i) { return side.point.lambda[i].imag() <= limit; }));
       }
 
       /// 1 for equal λ, falls to 0 with their distance.
@@ -285,7 +288,7 @@ namespace Squeal
           const int i = swapped ? many[q] : few[p], j = swapped ? few[p] : many[q];
           return overlaps(i, j) + weakest_overlap * closeness(i, j);
         });
-        const std::vector<int> kept = chosen_from(many, match);
+        const std::vector<int> kept  = chosen_from(many, match);
         for (const int m : many)
           if (std::find(kept.begin(), kept.end(), m) == kept.end())
             (swapped ? links.lost : links.gained).push_back(m);
@@ -414,7 +417,7 @@ namespace Squeal
   {
     const int        n = X.n_rows(), k = X.n_columns();
     OrthonormalBasis basis{X, ComplexDenseMatrix(k, k)};
-    auto            &[Q, R] = basis;
+    auto &[Q, R] = basis;
     for (int j = 0; j < k; ++j)
       {
         // Twice is enough (W. Kahan, B. Parlett)

@@ -64,7 +64,8 @@ namespace Squeal
         modes = selected(modes, others);
 
       auto      &values = modes.real_values;
-      const auto end    = std::remove_if(values.begin(), values.end(), [&](const double l) { return !nonzero.exceeded_by(std::abs(l) / largest_frequency); });
+      const auto end =
+        std::remove_if(values.begin(), values.end(), [&](const double l) { return !nonzero.exceeded_by(std::abs(l) / largest_frequency); });
       modes.n_zeros += static_cast<int>(values.end() - end);
       values.erase(end, values.end());
       std::sort(values.begin(), values.end());
@@ -180,8 +181,7 @@ namespace Squeal
     return modes;
   }
 
-  ReducedModes
-  real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_frequency, const double radius)
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_frequency, const double radius)
   {
     ReducedModes     modes = all_modes(model, model.full_order().at(mu), largest_frequency, RealVectors::wanted);
     std::vector<int> real;
@@ -233,8 +233,10 @@ namespace Squeal
     return result;
   }
 
-  ResidualVectors
-  residual_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes)
+  ResidualVectors residual_vectors(const CoupledSystem  &system,
+                                   const UpdatedInverse &inverse,
+                                   const ReducedModel   &model,
+                                   const ReducedModes   &modes)
   {
     const MultiVector &T     = model.basis();
     const auto         force = [&](const ComplexDenseMatrix &vectors, const bool left) {
@@ -259,8 +261,10 @@ namespace Squeal
             energies(left_forces, left_displacements)};
   }
 
-  EigenvalueEstimates
-  estimate_eigenvalues(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes)
+  EigenvalueEstimates estimate_eigenvalues(const CoupledSystem  &system,
+                                           const UpdatedInverse &inverse,
+                                           const ReducedModel   &model,
+                                           const ReducedModes   &modes)
   {
     return estimate_eigenvalues(modes, residual_vectors(system, inverse, model, modes).products());
   }
@@ -272,10 +276,10 @@ namespace Squeal
     EigenvalueEstimates       result;
 
     // δλ and κ
-    const auto mass = bilinear(&modes.pencil.mass, modes.left, modes.right);
-    const auto damping = bilinear(modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.left, modes.right);
-    const auto left_masses = squares(modes.mass, modes.left), right_masses = squares(modes.mass, modes.right);
-    const auto left_stiffnesses = squares(modes.stiffness, modes.left), right_stiffnesses = squares(modes.stiffness, modes.right);
+    const auto           mass        = bilinear(&modes.pencil.mass, modes.left, modes.right);
+    const auto           damping     = bilinear(modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.left, modes.right);
+    const auto           left_masses = squares(modes.mass, modes.left), right_masses = squares(modes.mass, modes.right);
+    const auto           left_stiffnesses = squares(modes.stiffness, modes.left), right_stiffnesses = squares(modes.stiffness, modes.right);
     std::vector<Complex> derivatives(k);
     for (int j = 0; j < k; ++j)
       {
@@ -284,7 +288,8 @@ namespace Squeal
         result.corrections.push_back(smaller_root(mass[j], b, E(j, j)));
         result.errors.push_back(std::abs(result.corrections[j]) / std::abs(lambda));
         const double norms = std::sqrt(left_masses[j] * right_masses[j]);
-        result.conditions.push_back(std::abs(b) > 0. ? 2. * std::abs(lambda) * norms / std::abs(b) : std::numeric_limits<double>::infinity());
+        result.conditions.push_back(std::abs(b) > 0. ? 2. * std::abs(lambda) * norms / std::abs(b) :
+                                                       std::numeric_limits<double>::infinity());
         result.energy_residuals.push_back(products.right_energies[j] / right_stiffnesses[j]);
         result.left_residuals.push_back(products.left_energies[j] / left_stiffnesses[j]);
       }

@@ -76,12 +76,12 @@ namespace Squeal
     /// W with Wᵀ G W = 1 for a symmetric positive semidefinite G, without the directions that are rounding errors.
     DenseMatrix whitening(DenseMatrix G)
     {
-      const auto        values = symmetric_eigenvalues(G);
-      const int         n      = values.size();
-      const auto        first_kept =
-        std::find_if(values.begin(), values.end(), [&values](const double value) { return independent.exceeded_by(value / values.back()); });
-      const int         first = first_kept - values.begin();
-      DenseMatrix       W      = columns(G, first, n - first);
+      const auto  values     = symmetric_eigenvalues(G);
+      const int   n          = values.size();
+      const auto  first_kept = std::find_if(values.begin(), values.end(),
+                                            [&values](const double value) { return independent.exceeded_by(value / values.back()); });
+      const int   first      = first_kept - values.begin();
+      DenseMatrix W          = columns(G, first, n - first);
       for (int j = 0; j < W.n_columns(); ++j)
         for (int i = 0; i < n; ++i)
           W(i, j) /= std::sqrt(values[first + j]);
@@ -222,11 +222,11 @@ namespace Squeal
         error.corrected       = corrected;
         error.corrected_error = std::abs(corrected - lambda) / std::abs(lambda);
         error.estimated_error = estimates.errors[i];
-        error.estimate_ratio  =
+        error.estimate_ratio =
           found != lambda ? std::abs(estimates.corrections[i]) / std::abs(found - lambda) : std::numeric_limits<double>::infinity();
-        error.condition       = estimates.conditions[i];
-        error.claimed         = estimates.claimed[i];
-        error.verdict         = estimates.verdicts[i];
+        error.condition = estimates.conditions[i];
+        error.claimed   = estimates.claimed[i];
+        error.verdict   = estimates.verdicts[i];
         errors.push_back(error);
       }
     return errors;

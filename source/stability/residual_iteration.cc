@@ -147,8 +147,10 @@ namespace Squeal
     }
   } // namespace
 
-  ReducedModel
-  starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, const bool friction)
+  ReducedModel starting_model(const CoupledSystem  &system,
+                              const UpdatedInverse &inverse,
+                              const MultiVector    &real_modes,
+                              const bool            friction)
   {
     ReducedModel model(system);
     model.extend(orthonormalize(*system.mass, nullptr, starting_vectors(system, inverse, real_modes, friction), dependence_tolerance));
@@ -193,8 +195,8 @@ namespace Squeal
   {
     if (friction_coefficients.empty())
       throw SolverError("there is no friction coefficient at which the basis could grow", "residual iteration", "give one at least");
-    const bool          friction = std::any_of(friction_coefficients.begin(), friction_coefficients.end(), [](const double mu) { return mu != 0.; });
-    ReducedModel        model    = starting_model(system, inverse, real_modes, friction);
+    const bool friction = std::any_of(friction_coefficients.begin(), friction_coefficients.end(), [](const double mu) { return mu != 0.; });
+    ReducedModel model  = starting_model(system, inverse, real_modes, friction);
 
     for (int step = 0;; ++step)
       {

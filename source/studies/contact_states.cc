@@ -12,8 +12,8 @@ namespace Squeal
     if (parameters.state != ContactState::steady_sliding)
       return;
     run.progress.begin("Contact flexibility");
-    response  = std::make_unique<StaticResponse>(*scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency),
-                                                run.parameters.solvers.library);
+    response = std::make_unique<StaticResponse>(
+      *scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency), run.parameters.solvers.library);
     responses = std::make_unique<SlidingResponses>(sliding_responses(scene.contact, *response));
     run.progress.finish(text(2 * scene.interface.size(), " attachment modes"));
   }

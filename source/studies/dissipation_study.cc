@@ -14,9 +14,9 @@ namespace Squeal
     /// A reading of the radial dissipation with the modes that it gives.
     struct Reading
     {
-      std::string         name;
-      ContactState        state;
-      RadialDissipation   dissipation;
+      std::string                                name;
+      ContactState                               state;
+      RadialDissipation                          dissipation;
       std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of each family of modes, by frequency
     };
 
@@ -126,8 +126,8 @@ namespace Squeal
     std::vector<std::string>         families;
     for (Reading &reading : all)
       {
-        operation.radial_dissipation      = reading.dissipation;
-        Linearisation linearisation       = linearise(scene, reading.state == ContactState::steady_sliding ? &state : nullptr, operation);
+        operation.radial_dissipation = reading.dissipation;
+        Linearisation linearisation  = linearise(scene, reading.state == ContactState::steady_sliding ? &state : nullptr, operation);
         // The modes without friction belong to a contact set, not to a damping
         if (!frictionless || closed != linearisation.closed)
           {

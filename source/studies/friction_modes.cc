@@ -95,7 +95,8 @@ namespace Squeal
     result.labels     = labels_of(result.identities, 0, growth_rates(result));
     run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
                              modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
-                             modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ", modes.summary));
+                             modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ",
+                             modes.summary));
     return result;
   }
 
@@ -119,7 +120,7 @@ namespace Squeal
                 highest = rate;
               }
           }
-      const std::size_t n = friction.n_unstable();
+      const std::size_t n      = friction.n_unstable();
       std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", exact_text(mu));
       if (leading < lambda.size())
         result += text(", led by ", friction.labels[leading], " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
@@ -136,8 +137,8 @@ namespace Squeal
   {
     std::vector<std::string> lines;
     if (const std::size_t n = friction.n_growing_real(); n > 0)
-      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ", exact_text(mu),
-                           ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
+      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ",
+                           exact_text(mu), ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
       lines.push_back(squeal(friction, mu));
     if (lines.empty())

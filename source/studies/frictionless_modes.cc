@@ -18,8 +18,8 @@ namespace Squeal
     void check_number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
     {
       run.progress.begin("Mode count");
-      const int n = count_modes(*coupled.stiffness, *coupled.mass,
-                                largest_circular_frequency * largest_circular_frequency, "real modes of the coupled system");
+      const int          n         = count_modes(*coupled.stiffness, *coupled.mass, largest_circular_frequency * largest_circular_frequency,
+                                                 "real modes of the coupled system");
       const unsigned int allowed   = run.parameters.solvers.maximum_modes;
       const double       frequency = hertz(largest_circular_frequency);
       if (n > static_cast<int>(allowed))
@@ -35,8 +35,9 @@ namespace Squeal
     return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
-  std::vector<std::string>
-  labels_of(const std::vector<ModeIdentity> &identities, const int n_rigid_body, const std::vector<double> &growth_rates)
+  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities,
+                                     const int                        n_rigid_body,
+                                     const std::vector<double>       &growth_rates)
   {
     std::vector<std::string> labels;
     for (const ModeIdentity &identity : identities)
@@ -50,12 +51,13 @@ namespace Squeal
   {
     if (parameters.damping.modal_ratios.empty())
       return;
-    const double              omega_max   = circular_frequency(parameters.discretization.maximum_frequency);
-    std::vector<double>       eigenvalues = modes.real.eigenvalues, ratios;
+    const double        omega_max   = circular_frequency(parameters.discretization.maximum_frequency);
+    std::vector<double> eigenvalues = modes.real.eigenvalues, ratios;
     eigenvalues.resize(n_in_band(eigenvalues, omega_max * omega_max));
     for (const double eigenvalue : eigenvalues)
       ratios.push_back(parameters.damping.modal_ratio(hertz(std::sqrt(eigenvalue))));
-    Squeal::add_modal_damping(linearisation.coupled, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues, ratios);
+    Squeal::add_modal_damping(linearisation.coupled, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues,
+                              ratios);
   }
 
   std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
@@ -94,12 +96,13 @@ namespace Squeal
       component_options.shift = component == Component::disc ? disc_shift * disc_shift : 0.;
       // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
       component_options.by_parts = component == Component::pins;
-      return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit, component_options);
+      return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit,
+                               component_options);
     };
     run.progress.begin("Component modes");
-    result.disc            = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
-    result.pins_free       = components(Component::pins, ContactBoundary::free, "modes of the free pins", 1.);
-    result.pins_sliding    = components(Component::pins, ContactBoundary::sliding, "modes of the sliding pins", label_band);
+    result.disc         = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
+    result.pins_free    = components(Component::pins, ContactBoundary::free, "modes of the free pins", 1.);
+    result.pins_sliding = components(Component::pins, ContactBoundary::sliding, "modes of the sliding pins", label_band);
     const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
                n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
     run.count("disc modes", n_disc);
@@ -121,7 +124,7 @@ namespace Squeal
     // The factor at hand serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.has_damping())
       options.inverse = &result.inverse->frictionless();
-    result.real = symmetric_modes(*coupled.stiffness, *coupled.mass, (1. + margin) * (1. + margin) * limit, options);
+    result.real              = symmetric_modes(*coupled.stiffness, *coupled.mass, (1. + margin) * (1. + margin) * limit, options);
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");

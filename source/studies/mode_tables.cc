@@ -38,32 +38,26 @@ namespace Squeal
 
   Table complex_table(const FrictionModes &friction)
   {
-    const ComplexModes &modes   = friction.modes;
-    std::vector<Column> columns = {{"label", ""},
-                                   {"share", "-", 3},
-                                   {"frequency", "Hz", 3},
-                                   {"growth rate", "1/s", 4},
-                                   {"divergence rate", "%", 4},
-                                   {"effective damping ratio -2R/omega", "%", 4},
-                                   {"residual", "-", 1, true},
-                                   {"eps_res", "-", 1, true},
-                                   {"unstable", "-"}};
-    const bool has_estimates = !modes.estimated_errors.empty();
+    const ComplexModes &modes         = friction.modes;
+    std::vector<Column> columns       = {{"label", ""},
+                                         {"share", "-", 3},
+                                         {"frequency", "Hz", 3},
+                                         {"growth rate", "1/s", 4},
+                                         {"divergence rate", "%", 4},
+                                         {"effective damping ratio -2R/omega", "%", 4},
+                                         {"residual", "-", 1, true},
+                                         {"eps_res", "-", 1, true},
+                                         {"unstable", "-"}};
+    const bool          has_estimates = !modes.estimated_errors.empty();
     if (has_estimates)
       columns.push_back({"estimated error of lambda", "-", 1, true});
     Table table(columns);
     for (std::size_t j = 0; j < friction.labels.size(); ++j)
       {
         const ModalQuantities mode  = modal_quantities(modes.lambda[j]);
-        std::vector<Cell>     cells = {friction.labels[j],
-                                       friction.identities[j].share,
-                                       mode.frequency,
-                                       mode.growth_rate,
-                                       100. * mode.divergence_rate,
-                                       100. * mode.damping_ratio,
-                                       modes.residuals[j],
-                                       modes.energy_residuals[j],
-                                       static_cast<long>(friction.unstable[j])};
+        std::vector<Cell>     cells = {friction.labels[j], friction.identities[j].share, mode.frequency,
+                                       mode.growth_rate,   100. * mode.divergence_rate,  100. * mode.damping_ratio,
+                                       modes.residuals[j], modes.energy_residuals[j],    static_cast<long>(friction.unstable[j])};
         if (has_estimates)
           cells.emplace_back(modes.estimated_errors[j]);
         table.add_row(std::move(cells));

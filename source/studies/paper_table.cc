@@ -42,44 +42,43 @@ namespace Squeal
     /// Frequencies in Hz, divergence rates in per cent; empty: not given or negligible.
     const std::vector<Row> &rows()
     {
-      static const std::vector<Row> table = {
-        {"A0-1 -", "A0-1 -", Match::label, 251, 295, 295, none, 296, none},
-        {"A0-1 +", "A0-1 +", Match::frequency, 251, 312, 312, none, 313, none},
-        {"A0-0", "A0-0", Match::label, 352, none, none, none, none, none},
-        {"A0-2 -", "A0-2 -", Match::label, 569, 489, 489, none, 489, none},
-        {"A0-2 +", "A0-2 +", Match::label, 569, 697, 700, none, 700, none},
-        {"C0-0", "C0-0", Match::label, 644, 644, 645, none, 644, none},
-        {"R0-1 -", "R0-1 -", Match::label, 649, 643, 644, none, 644, none},
-        {"R0-1 +", "R0-1 +", Match::label, 649, 647, 648, none, 648, -0.093},
-        {"unnamed", "", Match::frequency, none, 1057, 1061, none, 1061, none},
-        {"A0-3 -", "A0-3 -", Match::label, 1267, 1374, 1379, none, 1379, none},
-        {"A0-3 +", "A0-3 +", Match::label, 1267, 1567, 1576, none, 1576, none},
-        {"A1-0", "A1-0", Match::label, 1404, 1449, 1450, none, 1450, none},
-        {"R0-2 -", "R0-2 -", Match::label, 1822, 1823, 1823, none, 1823, none},
-        {"R0-2 +", "R0-2 +", Match::label, 1822, 1825, 1826, none, 1826, none},
-        {"A1-1 -", "A1-1 -", Match::label, 2082, 2087, 2087, none, 2087, none},
-        {"A1-1 +", "A1-1 +", Match::label, 2082, 2150, 2153, none, 2153, none},
-        {"A0-4 -", "A0-4 -", Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
-        {"A0-4 +", "A0-4 +", Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
-        {"A0-5 -", "A0-5 -", Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
-        {"A0-5 +", "A0-5 +", Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
-        {"A1-2 -", "A1-2 -", Match::label, 3365, 3350, 3352, none, 3352, none},
-        {"A1-2 +", "A1-2 +", Match::label, 3365, 3371, 3386, none, 3387, -0.078},
-        {"F1 lowest", "F1", Match::lowest, 3553, 3551, 3516, none, 3521, none},
-        {"F1 highest", "F1", Match::highest, 3553, 3562, 3564, none, 3563, none},
-        {"F1 most unstable", "F1", Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
-        {"F1 second unstable", "F1", Match::second_unstable, none, none, 3550, 0.10, none, none},
-        {"R0-0", "R0-0", Match::label, 3704, 3704, 3704, none, 3704, none},
-        {"T1 lowest", "T1", Match::lowest, 3934, 3934, 3934, none, 3933, none},
-        {"T1 highest", "T1", Match::highest, 3934, 3934, 3934, none, 3933, none},
-        {"R0-3 -", "R0-3 -", Match::label, 3990, 3989, 3989, none, 3989, none},
-        {"R0-3 +", "R0-3 +", Match::label, 3990, 3991, 3989, none, 3990, none},
-        {"C0-1 -", "C0-1 -", Match::label, 4500, 4499, 4499, none, 4499, none},
-        {"C0-1 +", "C0-1 +", Match::label, 4500, 4500, 4500, none, 4500, none},
-        {"A0-6 -", "A0-6 -", Match::label, 4659, 4641, 4641, none, 4641, none},
-        {"A0-6 +", "A0-6 +", Match::label, 4659, 4653, 4652, none, 4652, none},
-        {"A1-3 -", "A1-3 -", Match::label, 4794, 4800, 4799, none, 4800, none},
-        {"A1-3 +", "A1-3 +", Match::label, 4794, 4815, 4814, none, 4815, none}};
+      static const std::vector<Row> table = {{"A0-1 -", "A0-1 -", Match::label, 251, 295, 295, none, 296, none},
+                                             {"A0-1 +", "A0-1 +", Match::frequency, 251, 312, 312, none, 313, none},
+                                             {"A0-0", "A0-0", Match::label, 352, none, none, none, none, none},
+                                             {"A0-2 -", "A0-2 -", Match::label, 569, 489, 489, none, 489, none},
+                                             {"A0-2 +", "A0-2 +", Match::label, 569, 697, 700, none, 700, none},
+                                             {"C0-0", "C0-0", Match::label, 644, 644, 645, none, 644, none},
+                                             {"R0-1 -", "R0-1 -", Match::label, 649, 643, 644, none, 644, none},
+                                             {"R0-1 +", "R0-1 +", Match::label, 649, 647, 648, none, 648, -0.093},
+                                             {"unnamed", "", Match::frequency, none, 1057, 1061, none, 1061, none},
+                                             {"A0-3 -", "A0-3 -", Match::label, 1267, 1374, 1379, none, 1379, none},
+                                             {"A0-3 +", "A0-3 +", Match::label, 1267, 1567, 1576, none, 1576, none},
+                                             {"A1-0", "A1-0", Match::label, 1404, 1449, 1450, none, 1450, none},
+                                             {"R0-2 -", "R0-2 -", Match::label, 1822, 1823, 1823, none, 1823, none},
+                                             {"R0-2 +", "R0-2 +", Match::label, 1822, 1825, 1826, none, 1826, none},
+                                             {"A1-1 -", "A1-1 -", Match::label, 2082, 2087, 2087, none, 2087, none},
+                                             {"A1-1 +", "A1-1 +", Match::label, 2082, 2150, 2153, none, 2153, none},
+                                             {"A0-4 -", "A0-4 -", Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
+                                             {"A0-4 +", "A0-4 +", Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
+                                             {"A0-5 -", "A0-5 -", Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
+                                             {"A0-5 +", "A0-5 +", Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
+                                             {"A1-2 -", "A1-2 -", Match::label, 3365, 3350, 3352, none, 3352, none},
+                                             {"A1-2 +", "A1-2 +", Match::label, 3365, 3371, 3386, none, 3387, -0.078},
+                                             {"F1 lowest", "F1", Match::lowest, 3553, 3551, 3516, none, 3521, none},
+                                             {"F1 highest", "F1", Match::highest, 3553, 3562, 3564, none, 3563, none},
+                                             {"F1 most unstable", "F1", Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
+                                             {"F1 second unstable", "F1", Match::second_unstable, none, none, 3550, 0.10, none, none},
+                                             {"R0-0", "R0-0", Match::label, 3704, 3704, 3704, none, 3704, none},
+                                             {"T1 lowest", "T1", Match::lowest, 3934, 3934, 3934, none, 3933, none},
+                                             {"T1 highest", "T1", Match::highest, 3934, 3934, 3934, none, 3933, none},
+                                             {"R0-3 -", "R0-3 -", Match::label, 3990, 3989, 3989, none, 3989, none},
+                                             {"R0-3 +", "R0-3 +", Match::label, 3990, 3991, 3989, none, 3990, none},
+                                             {"C0-1 -", "C0-1 -", Match::label, 4500, 4499, 4499, none, 4499, none},
+                                             {"C0-1 +", "C0-1 +", Match::label, 4500, 4500, 4500, none, 4500, none},
+                                             {"A0-6 -", "A0-6 -", Match::label, 4659, 4641, 4641, none, 4641, none},
+                                             {"A0-6 +", "A0-6 +", Match::label, 4659, 4653, 4652, none, 4652, none},
+                                             {"A1-3 -", "A1-3 -", Match::label, 4794, 4800, 4799, none, 4800, none},
+                                             {"A1-3 +", "A1-3 +", Match::label, 4794, 4815, 4814, none, 4815, none}};
       return table;
     }
 
@@ -93,7 +92,8 @@ namespace Squeal
       // Modes that carry the label, with or without the mark of a doublet
       std::vector<std::size_t> candidates;
       for (std::size_t i = 0; i < labels.size(); ++i)
-        if (row.match == Match::frequency || labels[i] == row.label || (row.match != Match::label && labels[i].rfind(std::string(row.label) + " ", 0) == 0))
+        if (row.match == Match::frequency || labels[i] == row.label ||
+            (row.match != Match::label && labels[i].rfind(std::string(row.label) + " ", 0) == 0))
           candidates.push_back(i);
       if (candidates.empty())
         return {};
@@ -120,9 +120,8 @@ namespace Squeal
               return {};
             {
               const auto distance = [&](const std::size_t mode) { return std::abs(frequencies[mode] / *paper_frequency - 1.); };
-              const auto nearest  = *std::min_element(candidates.begin(), candidates.end(), [&](const std::size_t a, const std::size_t b) {
-                return distance(a) < distance(b);
-              });
+              const auto nearest  = *std::min_element(candidates.begin(), candidates.end(),
+                                                      [&](const std::size_t a, const std::size_t b) { return distance(a) < distance(b); });
               return distance(nearest) < largest_distance ? std::make_optional(nearest) : std::nullopt;
             }
         }
@@ -215,8 +214,9 @@ namespace Squeal
     double sum_component = 0., sum_coupled = 0.;
     for (const Row &row : rows())
       {
-        std::vector<Cell> cells = {std::string(row.name)};
-        const auto add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum, unsigned int &n) {
+        std::vector<Cell> cells         = {std::string(row.name)};
+        const auto        add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum,
+                                       unsigned int &n) {
           std::optional<std::size_t> mode;
           if (paper)
             mode = find(match, labels, values, {}, paper);
@@ -236,12 +236,13 @@ namespace Squeal
         Row component_row = row;
         if (row.match == Match::frequency)
           component_row.match = Match::label;
-        add_frequency(component_row, row.component, results.component_labels, results.component_frequencies, sum_component, agreement.n_component);
+        add_frequency(component_row, row.component, results.component_labels, results.component_frequencies, sum_component,
+                      agreement.n_component);
         add_frequency(row, row.coupled, results.coupled_labels, results.coupled_frequencies, sum_coupled, agreement.n_coupled);
 
         const Value paper_frequency  = damped ? row.complex_damped : row.complex_undamped;
         const Value paper_divergence = damped ? row.divergence_damped : row.divergence_undamped;
-        const auto  mode = find(row, results.complex_labels, frequencies, growth_rates, paper_frequency);
+        const auto  mode             = find(row, results.complex_labels, frequencies, growth_rates, paper_frequency);
         cells.push_back(to_cell(paper_frequency));
         cells.push_back(mode ? Cell(frequencies[*mode]) : Cell());
         cells.push_back(to_cell(paper_divergence));

@@ -78,8 +78,7 @@ namespace Squeal
         {"Output/Mode shapes",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
-        {"Output/Animation frames",
-         [](const Parameters &p) {
+        {"Output/Animation frames", [](const Parameters &p) {
            if (p.output.animation_frames == 0)
              return Reason(nullptr);
            return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
@@ -115,9 +114,9 @@ namespace Squeal
     /// Lengths, layouts and numbers of elements, which a geometry of the user's own may not use.
     bool is_of_the_geometry(const std::string &path)
     {
-      for (const char *name : {"Disc inner radius", "Disc outer radius", "Disc thickness", "Pin diameter", "Pin height", "Top pin radii",
-                               "Top pin angles", "Bottom pin radii", "Bottom pin angles", "Nodes per pin face", "Pin layers", "Disc layers",
-                               "Element size"})
+      for (const char *name :
+           {"Disc inner radius", "Disc outer radius", "Disc thickness", "Pin diameter", "Pin height", "Top pin radii", "Top pin angles",
+            "Bottom pin radii", "Bottom pin angles", "Nodes per pin face", "Pin layers", "Disc layers", "Element size"})
         if (path == std::string("Geometry/") + name)
           return true;
       return false;
@@ -143,9 +142,8 @@ namespace Squeal
       const auto               defaults = catalogue_of(Parameters());
       std::vector<std::string> changed;
       for (const CataloguedParameter &parameter : catalogue_of(parameters))
-        if (std::none_of(defaults.begin(), defaults.end(), [&](const CataloguedParameter &other) {
-              return other.path == parameter.path && other.value == parameter.value;
-            }))
+        if (std::none_of(defaults.begin(), defaults.end(),
+                         [&](const CataloguedParameter &other) { return other.path == parameter.path && other.value == parameter.value; }))
           changed.push_back(parameter.path);
       return changed;
     }

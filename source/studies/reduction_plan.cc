@@ -80,9 +80,9 @@ namespace Squeal
     refuse_unknown(names);
 
     ReductionPlan plan;
-    plan.has_friction         = friction;
-    plan.friction_coefficient = friction ? operation.friction_coefficient : 0.;
-    plan.largest_circular_frequency    = circular_frequency(parameters.discretization.maximum_frequency);
+    plan.has_friction               = friction;
+    plan.friction_coefficient       = friction ? operation.friction_coefficient : 0.;
+    plan.largest_circular_frequency = circular_frequency(parameters.discretization.maximum_frequency);
     for (const BasisRecipe &recipe : basis_recipes())
       {
         const bool fits = (friction || !recipe.needs_friction) && (has_damping || !recipe.needs_damping);

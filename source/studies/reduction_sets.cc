@@ -94,18 +94,17 @@ namespace Squeal
     if (frequency > 0.)
       {
         run.progress.begin("Real modes for bases");
-        const double             omega    = circular_frequency(frequency);
-        const CoupledSystem     &coupled  = linearisation.coupled;
-        const SolverParameters  &solvers  = run.parameters.solvers;
-        SymmetricModesOptions    options;
-        options.solver             = solvers.real_solver;
-        options.tolerance          = solvers.real_tolerance;
-        options.library            = solvers.library;
-        options.what               = "real modes of the coupled system for reduced bases";
-        options.shift              = frictionless.shift * frictionless.shift;
-        const SymmetricModes modes = compute(BasisSource::real, [&] {
-          return symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
-        });
+        const double            omega   = circular_frequency(frequency);
+        const CoupledSystem    &coupled = linearisation.coupled;
+        const SolverParameters &solvers = run.parameters.solvers;
+        SymmetricModesOptions   options;
+        options.solver    = solvers.real_solver;
+        options.tolerance = solvers.real_tolerance;
+        options.library   = solvers.library;
+        options.what      = "real modes of the coupled system for reduced bases";
+        options.shift     = frictionless.shift * frictionless.shift;
+        const SymmetricModes modes =
+          compute(BasisSource::real, [&] { return symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options); });
         if (modes.eigenvalues.empty())
           throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
                             "raise it, or give 0 for the modes of the band");
@@ -119,11 +118,12 @@ namespace Squeal
   {
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
-    response     = compute(BasisSource::uncoupled_factor,
-                           [&] { return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_circular_frequency, library); });
+    response                           = compute(BasisSource::uncoupled_factor, [&] {
+      return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_circular_frequency, library);
+    });
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
                                                  plan.largest_circular_frequency, library);
-    const StaticModes &modes = *static_modes;
+    const StaticModes                                 &modes  = *static_modes;
     const std::pair<BasisSource, std::function<int()>> sets[] = {
       {BasisSource::normal_attachment, [&] { return modes.normal_attachment().NumVectors(); }},
       {BasisSource::tangential_attachment, [&] { return modes.tangential_attachment().NumVectors(); }},
@@ -139,15 +139,15 @@ namespace Squeal
   void ReductionSets::compute_snapshots()
   {
     run.progress.begin("Snapshots");
-    const std::vector<double> &values = run.parameters.reduction.snapshots;
-    const auto parts = compute(BasisSource::snapshots, [&] {
+    const std::vector<double>       &values = run.parameters.reduction.snapshots;
+    const auto                       parts  = compute(BasisSource::snapshots, [&] {
       std::vector<MultiVector> result;
       for (const double value : values)
         {
           run.progress.update(text("mu = ", value));
           const ComplexModes modes =
             krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value, plan.largest_circular_frequency,
-                         frictionless.real.eigenvalues.size(), run.parameters.solvers, run.progress);
+                                                frictionless.real.eigenvalues.size(), run.parameters.solvers, run.progress);
           result.push_back(*modes.real_part);
           result.push_back(*modes.imaginary_part);
         }
@@ -199,16 +199,18 @@ namespace Squeal
     iteration.tolerance         = tolerance;
     iteration.maximum_basis     = run.parameters.solvers.maximum_basis;
     residuals                   = compute(BasisSource::residuals, [&] {
-      const auto grown =
-        grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress);
+      const auto grown = grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient},
+                                                               iteration, run.progress);
       return std::make_unique<MultiVector>(grown.model.basis());
     });
     available.residuals         = residuals.get();
     run.progress.finish(text(residuals->NumVectors(), " vectors for an estimated error of ", tolerance));
   }
 
-  std::unique_ptr<MultiVector>
-  ReductionSets::lowest_modes(const Component component, const ContactBoundary boundary, const double frequency, const int count) const
+  std::unique_ptr<MultiVector> ReductionSets::lowest_modes(const Component       component,
+                                                           const ContactBoundary boundary,
+                                                           const double          frequency,
+                                                           const int             count) const
   {
     SymmetricModesOptions options;
     options.solver    = run.parameters.solvers.real_solver;
@@ -226,9 +228,9 @@ namespace Squeal
     for (int attempt = 0; attempt < attempts; ++attempt, band *= growth)
       {
         const double         omega = circular_frequency(band);
-        const ComponentModes modes =
-          component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, omega * omega, options);
-        const int found = modes.eigenvalues.size();
+        const ComponentModes modes = component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component,
+                                                     boundary, omega * omega, options);
+        const int            found = modes.eigenvalues.size();
         if (count == 0 && found == 0)
           throw SolverError(options.what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
                             "raise the truncation frequency");

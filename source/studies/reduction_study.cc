@@ -36,8 +36,8 @@ namespace Squeal
       if (plan.has_friction)
         {
           const FrictionModes full = friction_modes(scene, linearisation, frictionless, plan.friction_coefficient, run);
-          reference = {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
-                       factorisation + step_seconds(run, "Complex modes")};
+          reference                = {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
+                                      factorisation + step_seconds(run, "Complex modes")};
         }
       else
         {
@@ -119,8 +119,8 @@ namespace Squeal
         for (int solution = 0; solution < n_timed_solutions; ++solution)
           {
             const Stopwatch watch;
-            modes               = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
-                                                      reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
+            modes = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
+                                        reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
             const double latest = watch.seconds();
             seconds             = solution == 0 ? latest : std::min(seconds, latest);
           }

@@ -34,8 +34,8 @@ namespace Squeal
                  {"component modes", ""}});
     for (const Candidate &candidate : candidates)
       for (const GroupError &m : largest_errors(candidate.errors, groups))
-        table.add_row({candidate.name, static_cast<long>(candidate.basis.n_r0), static_cast<long>(candidate.n_r), m.group, m.residual, m.shape,
-                       m.frequency, m.divergence, m.estimated_divergence, m.corrected_divergence, candidate.build_seconds,
+        table.add_row({candidate.name, static_cast<long>(candidate.basis.n_r0), static_cast<long>(candidate.n_r), m.group, m.residual,
+                       m.shape, m.frequency, m.divergence, m.estimated_divergence, m.corrected_divergence, candidate.build_seconds,
                        candidate.solve_seconds, m.subspace, m.eigenvalue, candidate.truncation});
     return table;
   }
@@ -66,13 +66,16 @@ namespace Squeal
         table.add_row({candidate.name, candidate.recipe->columns(), candidate.truncation, static_cast<long>(b.n_r0),
                        static_cast<long>(b.n_nominal), static_cast<long>(candidate.n_r), static_cast<long>(b.n_dropped), b.tolerance,
                        std::isfinite(b.condition) ? Cell(b.condition) : Cell(), b.orthonormality, static_cast<long>(b.connection.rank),
-                       b.connection.smallest_kept, b.connection.largest_dropped, static_cast<double>(n) / candidate.n_r, candidate.build_seconds,
-                       candidate.solve_seconds, full_seconds / (candidate.build_seconds + candidate.solve_seconds)});
+                       b.connection.smallest_kept, b.connection.largest_dropped, static_cast<double>(n) / candidate.n_r,
+                       candidate.build_seconds, candidate.solve_seconds,
+                       full_seconds / (candidate.build_seconds + candidate.solve_seconds)});
       }
     return table;
   }
 
-  Table reduction_mode_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &labels, const std::vector<std::string> &groups)
+  Table reduction_mode_table(const std::vector<Candidate>   &candidates,
+                             const std::vector<std::string> &labels,
+                             const std::vector<std::string> &groups)
   {
     Table table({{"basis", ""},
                  {"component modes", ""},
@@ -100,12 +103,30 @@ namespace Squeal
       for (std::size_t j = 0; j < labels.size(); ++j)
         {
           const ModeError      &e    = candidate.errors[j];
-          const ModalQuantities mode = modal_quantities(e.reduced), reference = modal_quantities(e.reference), better = modal_quantities(e.corrected);
-          table.add_row({candidate.name, candidate.truncation, labels[j], groups[j], mode.frequency, 100. * mode.divergence_rate,
-                         std::abs(better.frequency - mode.frequency), 100. * std::abs(better.divergence_rate - mode.divergence_rate),
-                         to_string(e.verdict), reference.frequency, 100. * reference.divergence_rate, e.residual, e.shape, e.frequency,
-                         e.divergence, e.eigenvalue, e.estimated_error, e.corrected_error, std::isfinite(e.condition) ? Cell(e.condition) : Cell(),
-                         std::string(e.claimed ? "yes" : "no"), static_cast<long>(e.cluster_size), e.subspace});
+          const ModalQuantities mode = modal_quantities(e.reduced), reference = modal_quantities(e.reference),
+                                better = modal_quantities(e.corrected);
+          table.add_row({candidate.name,
+                         candidate.truncation,
+                         labels[j],
+                         groups[j],
+                         mode.frequency,
+                         100. * mode.divergence_rate,
+                         std::abs(better.frequency - mode.frequency),
+                         100. * std::abs(better.divergence_rate - mode.divergence_rate),
+                         to_string(e.verdict),
+                         reference.frequency,
+                         100. * reference.divergence_rate,
+                         e.residual,
+                         e.shape,
+                         e.frequency,
+                         e.divergence,
+                         e.eigenvalue,
+                         e.estimated_error,
+                         e.corrected_error,
+                         std::isfinite(e.condition) ? Cell(e.condition) : Cell(),
+                         std::string(e.claimed ? "yes" : "no"),
+                         static_cast<long>(e.cluster_size),
+                         e.subspace});
         }
     return table;
   }

@@ -36,7 +36,8 @@ namespace Squeal
     , screen(screen)
     , is_dry(options.dry_run)
     , is_root(rank(communicator) == 0)
-    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}, {}, options.revision}
+    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}, {},
+             options.revision}
   {
     if (!is_dry)
       results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);

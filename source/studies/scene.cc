@@ -30,10 +30,12 @@ namespace Squeal
     void warn_of_locking(Run &run)
     {
       const MaterialParameters &materials = run.parameters.materials;
-      for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
+      for (const auto &[section, material] :
+           {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
         if (run.parameters.discretization.degree == 1 && material.poisson_ratio >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
-                                 locking_poisson_ratio, " on bending frequencies are more than 1 % too high, growth rates less accurate "
+                                 locking_poisson_ratio,
+                                 " on bending frequencies are more than 1 % too high, growth rates less accurate "
                                  "still; set Discretization/Degree = 2"));
     }
 
@@ -53,8 +55,8 @@ namespace Squeal
     const MeshQuality quality = check_mesh(scene.mesh);
     run.count("elements", scene.mesh.hexahedra.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
-    run.progress.finish(text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ",
-                             quality.worst_scaled_jacobian));
+    run.progress.finish(
+      text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
     summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
     check_wave_resolution(scene.mesh, parameters.materials, parameters.discretization.degree,
@@ -95,15 +97,15 @@ namespace Squeal
     run.progress.finish(text(scene.system.stiffness->NumGlobalNonzeros(), " entries in K"));
   }
 
-  SlidingState
-  solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run)
+  SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run)
   {
     run.progress.begin("Steady sliding");
     const StaticResponse response(*scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency),
                                   run.parameters.solvers.library);
-    SlidingState state = steady_sliding(*scene.model, scene.interface, scene.contact, scene.system, response, operation, sliding);
-    const auto   n_open = std::count(state.closed.begin(), state.closed.end(), false);
-    run.progress.finish(text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
+    SlidingState         state  = steady_sliding(*scene.model, scene.interface, scene.contact, scene.system, response, operation, sliding);
+    const auto           n_open = std::count(state.closed.begin(), state.closed.end(), false);
+    run.progress.finish(
+      text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
     return state;
   }
 
@@ -130,10 +132,10 @@ namespace Squeal
         result.interface.push_back(scene.interface[c]);
         reactions.push_back(result.reactions[c]);
       }
-    const bool all         = result.closed.size() == scene.interface.size();
-    result.contact         = all ? scene.contact : contact_operators(*scene.model, result.interface);
-    result.damping         = {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)};
-    result.coupled         = couple(scene.bodies, result.contact, result.damping);
+    const bool all = result.closed.size() == scene.interface.size();
+    result.contact = all ? scene.contact : contact_operators(*scene.model, result.interface);
+    result.damping = {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    result.coupled = couple(scene.bodies, result.contact, result.damping);
     return result;
   }
 

@@ -23,11 +23,11 @@ namespace Squeal
         return value >= least && value <= greatest;
       }
     };
-    constexpr Range disc_radii       = {5e-3, 5.};     ///< [m]
-    constexpr Range heights          = {1e-5, 1.};     ///< [m]
-    constexpr Range densities        = {50., 25000.};  ///< [kg/m³]
-    constexpr Range bar_speeds       = {20., 20000.};  ///< [m/s]
-    constexpr Range disc_masses      = {1e-3, 2e4};    ///< [kg]
+    constexpr Range disc_radii  = {5e-3, 5.};    ///< [m]
+    constexpr Range heights     = {1e-5, 1.};    ///< [m]
+    constexpr Range densities   = {50., 25000.}; ///< [kg/m³]
+    constexpr Range bar_speeds  = {20., 20000.}; ///< [m/s]
+    constexpr Range disc_masses = {1e-3, 2e4};   ///< [kg]
 
     constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
     constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
@@ -47,8 +47,8 @@ namespace Squeal
     {
       const std::string waves = text("bar waves ", body.bar_speed, " m/s");
       if (is_disc)
-        return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ", body.volume,
-                    " m^3, ", body.mass, " kg; ", waves);
+        return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ",
+                    body.volume, " m^3, ", body.mass, " kg; ", waves);
       const std::string names = body.names.size() == 1 ? body.names[0] : text(body.names.size(), " pins like ", body.names[0]);
       return text("    ", names, ": ", body.height, " m high, ", body.contact_area, " m^2 on the disc, ", body.volume, " m^3, ", body.mass,
                   " kg", body.names.size() == 1 ? "; " : " each; ", waves);
@@ -72,13 +72,13 @@ namespace Squeal
         volume_of_node[node] = hexahedron.volume;
     for (std::size_t node = 0; node < mesh.points.size(); ++node)
       {
-        BodySummary  &body   = bodies[volume_of_node[node]];
-        Range        &extent = z[volume_of_node[node]];
-        const double  radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
-        body.inner_radius    = std::min(body.inner_radius, radius);
-        body.outer_radius    = std::max(body.outer_radius, radius);
-        extent.least         = std::min(extent.least, mesh.points[node][2]);
-        extent.greatest      = std::max(extent.greatest, mesh.points[node][2]);
+        BodySummary &body   = bodies[volume_of_node[node]];
+        Range       &extent = z[volume_of_node[node]];
+        const double radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
+        body.inner_radius   = std::min(body.inner_radius, radius);
+        body.outer_radius   = std::max(body.outer_radius, radius);
+        extent.least        = std::min(extent.least, mesh.points[node][2]);
+        extent.greatest     = std::max(extent.greatest, mesh.points[node][2]);
       }
     for (const OuterFace &face : outer_faces(mesh))
       {
@@ -100,7 +100,7 @@ namespace Squeal
         bodies[b].height = z[b].greatest - z[b].least;
         bodies[b].mass   = bodies[b].volume * (b == 0 ? materials.disc : materials.pin).density;
         const auto same  = std::find_if(result.begin(), result.end(),
-                                       [&](const BodySummary &other) { return &other != &result[0] && are_alike(other, bodies[b]); });
+                                        [&](const BodySummary &other) { return &other != &result[0] && are_alike(other, bodies[b]); });
         if (b > 0 && same != result.end())
           same->names.push_back(bodies[b].names[0]);
         else
@@ -156,8 +156,8 @@ namespace Squeal
     const unsigned int allowed = parameters.solvers.maximum_modes;
     const ProblemSize  size    = expected_size(mesh, degree);
     const double       bytes   = size.memory(degree, std::min<double>(n_modes, allowed));
-    run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9, " GB of memory; ",
-                           available_memory() / 1e9, " GB are available"));
+    run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9,
+                           " GB of memory; ", available_memory() / 1e9, " GB are available"));
     run.measure("expected modes [-]", n_modes);
     run.measure("expected memory [byte]", bytes);
 

@@ -12,8 +12,9 @@ namespace Squeal
         return text("it is the only one: mu < ", uniqueness.unique_below);
       if (uniqueness.found_other)
         return "it is NOT the only one: another contact set fulfils all conditions too; the one found first is used";
-      return text("whether it is the only one is not certified", uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "",
-                  "; ", uniqueness.n_searches, " searches from other contact sets found no other");
+      return text("whether it is the only one is not certified",
+                  uniqueness.unique_below > 0. ? text(" above mu = ", uniqueness.unique_below) : "", "; ", uniqueness.n_searches,
+                  " searches from other contact sets found no other");
     }
   } // namespace
 
@@ -27,15 +28,13 @@ namespace Squeal
     std::string open;
     for (const PinContact &pin : pins)
       if (pin.n_open > 0)
-        open += text(open.empty() ? "" : ", ", pin.pin, pin.n_open == pin.n_nodes ? " (all)" : text(" (", pin.n_open, " of ", pin.n_nodes, ")"));
+        open +=
+          text(open.empty() ? "" : ", ", pin.pin, pin.n_open == pin.n_nodes ? " (all)" : text(" (", pin.n_open, " of ", pin.n_nodes, ")"));
     run.progress.note("  steady sliding: " + (open.empty() ? "all contact nodes are closed" : "open contact nodes of " + open));
     run.progress.note("  steady sliding: " + uniqueness_note(state.uniqueness));
   }
 
-  void write_sliding_fields(const Scene               &scene,
-                            const SlidingState        &state,
-                            const OperationParameters &operation,
-                            const FieldWriter         &writer)
+  void write_sliding_fields(const Scene &scene, const SlidingState &state, const OperationParameters &operation, const FieldWriter &writer)
   {
     const DenseMatrix u = replicate(*state.total_displacement);
     writer.write_contact_state({std::vector<double>(u.column(), u.column() + u.n_rows()), state.approach, state.reactions, state.gaps,

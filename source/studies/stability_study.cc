@@ -31,7 +31,11 @@ namespace Squeal
       return name.str();
     }
 
-    void write_modes(const Scene &scene, const Linearisation &linearisation, const FrictionModes &friction, const FieldWriter &writer, Run &run)
+    void write_modes(const Scene         &scene,
+                     const Linearisation &linearisation,
+                     const FrictionModes &friction,
+                     const FieldWriter   &writer,
+                     Run                 &run)
     {
       const Parameters   &parameters = run.parameters;
       const ComplexModes &modes      = friction.modes;
@@ -45,7 +49,7 @@ namespace Squeal
           run.progress.update(text(label, ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
           const int       column = static_cast<int>(j);
           const ModeField field  = mode_field(scene, linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
-                                             view(*modes.imaginary_part, column, 1));
+                                              view(*modes.imaginary_part, column, 1));
           writer.write_mode(field);
           ++n_modes;
           if (friction.unstable[j] && parameters.output.animation_frames > 0)

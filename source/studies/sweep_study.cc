@@ -33,9 +33,9 @@ namespace Squeal
     {
       enum class Kind
       {
-        main,               ///< as the operation says
+        main,                ///< as the operation says
         without_dissipation, ///< the same without radial dissipation
-        map                 ///< at another load or speed
+        map                  ///< at another load or speed
       };
 
       Kind                kind;
@@ -58,7 +58,8 @@ namespace Squeal
         for (const double value : sweep.map_values.geometric())
           {
             lines.push_back({Line::Kind::map, operation, value, sweep.map_grid()});
-            (sweep.map_parameter == MapParameter::load ? lines.back().operation.load_per_side : lines.back().operation.rotation_speed) = value;
+            (sweep.map_parameter == MapParameter::load ? lines.back().operation.load_per_side : lines.back().operation.rotation_speed) =
+              value;
           }
       return lines;
     }
@@ -73,7 +74,7 @@ namespace Squeal
 
     OperationParameters operation_at(const Line &line, const double mu)
     {
-      OperationParameters operation = line.operation;
+      OperationParameters operation  = line.operation;
       operation.friction_coefficient = mu;
       return operation;
     }
@@ -98,9 +99,9 @@ namespace Squeal
     std::vector<ContactRegime> contact_regimes(const std::vector<Line> &lines, const ContactStates &states, Run &run)
     {
       run.progress.begin("States of contact");
-      std::vector<ContactRegime>                      regimes;
+      std::vector<ContactRegime>                       regimes;
       std::map<std::vector<unsigned int>, std::size_t> numbers;
-      std::size_t                                     n_points = 0;
+      std::size_t                                      n_points = 0;
       for (std::size_t l = 0; l < lines.size(); ++l)
         for (const double mu : lines[l].friction_coefficients)
           {
@@ -136,24 +137,24 @@ namespace Squeal
     /// What is known about stability at one friction coefficient and one load or speed.
     struct MapCell
     {
-      double      friction_coefficient = 0.;    ///< [-]
-      double      value                = 0.;    ///< load [N] or speed [rad/s]
-      double      growth_rate          = 0.;    ///< of the most unstable mode [1/s]
-      double      divergence_rate      = 0.;    ///< of the most unstable mode [-]
-      double      frequency            = 0.;    ///< of the most unstable mode [Hz]
+      double      friction_coefficient = 0.; ///< [-]
+      double      value                = 0.; ///< load [N] or speed [rad/s]
+      double      growth_rate          = 0.; ///< of the most unstable mode [1/s]
+      double      divergence_rate      = 0.; ///< of the most unstable mode [-]
+      double      frequency            = 0.; ///< of the most unstable mode [Hz]
       int         n_unstable           = 0;
-      int         n_undecided          = 0;     ///< modes whose growth is undecided
-      int         n_open               = 0;     ///< contact nodes that are lifted
-      std::string leader;                       ///< label of the most unstable mode
-      bool        is_known             = false; ///< whether it was computed
-      double      error                = 0.;    ///< largest estimated |δλ| / |λ| [-]
+      int         n_undecided          = 0; ///< modes whose growth is undecided
+      int         n_open               = 0; ///< contact nodes that are lifted
+      std::string leader;                   ///< label of the most unstable mode
+      bool        is_known = false;         ///< whether it was computed
+      double      error    = 0.;            ///< largest estimated |δλ| / |λ| [-]
     };
 
     struct SweepResults
     {
-      std::map<int, std::vector<ChartLine>> charts; ///< by line: stretches with one contact set each
-      std::map<std::pair<double, double>, MapCell> map; ///< by load or speed, and friction coefficient
-      std::vector<CountAt> counts;
+      std::map<int, std::vector<ChartLine>>        charts; ///< by line: stretches with one contact set each
+      std::map<std::pair<double, double>, MapCell> map;    ///< by load or speed, and friction coefficient
+      std::vector<CountAt>                         counts;
     };
 
     /// Everything on which the results of a sweep depend: the version of the program, the parameters, the mesh.
@@ -167,8 +168,8 @@ namespace Squeal
       std::ostringstream stream;
       stream << "# squeal " << version << '\n';
       parameters.print(stream, false);
-      stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().NumGlobalElements() << " dofs, nodes "
-             << std::hex << checksum(scene.mesh) << '\n';
+      stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().NumGlobalElements()
+             << " dofs, nodes " << std::hex << checksum(scene.mesh) << '\n';
       return stream.str();
     }
 
@@ -205,13 +206,13 @@ namespace Squeal
     class RegimeModel
     {
     public:
-      RegimeModel(const Scene           &scene,
-                  const ContactRegime   &regime,
-                  const std::size_t      number,
+      RegimeModel(const Scene             &scene,
+                  const ContactRegime     &regime,
+                  const std::size_t        number,
                   const std::vector<Line> &lines,
-                  const ContactStates   &states,
-                  ChartCheckpoint       &checkpoint,
-                  Run                   &run)
+                  const ContactStates     &states,
+                  ChartCheckpoint         &checkpoint,
+                  Run                     &run)
         : scene(scene)
         , regime(regime)
         , number(number)
@@ -229,8 +230,8 @@ namespace Squeal
               sum += std::abs(c);
           return sum;
         };
-        const SweepPoint &most = *std::max_element(regime.points.begin(), regime.points.end(),
-                                                   [&](const SweepPoint &a, const SweepPoint &b) { return damps(a) < damps(b); });
+        const SweepPoint         &most      = *std::max_element(regime.points.begin(), regime.points.end(),
+                                                                [&](const SweepPoint &a, const SweepPoint &b) { return damps(a) < damps(b); });
         const OperationParameters operation = operation_at(lines[most.line], most.friction_coefficient);
         const auto                sliding   = states.sliding(operation);
         linearisation                       = linearise(scene, sliding ? &*sliding : nullptr, operation);
@@ -242,8 +243,8 @@ namespace Squeal
         add_modal_damping(frictionless, run.parameters, linearisation);
 
         run.progress.begin("Reduced model");
-        model = std::make_unique<ChartModel>(linearisation.coupled, *frictionless.inverse, frictionless.shift, *frictionless.real.vectors, omega_max,
-                                             band_margin);
+        model = std::make_unique<ChartModel>(linearisation.coupled, *frictionless.inverse, frictionless.shift, *frictionless.real.vectors,
+                                             omega_max, band_margin);
         run.progress.finish(text(model->size(), " vectors to start from"));
       }
 
@@ -278,20 +279,21 @@ namespace Squeal
 
         run.progress.begin("Sweep");
         ErrorControlledSweepOptions options;
-        options.tolerance     = run.parameters.sweep.tolerance;
-        options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
-        const auto store      = store_of("sweep");
-        const ErrorControlledSweep sweep = error_controlled_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
+        options.tolerance                = run.parameters.sweep.tolerance;
+        options.maximum_basis            = static_cast<int>(run.parameters.sweep.maximum_basis);
+        const auto                 store = store_of("sweep");
+        const ErrorControlledSweep sweep =
+          error_controlled_sweep(*model, points, training(), options, store.get(), run.communicator, run.progress);
         for (std::size_t i = 0; i < points.size(); ++i)
           if (sweep.points[i])
             known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
-        run.progress.finish(text(known.size(), " of ", points.size(), " operating points, ", model->size(), " vectors, estimated error ",
-                                 sweep.worst_error));
+        run.progress.finish(
+          text(known.size(), " of ", points.size(), " operating points, ", model->size(), " vectors, estimated error ", sweep.worst_error));
         run.count("basis vectors", model->size());
         run.measure("largest estimated error of lambda [-]", sweep.worst_error);
         if (!sweep.why_stopped.empty())
-          run.progress.note(text("  note: ", points.size() - known.size(), " operating points miss the tolerance of ", options.tolerance, ": ",
-                                 sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
+          run.progress.note(text("  note: ", points.size() - known.size(), " operating points miss the tolerance of ", options.tolerance,
+                                 ": ", sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
       }
 
       /// Where a phase of the work on this contact set keeps its results.
@@ -311,7 +313,8 @@ namespace Squeal
           run.progress.note(text("  note: ", chart.counts.front().n_modes, " modes lie in the band at mu = 0, where ", n_real,
                                  " real modes were counted: damping moved some across its end"));
         if (n_incomplete(chart) > 0)
-          run.progress.note(text("  note: at ", n_incomplete(chart), " points the number of modes is not the expected one, see counts.csv"));
+          run.progress.note(
+            text("  note: at ", n_incomplete(chart), " points the number of modes is not the expected one, see counts.csv"));
       }
 
       /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
@@ -383,23 +386,23 @@ namespace Squeal
         std::size_t n_evaluated     = 0;
         const auto  chart_of        = [&](const ChartOptions &options) {
           return stability_chart(
-            friction_coefficients,
-            [&](const std::vector<double> &mus) {
+                    friction_coefficients,
+                    [&](const std::vector<double> &mus) {
               n_evaluated += mus.size();
               run.progress.update(text(n_evaluated, " points"));
               return evaluate_line(line, mus);
             },
-            options);
+                    options);
         };
         // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
         // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
         ChartOptions coarse        = options;
         coarse.maximum_refinements = 0;
-        refinements = store_of(text("line ", line, " from ", exact_text(friction_coefficients.front())));
+        refinements                = store_of(text("line ", line, " from ", exact_text(friction_coefficients.front())));
         sharpen(line, chart_of(coarse), friction_coefficients);
         ChartLine result{chart_of(options), {}};
         refinements.reset();
-        result.labels = labels(result.chart);
+        result.labels               = labels(result.chart);
         const StabilityChart &chart = result.chart;
         run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
                                  " crossings of the band's edge, ", chart.points.size() - friction_coefficients.size(), " refinements"));
@@ -426,7 +429,8 @@ namespace Squeal
           }
         std::vector<ChartModel::ModesAt> sets;
         for (const auto &[i, modes] : modes_at)
-          sets.push_back({operating_point(line, grid[i], states.at(operation_at(lines[line], grid[i]))), &chart.points[i],
+          sets.push_back({operating_point(line, grid[i], states.at(operation_at(lines[line], grid[i]))),
+                          &chart.points[i],
                           {modes.begin(), modes.end()}});
         if (sets.empty())
           return;
@@ -485,12 +489,12 @@ namespace Squeal
         const auto  main    = results.charts.find(0);
         if (main == results.charts.end())
           return no_label;
-        const auto        &line     = main->second.back();
-        const auto        &points   = line.chart.points;
-        const auto         distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
-        const auto         nearest  = std::min_element(points.begin(), points.end(),
-                                                       [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
-        const std::size_t  i        = nearest - points.begin();
+        const auto &line     = main->second.back();
+        const auto &points   = line.chart.points;
+        const auto  distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
+        const auto  nearest  = std::min_element(points.begin(), points.end(),
+                                                [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
+        const std::size_t i  = nearest - points.begin();
         for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
           if (const int j = line.chart.branches[b].modes[i]; j >= 0)
             {
@@ -548,8 +552,8 @@ namespace Squeal
       {
         const double error = model->largest_error(point);
         if (!(error <= run.parameters.sweep.tolerance))
-          run.progress.note(text("  note: at mu = ", point.friction_coefficient, " the modes miss the tolerance of ", run.parameters.sweep.tolerance,
-                                 ": the estimated error is ", error));
+          run.progress.note(text("  note: at mu = ", point.friction_coefficient, " the modes miss the tolerance of ",
+                                 run.parameters.sweep.tolerance, ": the estimated error is ", error));
       }
 
       /// Counts the modes at chosen friction coefficients by the argument principle.
@@ -575,8 +579,9 @@ namespace Squeal
             const ContourCount result  = count_by_contour(here, {mu}, options, run.progress).front();
             const ChartPoint   point   = evaluate_line(0, {mu}).front();
             note_if_inaccurate(point);
-            const auto         inside  = [&](const std::complex<double> &lambda) {
-              return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max && std::abs(lambda.real()) <= options.largest_growth;
+            const auto inside = [&](const std::complex<double> &lambda) {
+              return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max &&
+                     std::abs(lambda.real()) <= options.largest_growth;
             };
             const int n_found = static_cast<int>(std::count_if(point.lambda.begin(), point.lambda.end(), inside));
             results.counts.push_back({mu, n_found, result});
@@ -600,7 +605,7 @@ namespace Squeal
             {
               const ChartPoint point = evaluate_line(0, {mu}).front();
               note_if_inaccurate(point);
-              const int        mode  = leading_mode(point, omega_max);
+              const int mode = leading_mode(point, omega_max);
               if (mode < 0 || !is_growing(point.lambda[mode]))
                 {
                   run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
@@ -609,8 +614,9 @@ namespace Squeal
               const auto [re, im]     = shapes(point, {mode});
               const std::string label = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im)).front();
               Linearisation     here  = linearisation;
-              here.coupled            = with_values(linearisation.coupled, selected(states.at(operation_at(lines[0], mu)).damping, regime.closed).values());
-              const ModeField field   = mode_field(scene, here, text("mu_", mu, "_", file_label(label)), point.lambda[mode], re, im);
+              here.coupled =
+                with_values(linearisation.coupled, selected(states.at(operation_at(lines[0], mu)).damping, regime.closed).values());
+              const ModeField field = mode_field(scene, here, text("mu_", mu, "_", file_label(label)), point.lambda[mode], re, im);
               writer.write_mode(field);
               if (run.parameters.output.animation_frames > 0)
                 writer.write_animation(field, run.parameters.output.animation_frames);
@@ -619,19 +625,19 @@ namespace Squeal
         run.progress.finish(text(n_written, " leading modes"));
       }
 
-      const Scene               &scene;
-      const ContactRegime       &regime;
-      const std::size_t          number; ///< of the contact set, from one on
-      const std::vector<Line>   &lines;
-      const ContactStates       &states;
-      ChartCheckpoint           &checkpoint;
-      Run                       &run;
-      const double               omega_max;
-      Linearisation              linearisation;
-      FrictionlessModes          frictionless;
-      std::unique_ptr<ChartModel> model;
-      std::unique_ptr<ChartStore> refinements; ///< of the line that is followed
-      std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
+      const Scene                                 &scene;
+      const ContactRegime                         &regime;
+      const std::size_t                            number; ///< of the contact set, from one on
+      const std::vector<Line>                     &lines;
+      const ContactStates                         &states;
+      ChartCheckpoint                             &checkpoint;
+      Run                                         &run;
+      const double                                 omega_max;
+      Linearisation                                linearisation;
+      FrictionlessModes                            frictionless;
+      std::unique_ptr<ChartModel>                  model;
+      std::unique_ptr<ChartStore>                  refinements; ///< of the line that is followed
+      std::map<std::pair<int, double>, ChartPoint> known;       ///< by line and friction coefficient
     };
 
     // ------------------------------------------------------------------- tables
@@ -640,22 +646,22 @@ namespace Squeal
     {
       const bool is_load = parameter == MapParameter::load;
       Table      table({{"mu", "-", 4},
-                   {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", 3},
-                   {"unstable modes", "-"},
-                   {"undecided modes", "-"},
-                   {"label", ""},
-                   {"frequency", "Hz", 2},
-                   {"growth rate", "1/s", 4},
-                   {"divergence rate", "%", 4},
-                   {"estimated error of lambda", "-", 1, true},
-                   {"open contact nodes", "-"}});
+                        {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", 3},
+                        {"unstable modes", "-"},
+                        {"undecided modes", "-"},
+                        {"label", ""},
+                        {"frequency", "Hz", 2},
+                        {"growth rate", "1/s", 4},
+                        {"divergence rate", "%", 4},
+                        {"estimated error of lambda", "-", 1, true},
+                        {"open contact nodes", "-"}});
       for (const auto &[place, cell] : results.map)
         {
           const bool is_known = cell.is_known;
           const auto known    = [is_known](const Cell &value) { return is_known ? value : Cell(); };
-          table.add_row({cell.friction_coefficient, cell.value, known(static_cast<long>(cell.n_unstable)), known(static_cast<long>(cell.n_undecided)),
-                         known(cell.leader), known(cell.frequency), known(cell.growth_rate), known(100. * cell.divergence_rate),
-                         known(cell.error), static_cast<long>(cell.n_open)});
+          table.add_row({cell.friction_coefficient, cell.value, known(static_cast<long>(cell.n_unstable)),
+                         known(static_cast<long>(cell.n_undecided)), known(cell.leader), known(cell.frequency), known(cell.growth_rate),
+                         known(100. * cell.divergence_rate), known(cell.error), static_cast<long>(cell.n_open)});
         }
       return table;
     }
@@ -671,15 +677,16 @@ namespace Squeal
                    {"truncation bound", "-", 1, true}});
       for (const CountAt &count : counts)
         table.add_row({count.friction_coefficient, static_cast<long>(count.n_found), static_cast<long>(count.count.n_modes),
-                       static_cast<long>(count.count.n_frictionless), static_cast<long>(count.count.n_points), count.count.largest_phase_step,
-                       count.count.truncation_bound});
+                       static_cast<long>(count.count.n_frictionless), static_cast<long>(count.count.n_points),
+                       count.count.largest_phase_step, count.count.truncation_bound});
       return table;
     }
 
     /// Contact sets along a line: where they change.
     Table contact_table(const std::vector<Line> &lines, const std::vector<ContactRegime> &regimes, const std::size_t n_pairs)
     {
-      Table table({{"mu", "-", 4}, {"load per side", "N", 3}, {"rotation speed", "rad/s", 3}, {"contact set", "-"}, {"open contact nodes", "-"}});
+      Table table(
+        {{"mu", "-", 4}, {"load per side", "N", 3}, {"rotation speed", "rad/s", 3}, {"contact set", "-"}, {"open contact nodes", "-"}});
       for (std::size_t l = 0; l < lines.size(); ++l)
         for (const double mu : lines[l].friction_coefficients)
           for (std::size_t r = 0; r < regimes.size(); ++r)
@@ -730,9 +737,9 @@ namespace Squeal
                 }
             }
       if (first < 0.)
-        return n_known == n_asked ? "  stable: no mode of the band grows at any friction coefficient of the sweep" :
-                                    text("  no mode of the band grows at ", n_known, " of ", n_asked,
-                                         " friction coefficients; the others miss the tolerance");
+        return n_known == n_asked ?
+                 "  stable: no mode of the band grows at any friction coefficient of the sweep" :
+                 text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
       return text("  squeal from mu = ", first, " on (", first_label, ")",
                   strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
                   "; most at mu = ", worst, ": ", label, " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");
@@ -805,7 +812,7 @@ namespace Squeal
         {
           const ChartLine  &line   = stretches[s];
           const std::string suffix = (lines[l].kind == Line::Kind::main ? "" : "_without_dissipation") + (s > 0 ? text("_", s + 1) : "");
-          const auto write_quietly = [&](const std::string &name, const Table &table) { run.store_table(name + suffix, table); };
+          const auto        write_quietly = [&](const std::string &name, const Table &table) { run.store_table(name + suffix, table); };
           write_quietly("branches", branch_table(line.chart, line.labels, omega_max));
           write_quietly("counts", count_table(line.chart));
           run.write_table("thresholds" + suffix, threshold_table(line.chart, line.labels));
@@ -828,16 +835,18 @@ namespace Squeal
   }
 
   extern const Study sweep_study = [] {
-    const auto map_axis = [](const Parameters &p) { return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none"); };
-    Study      study{"sweep", run_sweep_study, {"Sweep/"}};
-    study.rules = {{"Operation/Friction coefficient",
-                    [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
-                   {"Operation/Rotation speed", no_sliding_speed},
-                   {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
-                   {"Sweep/First map value", map_axis},
-                   {"Sweep/Last map value", map_axis},
-                   {"Sweep/Number of map values", map_axis},
-                   {"Sweep/Map friction coefficients", map_axis}};
+    const auto map_axis = [](const Parameters &p) {
+      return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none");
+    };
+    Study study{"sweep", run_sweep_study, {"Sweep/"}};
+    study.rules          = {{"Operation/Friction coefficient",
+                             [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
+                            {"Operation/Rotation speed", no_sliding_speed},
+                            {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+                            {"Sweep/First map value", map_axis},
+                            {"Sweep/Last map value", map_axis},
+                            {"Sweep/Number of map values", map_axis},
+                            {"Sweep/Map friction coefficients", map_axis}};
     study.no_mode_shapes = [](const Parameters &p) {
       return unless(!p.sweep.mode_shapes.empty(), "a sweep writes mode shapes for Sweep/Mode shapes at");
     };

@@ -29,7 +29,8 @@ namespace Squeal
           const ModalQuantities mode = modal_quantities(point.lambda[j]);
           table.add_row({point.friction_coefficient, static_cast<long>(b + 1), labels[b], mode.frequency, mode.growth_rate,
                          100. * mode.divergence_rate, point.right_residuals[j], point.left_residuals[j], point.errors[j],
-                         to_string(point.verdicts[j]), static_cast<long>(chart.is_refinement[i]), static_cast<long>(is_growing(point.lambda[j]))});
+                         to_string(point.verdicts[j]), static_cast<long>(chart.is_refinement[i]),
+                         static_cast<long>(is_growing(point.lambda[j]))});
         }
     return table;
   }
@@ -50,8 +51,8 @@ namespace Squeal
         const bool is_pair = threshold.partner >= 0;
         table.add_row({threshold.friction_coefficient, threshold.uncertainty, to_string(threshold.event), to_string(threshold.mechanism),
                        static_cast<long>(threshold.branch + 1), labels[threshold.branch],
-                       is_pair ? Cell(static_cast<long>(threshold.partner + 1)) : Cell(), is_pair ? Cell(labels[threshold.partner]) : Cell(),
-                       modal_quantities(threshold.lambda).frequency});
+                       is_pair ? Cell(static_cast<long>(threshold.partner + 1)) : Cell(),
+                       is_pair ? Cell(labels[threshold.partner]) : Cell(), modal_quantities(threshold.lambda).frequency});
       }
     return table;
   }
@@ -76,6 +77,7 @@ namespace Squeal
 
   std::size_t n_incomplete(const StabilityChart &chart)
   {
-    return std::count_if(chart.counts.begin(), chart.counts.end(), [](const ModeCount &count) { return count.n_modes != count.n_expected; });
+    return std::count_if(chart.counts.begin(), chart.counts.end(),
+                         [](const ModeCount &count) { return count.n_modes != count.n_expected; });
   }
 } // namespace Squeal

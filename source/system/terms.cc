@@ -118,9 +118,13 @@ namespace Squeal
     return result;
   }
 
-  MultiVector times(const std::vector<Term> &terms, const ParameterValues &values, const int power, const MultiVector &X, const bool transposed)
+  MultiVector times(const std::vector<Term> &terms,
+                    const ParameterValues   &values,
+                    const int                power,
+                    const MultiVector       &X,
+                    const bool               transposed)
   {
-    MultiVector                                                 result(X.Map(), X.NumVectors());
+    MultiVector                                                result(X.Map(), X.NumVectors());
     std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // what each factor maps, once for all of its terms
     for (const Term *term : terms_of(terms, values, power))
       {
@@ -162,9 +166,10 @@ namespace Squeal
 
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values)
   {
-    const std::array<std::array<const char *, 3>, 2> names = {{{{"stiffness of the bodies", "damping of the bodies", "mass of the bodies"}},
+    const std::array<std::array<const char *, 3>, 2> names = {
+      {{{"stiffness of the bodies", "damping of the bodies", "mass of the bodies"}},
        {{"skew stiffness of the bodies", "gyroscopic forces", "skew mass of the bodies"}}}};
-    std::vector<Term>                                result;
+    std::vector<Term> result;
     for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::skew})
       for (int power = 0; power < 3; ++power)
         {

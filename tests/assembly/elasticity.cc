@@ -18,9 +18,8 @@ namespace
   HexMesh distorted_mesh()
   {
     return mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
-      return Point3{{p[0] + 0.01 * std::sin(40. * p[1] + 60. * p[2]),
-                    p[1] + 0.01 * std::sin(30. * p[2] + 35. * p[0]),
-                    p[2] + 0.004 * std::sin(45. * p[0] - 30. * p[1])}};
+      return Point3{{p[0] + 0.01 * std::sin(40. * p[1] + 60. * p[2]), p[1] + 0.01 * std::sin(30. * p[2] + 35. * p[0]),
+                     p[2] + 0.004 * std::sin(45. * p[0] - 30. * p[1])}};
     });
   }
 
@@ -46,8 +45,8 @@ TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
   const auto               system = assemble(model, materials);
 
   // u = H x with every kind of strain
-  const double  H[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
-  const auto    linear  = [&](const Point3 &p) {
+  const double H[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
+  const auto   linear  = [&](const Point3 &p) {
     Point3 u{};
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
@@ -130,10 +129,14 @@ TEST_P(Elasticity, MassOfEachBody)
   const auto               system = assemble(model, materials);
   for (int k = 0; k < 3; ++k)
     {
-      const MultiVector e = displacements(model, 0, [k](const Point3 &) { return Point3{{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.}}; });
+      const MultiVector e = displacements(model, 0, [k](const Point3 &) {
+        return Point3{{k == 0 ? 1. : 0., k == 1 ? 1. : 0., k == 2 ? 1. : 0.}};
+      });
       EXPECT_NEAR(product(e, *system.mass, e) / (materials.disc.density * volume(mesh, 0)), 1., 1e-13);
       // Directions and bodies do not couple.
-      const MultiVector other = displacements(model, 0, [k](const Point3 &) { return Point3{{k == 1 ? 1. : 0., k == 2 ? 1. : 0., k == 0 ? 1. : 0.}}; });
+      const MultiVector other = displacements(model, 0, [k](const Point3 &) {
+        return Point3{{k == 1 ? 1. : 0., k == 2 ? 1. : 0., k == 0 ? 1. : 0.}};
+      });
       EXPECT_EQ(product(e, *system.mass, other), 0.);
       for (unsigned int pin = 1; pin <= two_pins.size(); ++pin)
         {
@@ -201,7 +204,8 @@ TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
       const MultiVector u        = displacements(model, component, [](const Point3 &p) {
         return Point3{{std::sin(30. * p[1]) + 0.2, std::cos(20. * p[0]), p[2] * std::sin(15. * p[0])}};
       });
-      const double expected = material.rayleigh_alpha * product(u, *unmounted.mass, u) + material.rayleigh_beta * product(u, *unmounted.stiffness, u);
+      const double      expected =
+        material.rayleigh_alpha * product(u, *unmounted.mass, u) + material.rayleigh_beta * product(u, *unmounted.stiffness, u);
       EXPECT_NEAR(product(u, *system.damping, u) / expected, 1., 1e-12);
     }
 
@@ -223,8 +227,8 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   const Model   model(mesh, GetParam(), MPI_COMM_WORLD);
 
   // Area of the polygonal bore and ∫r² dA, exactly
-  double        area = 0., r2_area = 0.;
-  const double  t = GeometryParameters().disc_thickness, side = 2. * 0.15 * std::sin(M_PI / 12.), apothem = 0.15 * std::cos(M_PI / 12.);
+  double       area = 0., r2_area = 0.;
+  const double t = GeometryParameters().disc_thickness, side = 2. * 0.15 * std::sin(M_PI / 12.), apothem = 0.15 * std::cos(M_PI / 12.);
   area    = 12. * side * t;
   r2_area = area * (apothem * apothem + side * side / 12.);
 
@@ -233,11 +237,11 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
     const MultiVector u = displacements(model, 0, motion);
     return 0.5 * product(u, *add(1., *with.stiffness, -1., *without.stiffness), u);
   };
-  const double k          = 3e10;
-  const auto   axial      = [](const Point3 &) { return Point3{{0., 0., 1.}}; };
-  const auto   across     = [](const Point3 &) { return Point3{{0.6, 0.8, 0.}}; };
-  const auto   turning    = [](const Point3 &p) { return Point3{{-p[1], p[0], 0.}}; };
-  const auto   breathing  = [](const Point3 &p) { return Point3{{p[0], p[1], 0.}}; };
+  const double k         = 3e10;
+  const auto   axial     = [](const Point3 &) { return Point3{{0., 0., 1.}}; };
+  const auto   across    = [](const Point3 &) { return Point3{{0.6, 0.8, 0.}}; };
+  const auto   turning   = [](const Point3 &p) { return Point3{{-p[1], p[0], 0.}}; };
+  const auto   breathing = [](const Point3 &p) { return Point3{{p[0], p[1], 0.}}; };
   EXPECT_NEAR(energy({"inner", 0., 0., k}, axial) / (0.5 * k * area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", 0., k, 0.}, turning) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, breathing) / (0.5 * k * r2_area), 1., 1e-11);
@@ -273,19 +277,19 @@ TEST(Assembly, MountOnAMissingSurfaceNamesTheKnownOnes)
 namespace
 {
   /// Frequency [rad/s] of the mode of the clamped-free pin, contact at its lower face, that is most like @p shape.
-  double pin_frequency(const HexMesh                                &mesh,
-                       const MaterialParameters                     &materials,
-                       const unsigned int                            degree,
+  double pin_frequency(const HexMesh                               &mesh,
+                       const MaterialParameters                    &materials,
+                       const unsigned int                           degree,
                        const std::function<Point3(const Point3 &)> &shape,
-                       const double                                  limit)
+                       const double                                 limit)
   {
-    const Model       model(mesh, degree, MPI_COMM_WORLD);
-    const auto        interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
-    const auto        system    = assemble(model, materials);
-    const auto        modes     = component_modes(model, interface, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
-    const MultiVector u         = displacements(model, 1, shape);
-    const DenseMatrix shares    = gram(u, *system.mass * *modes.vectors);
-    int               best      = 0;
+    const Model model(mesh, degree, MPI_COMM_WORLD);
+    const auto  interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
+    const auto  system    = assemble(model, materials);
+    const auto  modes     = component_modes(model, interface, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
+    const MultiVector u   = displacements(model, 1, shape);
+    const DenseMatrix shares = gram(u, *system.mass * *modes.vectors);
+    int               best   = 0;
     for (int j = 0; j < shares.n_columns(); ++j)
       if (std::abs(shares(0, j)) > std::abs(shares(0, best)))
         best = j;
@@ -307,12 +311,19 @@ TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
   MaterialParameters materials = mounted({});
   materials.pin.poisson_ratio  = 0.;
   const double length          = GeometryParameters().pin_height;
-  const double exact = 0.5 * M_PI / length * std::sqrt(materials.pin.young_modulus / materials.pin.density);
-  const auto   plan  = polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 1, 0, 1}}, "inner", "outer");
+  const double exact           = 0.5 * M_PI / length * std::sqrt(materials.pin.young_modulus / materials.pin.density);
+  const auto   plan            = polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 1, 0, 1}}, "inner", "outer");
 
   std::vector<double> errors;
   for (const int n : {1, 2, 4, 8})
-    errors.push_back(pin_frequency(extrude(plan, layers(1, n)), materials, GetParam(), [](const Point3 &p) { return Point3{{0., 0., quarter_wave(p[2])}}; }, 1.5 * exact) / exact - 1.);
+    errors.push_back(pin_frequency(
+                       extrude(plan, layers(1, n)), materials, GetParam(),
+                       [](const Point3 &p) {
+                         return Point3{{0., 0., quarter_wave(p[2])}};
+                       },
+                       1.5 * exact) /
+                       exact -
+                     1.);
   for (std::size_t i = 1; i < errors.size(); ++i)
     {
       const double order = std::log2(errors[i - 1] / errors[i]);
@@ -329,8 +340,8 @@ TEST(Assembly, TorsionOfACylinderOnCurvedElements)
   // ω = π c_s / (2 L), c_s = √(G/ρ), exactly for a circular cross-section; f = c_s / (4 L)
   const MaterialParameters materials = mounted({});
   const double             G         = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
-  const double             exact = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
-  const auto               error = [&](const unsigned int degree, const int n) {
+  const double             exact     = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
+  const auto               error     = [&](const unsigned int degree, const int n) {
     const auto turning = [](const Point3 &p) { return Point3{{-p[1] * quarter_wave(p[2]), (p[0] - 0.2) * quarter_wave(p[2]), 0.}}; };
     return pin_frequency(extrude(round_plan(0.2, 0.026, n), layers(1, 2 * n)), materials, degree, turning, 1.2 * exact) / exact - 1.;
   };
@@ -359,7 +370,7 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
       const Model       model(mesh, 2, MPI_COMM_WORLD);
       const auto        system = assemble(model, materials);
       const MultiVector e      = displacements(model, 0, [](const Point3 &) { return Point3{{1., 0., 0.}}; });
-      const double exact = materials.disc.density * GeometryParameters().disc_thickness * M_PI * (0.3 * 0.3 - 0.15 * 0.15);
+      const double      exact  = materials.disc.density * GeometryParameters().disc_thickness * M_PI * (0.3 * 0.3 - 0.15 * 0.15);
       errors.push_back(std::abs(product(e, *system.mass, e) / exact - 1.));
     }
   // Polygons of 24 sides would miss 1.1 %.

@@ -44,7 +44,8 @@ namespace
   struct Ring
   {
     Ring(const double inner, const double outer, const double thickness, const int n_around, const double band)
-      : model(extrude(polar_plan(inner, outer, 1, n_around, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), of_thickness(thickness)),
+      : model(extrude(polar_plan(inner, outer, 1, n_around, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}),
+                      of_thickness(thickness)),
               2,
               MPI_COMM_WORLD)
       , still(body_terms(model, mounted({})))
@@ -66,7 +67,7 @@ namespace
     /// Part of a mode's square norm along the axis.
     double axial_share(const int mode) const
     {
-      const MultiVector u = *kernel * view(*modes.vectors, mode, 1);
+      const MultiVector u        = *kernel * view(*modes.vectors, mode, 1);
       double            local[2] = {0., 0.}, sums[2];
       for (const Node &node : model.nodes())
         for (int d = 0; d < 3; ++d)
@@ -108,7 +109,7 @@ TEST(Rotation, IsThatOfLinearFields)
       const auto     &M = *term_named(bodies, "mass, disc").matrix, &G = *term_named(bodies, "gyroscopic forces of the disc").matrix,
                  &N = *term_named(bodies, "convective stiffness of the disc").matrix;
 
-      const auto    linear = [&model](const Matrix3 &H) {
+      const auto linear = [&model](const Matrix3 &H) {
         return displacements(model, 0, [&H](const Point3 &p) {
           Point3 u{};
           for (int i = 0; i < 3; ++i)
@@ -117,8 +118,9 @@ TEST(Rotation, IsThatOfLinearFields)
           return u;
         });
       };
-      const Matrix3 F = {{{{0.3, -1.2, 0.4}}, {{0.8, 0.1, -0.6}}, {{-0.2, 0.9, 0.5}}}}, H = {{{{1.1, 0.3, -0.4}}, {{-0.2, 0.7, 0.9}}, {{0.5, -0.8, -1.3}}}},
-                    J = {{{{0., -1., 0.}}, {{1., 0., 0.}}, {{0., 0., 0.}}}};
+      const Matrix3 F     = {{{{0.3, -1.2, 0.4}}, {{0.8, 0.1, -0.6}}, {{-0.2, 0.9, 0.5}}}},
+                    H     = {{{{1.1, 0.3, -0.4}}, {{-0.2, 0.7, 0.9}}, {{0.5, -0.8, -1.3}}}},
+                    J     = {{{{0., -1., 0.}}, {{1., 0., 0.}}, {{0., 0., 0.}}}};
       const MultiVector v = linear(F), u = linear(H), turned_v = linear(times(F, J)), turned_u = linear(times(H, J));
       const double      expected = product(v, M, turned_u) - product(turned_v, M, u);
       EXPECT_NEAR(product(v, G, u) / expected, 1., 1e-12);
@@ -161,10 +163,10 @@ TEST(Rotation, SplitsDoubletsByTheDopplerShift)
         if (omega[j + 1] < (1. + 1e-4) * omega[j])
           {
             // Two lowest doublets: n = 2 and 3 of the plate, n = 2 in and out of its plane of the ring
-            const bool   axial = body->axial_share(j) > 0.5;
+            const bool axial = body->axial_share(j) > 0.5;
             n_in_plane += !axial;
-            const int    n     = body == &plate && n_checked > 0 ? 3 : 2;
-            const double mean  = 0.5 * (omega[j] + omega[j + 1]), shift = n * speed * (axial ? 1. : (n * n - 1.) / (n * n + 1.));
+            const int    n    = body == &plate && n_checked > 0 ? 3 : 2;
+            const double mean = 0.5 * (omega[j] + omega[j + 1]), shift = n * speed * (axial ? 1. : (n * n - 1.) / (n * n + 1.));
             for (const double sign : {-1., 1.})
               {
                 const double nearest = *std::min_element(found.begin(), found.end(), [&](const double x, const double y) {

@@ -18,7 +18,7 @@ using namespace Squeal;
 TEST(Conventions, OfAnOscillatingMode)
 {
   const double omega = 2. * M_PI * 1234.5, R = 6.78;
-  const auto   mode  = modal_quantities({R, omega});
+  const auto   mode = modal_quantities({R, omega});
   EXPECT_DOUBLE_EQ(mode.frequency, 1234.5);
   EXPECT_DOUBLE_EQ(mode.growth_rate, R);
   EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);

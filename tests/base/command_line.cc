@@ -11,8 +11,7 @@ using namespace Squeal;
 
 TEST(CommandLines, AreTakenInAnyOrder)
 {
-  const CommandLine line =
-    parse_command_line({"--set", "A/b=1", "scene.prm", "--output=--odd", "--dry-run", "--set=C/d=-2"});
+  const CommandLine line = parse_command_line({"--set", "A/b=1", "scene.prm", "--output=--odd", "--dry-run", "--set=C/d=-2"});
   EXPECT_EQ(line.parameter_file, "scene.prm");
   EXPECT_EQ(line.overrides, (std::vector<std::string>{"A/b=1", "C/d=-2"}));
   EXPECT_EQ(line.output, "--odd");
@@ -27,12 +26,13 @@ TEST(CommandLines, AreTakenInAnyOrder)
 
 TEST(CommandLines, QuoteTheWordThatIsWrong)
 {
-  for (const auto &[words, wrong] : std::vector<std::pair<std::vector<std::string>, std::string>>{{{"a", "--set", "x=1", "--sett", "y"}, "--sett"},
-                                                                                                 {{"-x", "a"}, "-x"},
-                                                                                                 {{"a", "--set"}, "--set"},
-                                                                                                 {{"--set", "--dry-run", "a"}, "--set"},
-                                                                                                 {{"--help=yes"}, "--help=yes"},
-                                                                                                 {{"a", "--help", "b"}, "b"}})
+  for (const auto &[words, wrong] :
+       std::vector<std::pair<std::vector<std::string>, std::string>>{{{"a", "--set", "x=1", "--sett", "y"}, "--sett"},
+                                                                     {{"-x", "a"}, "-x"},
+                                                                     {{"a", "--set"}, "--set"},
+                                                                     {{"--set", "--dry-run", "a"}, "--set"},
+                                                                     {{"--help=yes"}, "--help=yes"},
+                                                                     {{"a", "--help", "b"}, "b"}})
     try
       {
         parse_command_line(words);

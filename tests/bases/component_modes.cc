@@ -105,18 +105,24 @@ TEST(PinLabels, AnalyticFields)
   const Scene              s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
   const auto               masses = nodal_masses(s.model, *s.system.mass);
   const GeometryParameters geometry;
-  const auto               depth = [&](const Point3 &p) { return geometry.disc_thickness / 2. + geometry.pin_height - p[2]; };
-  const auto bending = [&](const double x, const double y) {
-    return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{x * depth(p) * depth(p), y * depth(p) * depth(p), -2. * depth(p) * (x * (p[0] - 0.2) + y * p[1])}}; });
+  const auto               depth   = [&](const Point3 &p) { return geometry.disc_thickness / 2. + geometry.pin_height - p[2]; };
+  const auto               bending = [&](const double x, const double y) {
+    return displacements(s.model, 1, [=](const Point3 &p) {
+      return Point3{{x * depth(p) * depth(p), y * depth(p) * depth(p), -2. * depth(p) * (x * (p[0] - 0.2) + y * p[1])}};
+    });
   };
   const auto torsion = [&](const double factor) {
-    return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{-factor * p[1] * depth(p), factor * (p[0] - 0.2) * depth(p), 0.}}; });
+    return displacements(s.model, 1, [=](const Point3 &p) {
+      return Point3{{-factor * p[1] * depth(p), factor * (p[0] - 0.2) * depth(p), 0.}};
+    });
   };
   const auto stretching = [&](const double contraction) {
     return displacements(s.model, 1, [=](const Point3 &p) { return Point3{{-contraction * (p[0] - 0.2), -contraction * p[1], depth(p)}}; });
   };
   // Two flexural modes share a number.
-  EXPECT_EQ(pin_labels(s.model, s.interface, masses, columns_of({bending(1., 0.), bending(-0.3, 1.), torsion(1.), bending(1., 1.), stretching(0.3), torsion(-2.), stretching(0.)})),
+  EXPECT_EQ(pin_labels(s.model, s.interface, masses,
+                       columns_of({bending(1., 0.), bending(-0.3, 1.), torsion(1.), bending(1., 1.), stretching(0.3), torsion(-2.),
+                                   stretching(0.)})),
             (std::vector<std::string>{"F1", "F1", "T1", "F2", "L1", "T2", "L2"}));
 }
 
@@ -135,7 +141,7 @@ TEST(PinLabels, APinThatHardlyTouchesBendsAboutItsOwnAxis)
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
   // Slender beams have flexural modes first; the numbers of every family ascend with frequency and count all pins.
-  const Scene s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const Scene         s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
   std::vector<double> torsion;
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
     {
@@ -196,7 +202,8 @@ namespace
     {
       const double limit = 2. * M_PI * 4000.;
       disc = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::free, limit * limit, {});
-      pins = component_modes(s.model, s.interface, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
+      pins =
+        component_modes(s.model, s.interface, s.interface, s.system, Component::pins, ContactBoundary::sliding, 9. * limit * limit, {});
     }
 
     /// Numbers of the first of two disc modes with one label and of a mode with another.
@@ -240,7 +247,7 @@ TEST(Identify, ComponentModesAreThemselves)
 TEST(Identify, SharesOfMixturesAndPhases)
 {
   const References r;
-  const auto &labels         = r.disc.labels;
+  const auto      &labels   = r.disc.labels;
   const auto [pair, single] = r.doublet_and_other();
   const MultiVector a = view(*r.disc.vectors, pair, 1), b = view(*r.disc.vectors, pair + 1, 1), c = view(*r.disc.vectors, single, 1);
 
@@ -262,8 +269,8 @@ TEST(Identify, SharesOfMixturesAndPhases)
 TEST(Identify, ModesUnlikeAllAreUnnamed)
 {
   // Noise has next to nothing of the lowest modes; two such modes are no doublet.
-  const References r;
-  const auto       found = r.identities(random_vectors(r.s.model.free_map(), 2));
+  const References         r;
+  const auto               found = r.identities(random_vectors(r.s.model.free_map(), 2));
   std::vector<std::string> labels;
   for (const ModeIdentity &identity : found)
     {
@@ -281,7 +288,7 @@ TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
 {
   // Three vectors that all resemble a doublet most: the third gets its second label.
   const References r;
-  const auto &labels         = r.disc.labels;
+  const auto      &labels   = r.disc.labels;
   const auto [pair, single] = r.doublet_and_other();
   MultiVector re(r.disc.vectors->Map(), 3);
   for (int j = 0; j < 3; ++j)
@@ -305,15 +312,17 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   SymmetricModesOptions options;
   EXPECT_GT(shift, 0.);
   EXPECT_LT(shift, omega);
-  options.shift   = shift * shift;
-  const auto disc = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::free, omega * omega, options);
+  options.shift = shift * shift;
+  const auto disc =
+    component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::free, omega * omega, options);
   EXPECT_EQ(std::count(disc.labels.begin(), disc.labels.end(), "RB"), 6);
   for (int j = 0; j < 6; ++j)
     EXPECT_EQ(disc.eigenvalues[j], 0.);
   EXPECT_GT(disc.eigenvalues.at(6), 0.);
 
   // Its sliding modes: the faces keep the height, so only the motions in the plane are left.
-  const auto sliding = component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
+  const auto sliding =
+    component_modes(s.model, s.interface, s.interface, s.system, Component::disc, ContactBoundary::sliding, omega * omega, options);
   EXPECT_EQ(std::count(sliding.labels.begin(), sliding.labels.end(), "RB"), 3);
 
   const auto coupled = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega * omega, options);

@@ -55,7 +55,7 @@ TEST(ModeCountEstimate, AgreesWithTheInertiaOverTheBand)
 
 TEST(ModeCountEstimate, FollowsTheMaterials)
 {
-  const HexMesh      mesh = four_pins();
+  const HexMesh      mesh      = four_pins();
   MaterialParameters soft_pins = mounted(), soft_disc = mounted();
   soft_pins.pin.young_modulus /= 9.;
   soft_disc.disc.young_modulus /= 9.;
@@ -77,7 +77,7 @@ TEST(ModeCountEstimate, GrowsWithTheCubeOfTheFrequencyInTheEnd)
 
 TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
 {
-  const HexMesh      mesh = four_pins();
+  const HexMesh      mesh      = four_pins();
   MaterialParameters soft_pins = mounted();
   soft_pins.pin.young_modulus *= 1e-3;
   EXPECT_NO_THROW(check_wave_resolution(mesh, mounted(), 1, circular_frequency(12000.)));

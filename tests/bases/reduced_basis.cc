@@ -44,8 +44,12 @@ namespace
   const std::vector<ElasticMount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
   const Case                      flat = {"flat", 0., 1, held};
 
-  const std::vector<BasisKind> component_kinds = {BasisKind::free,         BasisKind::fixed,           BasisKind::mixed,
-                                                  BasisKind::free_rubbing, BasisKind::free_tangential, BasisKind::fixed_tangential,
+  const std::vector<BasisKind> component_kinds = {BasisKind::free,
+                                                  BasisKind::fixed,
+                                                  BasisKind::mixed,
+                                                  BasisKind::free_rubbing,
+                                                  BasisKind::free_tangential,
+                                                  BasisKind::fixed_tangential,
                                                   BasisKind::mixed_tangential};
   const std::vector<BasisKind> real_kinds      = {BasisKind::real, BasisKind::real_tangential, BasisKind::real_first_order,
                                                   BasisKind::real_two_sided, BasisKind::real_two_sided_damped};
@@ -175,11 +179,11 @@ TEST(BasisTables, SizesOfThePaper)
 {
   // Component modes up to 10 kHz (table 3), 66 real modes, 228 contact nodes
   BasisCounts counts;
-  counts.disc_free = counts.disc_sliding = 80;
-  counts.pins_free                       = 120;
-  counts.pins_sliding                    = 60;
-  counts.contact                         = 228;
-  counts.real                            = 66;
+  counts.disc_free = counts.disc_sliding                    = 80;
+  counts.pins_free                                          = 120;
+  counts.pins_sliding                                       = 60;
+  counts.contact                                            = 228;
+  counts.real                                               = 66;
   const std::map<std::string, std::pair<int, int>> expected = {{"free", {428, 200}},
                                                                {"fixed", {596, 368}},
                                                                {"mixed", {596, 368}},
@@ -192,8 +196,8 @@ TEST(BasisTables, SizesOfThePaper)
                                                                {"real + 1st-ord.", {132, 132}},
                                                                {"real + 1st-ord. two-sided", {198, 198}},
                                                                {"real + 1st-ord. two-sided + damping", {264, 264}}};
-  std::size_t n_found = 0;
-  std::set<std::string> names;
+  std::size_t                                      n_found  = 0;
+  std::set<std::string>                            names;
   for (const BasisRecipe &basis : basis_recipes())
     {
       if (const auto it = expected.find(basis.name); it != expected.end())
@@ -289,12 +293,12 @@ TEST_P(ReducedBases, HaveTheSizesCounted)
 
 TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
 {
-  const Bodies &b = bodies(), more(GetParam(), 3.);
+  const Bodies &b      = bodies(), more(GetParam(), 3.);
   const auto   &exact  = b.real.eigenvalues;
-  const auto   values = [&](const Bodies &bodies, const BasisKind kind) {
+  const auto    values = [&](const Bodies &bodies, const BasisKind kind) {
     return ritz_values(b.s.coupled, *reduced_basis(kind, bodies.ingredients()).vectors);
   };
-  const double rounding = 1e-9 * omega_max * omega_max;
+  const double rounding  = 1e-9 * omega_max * omega_max;
   const auto   no_higher = [&](const std::vector<double> &larger, const std::vector<double> &smaller, const char *what) {
     for (std::size_t j = 0; j < exact.size(); ++j)
       EXPECT_LE(larger[j], smaller[j] + rounding) << what << ", mode " << j;
@@ -339,7 +343,8 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
   const SparseMatrix &M = *b.s.coupled.mass;
 
   // Tangential loads on the contact: K_c u = A
-  for (const BasisKind kind : {BasisKind::free_tangential, BasisKind::fixed_tangential, BasisKind::mixed_tangential, BasisKind::real_tangential})
+  for (const BasisKind kind :
+       {BasisKind::free_tangential, BasisKind::fixed_tangential, BasisKind::mixed_tangential, BasisKind::real_tangential})
     EXPECT_LT(outside(M, *reduced_basis(kind, b.ingredients()).vectors, b.inverse.attachment_modes()), 1e-7) << to_string(kind);
   // They are needed for that.
   for (const BasisKind kind : {BasisKind::free, BasisKind::fixed, BasisKind::mixed, BasisKind::free_rubbing, BasisKind::real})
@@ -356,7 +361,7 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
     {
       MultiVector load = transpose_times(*b.s.contact.kernel, f);
       load.Update(-0.5 * friction, *b.s.coupled.friction_forces * replicate(*b.s.contact.normal * f), 1.);
-      const auto matrix = with_friction(b.s.coupled, friction).stiffness;
+      const auto  matrix = with_friction(b.s.coupled, friction).stiffness;
       MultiVector u(load.Map(), load.NumVectors());
       factorize_general(*matrix, FactorizationLibrary::automatic, "stiffness with friction")->apply(load, u);
 
@@ -374,7 +379,7 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
 
 TEST_P(ReducedBases, SpanWhatTheyAreMadeOf)
 {
-  const Bodies       &b = bodies();
+  const Bodies       &b     = bodies();
   const SparseMatrix &M     = *b.s.coupled.mass;
   const MultiVector   right = friction_response(b.s.coupled, b.inverse, *b.real.vectors, Side::right),
                     left    = friction_response(b.s.coupled, b.inverse, *b.real.vectors, Side::left),
@@ -416,11 +421,12 @@ TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
 {
   // All vectors of the sliding components and the constraint modes span everything that keeps the contact closed.
   const Case  c = GetParam();
-  const Scene s(mapped(extrude(polar_plan(0.1505, 0.3155, 1, 7, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), layers(1, 2)),
-                       [c](const Point3 &p) {
-                         return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
-                       }),
-                mounted(held), operating(RadialDissipation::consistent));
+  const Scene s(
+    mapped(extrude(polar_plan(0.1505, 0.3155, 1, 7, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), layers(1, 2)),
+           [c](const Point3 &p) {
+             return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
+           }),
+    mounted(held), operating(RadialDissipation::consistent));
   const StaticResponse response(s.model, s.system, omega_max, FactorizationLibrary::automatic);
   const StaticModes    static_modes(s.model, s.interface, s.contact, s.system, response, omega_max, FactorizationLibrary::automatic);
   const auto           complete = [&](const std::vector<bool> &selected) {
@@ -429,12 +435,12 @@ TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
   };
   const MultiVector disc = complete({true, false, false}), pins = complete({false, true, true});
   BasisIngredients  in;
-  in.disc_sliding = &disc;
-  in.pins_sliding = &pins;
-  in.static_modes = &static_modes;
-  in.uncoupled    = &s.system;
-  in.contact      = &s.contact;
-  in.coupled      = &s.coupled;
+  in.disc_sliding          = &disc;
+  in.pins_sliding          = &pins;
+  in.static_modes          = &static_modes;
+  in.uncoupled             = &s.system;
+  in.contact               = &s.contact;
+  in.coupled               = &s.coupled;
   const ReducedBasis basis = reduced_basis(BasisKind::fixed, in);
   ASSERT_EQ(basis.size(), s.coupled.map().NumGlobalElements());
 
@@ -461,7 +467,7 @@ TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
 
   // One vector more is one too many.
   const MultiVector first = view(disc, 0, 1), more = join({&disc, &first});
-  in.disc_sliding         = &more;
+  in.disc_sliding = &more;
   EXPECT_THROW(reduced_basis(BasisKind::fixed, in), SolverError);
 }
 
@@ -470,11 +476,11 @@ TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
 TEST(ReducedBasis, DependentVectorsAreDropped)
 {
   const Bodies      b(flat);
-  BasisIngredients  in      = b.ingredients();
-  const MultiVector twice   = view(*b.pins_free, 0, 3), doubled = join({b.pins_free.get(), &twice});
-  const auto        once    = reduced_basis(BasisKind::free, in);
-  in.pins_free              = &doubled;
-  const auto again          = reduced_basis(BasisKind::free, in);
+  BasisIngredients  in    = b.ingredients();
+  const MultiVector twice = view(*b.pins_free, 0, 3), doubled = join({b.pins_free.get(), &twice});
+  const auto        once = reduced_basis(BasisKind::free, in);
+  in.pins_free           = &doubled;
+  const auto again       = reduced_basis(BasisKind::free, in);
   EXPECT_EQ(again.n_r0, once.n_r0 + 3);
   EXPECT_EQ(again.n_nominal, once.n_nominal + 3);
   EXPECT_EQ(again.n_dropped, once.n_dropped + 3);
@@ -486,8 +492,8 @@ TEST(ReducedBasis, DependentVectorsAreDropped)
 
 TEST(ReducedBasis, RigidBodyMotionsAreAddedWhereTheyAreMissing)
 {
-  const Bodies      b({"free disc", 0., 1, {}});
-  const int         n_free  = b.static_modes.rigid_body_modes()->NumVectors();
+  const Bodies b({"free disc", 0., 1, {}});
+  const int    n_free = b.static_modes.rigid_body_modes()->NumVectors();
   ASSERT_EQ(n_free, 6);
   const MultiVector elastic = view(*b.disc_free, n_free, b.disc_free->NumVectors() - n_free);
   BasisIngredients  in      = b.ingredients();
@@ -538,9 +544,7 @@ TEST(ReducedBasis, SaysWhatIsMissing)
       }
     return std::string();
   };
-  const auto names = [&](const std::string &text, const std::string &what) {
-    EXPECT_NE(text.find(what), std::string::npos) << text;
-  };
+  const auto names = [&](const std::string &text, const std::string &what) { EXPECT_NE(text.find(what), std::string::npos) << text; };
   names(message(BasisKind::free, [](auto &in) { in.disc_free = nullptr; }), "Phi_f^D, which is missing or empty");
   names(message(BasisKind::mixed, [](auto &in) { in.pins_sliding = nullptr; }), "Phi_s^P, which is missing or empty");
   names(message(BasisKind::mixed, [](auto &in) { in.pins_sliding = nullptr; }), "reduced basis `mixed`");

@@ -173,9 +173,10 @@ TEST_P(StaticModesOf, FlexibilityAndCondensedStiffnessAreInverse)
 TEST_P(StaticModesOf, CoordinatesUndoTheKernels)
 {
   const Scene s = scene(GetParam(), mounted(GetParam().mounts));
-  for (const auto &T : {std::shared_ptr<const SparseMatrix>(s.contact.kernel),
-                        std::shared_ptr<const SparseMatrix>(component_kernel(s.model, s.interface, {true, false, false}, ContactBoundary::sliding)),
-                        std::shared_ptr<const SparseMatrix>(component_kernel(s.model, s.interface, {false, true, true}, ContactBoundary::free))})
+  for (const auto &T :
+       {std::shared_ptr<const SparseMatrix>(s.contact.kernel),
+        std::shared_ptr<const SparseMatrix>(component_kernel(s.model, s.interface, {true, false, false}, ContactBoundary::sliding)),
+        std::shared_ptr<const SparseMatrix>(component_kernel(s.model, s.interface, {false, true, true}, ContactBoundary::free))})
     {
       const MultiVector q = random_vectors(T->DomainMap(), 3);
       EXPECT_LT(max_norm(add(replicate(coordinates(*T, *T * q)), replicate(q), -1.)), 1e-15);
@@ -187,10 +188,10 @@ TEST_P(StaticModesOf, CoordinatesUndoTheKernels)
 TEST(StaticModes, FacesAtFortyFiveDegreesAreNoTrap)
 {
   // A slave row then holds a single one, like the row of the dof it follows.
-  const Case        c = {"45 degrees", 0., 1, held};
-  Scene             s = scene(c, mounted(held));
-  ContactInterface  interface = s.interface;
-  const double      h = std::sqrt(0.5);
+  const Case       c         = {"45 degrees", 0., 1, held};
+  Scene            s         = scene(c, mounted(held));
+  ContactInterface interface = s.interface;
+  const double     h         = std::sqrt(0.5);
   for (ContactNode &node : interface)
     {
       node.normal  = {{-h, 0., h * node.side()}};
@@ -215,7 +216,7 @@ TEST(CoupledResponses, SolveWithTheirForces)
   const auto          &K   = *s.coupled.stiffness;
 
   // Forces from the matrices with friction: K_c − μ A V_K at μ = 1 and its transpose
-  const auto        with = with_friction(s.coupled, 1.);
+  const auto        with  = with_friction(s.coupled, 1.);
   const MultiVector K_Phi = K * Phi;
   const auto        check = [&](const MultiVector &response, MultiVector force) {
     const double size = max_norm(replicate(force));

@@ -42,8 +42,8 @@ TEST(StaticResponse, SolvesWhereTheMountHoldsTheDisc)
 
 TEST(StaticResponse, RelievesAFreeDiscByInertia)
 {
-  for (const auto &[mounts, n_free] : {std::make_pair(std::vector<ElasticMount>(), 6),
-                                       std::make_pair(std::vector<ElasticMount>{{"disc_bore", 0., 7.80e10, 0.}}, 1)})
+  for (const auto &[mounts, n_free] :
+       {std::make_pair(std::vector<ElasticMount>(), 6), std::make_pair(std::vector<ElasticMount>{{"disc_bore", 0., 7.80e10, 0.}}, 1)})
     {
       const Scene          s = scene(mounts);
       const StaticResponse response(s.model, s.system, band, FactorizationLibrary::automatic);

@@ -14,7 +14,9 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  const std::vector<PolarPin> three_pins = {{Plan::Side::top, -1, 2, 1, 2}, {Plan::Side::bottom, 3, 2, 2, 1}, {Plan::Side::bottom, -1, 1, 1, 2}};
+  const std::vector<PolarPin> three_pins = {{Plan::Side::top, -1, 2, 1, 2},
+                                            {Plan::Side::bottom, 3, 2, 2, 1},
+                                            {Plan::Side::bottom, -1, 1, 1, 2}};
 
   HexMesh flat_mesh()
   {
@@ -80,8 +82,8 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
       EXPECT_EQ(positive.size(), degree == 1 ? 9u + 6u + 6u : 25u + 15u + 15u);
       ASSERT_EQ(negative.size(), positive.size());
 
-      double              area = 0.;
-      std::set<unsigned>  disc_nodes, pin_nodes;
+      double             area = 0.;
+      std::set<unsigned> disc_nodes, pin_nodes;
       for (std::size_t c = 0; c < positive.size(); ++c)
         {
           const ContactNode &node = positive[c];
@@ -100,7 +102,8 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
           const double side = node.position[2] > 0. ? 1. : -1.;
           EXPECT_EQ(node.side(), side);
           EXPECT_EQ(node.normal, (Point3{{0., 0., side}}));
-          const Point3 e_theta = {{-node.position[1] / r, node.position[0] / r, 0.}}, e_r = {{node.position[0] / r, node.position[1] / r, 0.}};
+          const Point3 e_theta = {{-node.position[1] / r, node.position[0] / r, 0.}},
+                       e_r     = {{node.position[0] / r, node.position[1] / r, 0.}};
           EXPECT_NEAR(dot(node.sliding, e_theta), 1., 1e-15);
           EXPECT_NEAR(dot(node.radial, e_r), -side, 1e-15);
           EXPECT_NEAR(dot(negative[c].sliding, e_theta), -1., 1e-15);
@@ -119,8 +122,11 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
 {
   // z → z + s (r - r0): slopes towards the rim; normal (-s e_r + e_z) / √(1 + s²) on top but for the edges of the polygon
   const double slope = 0.3;
-  const auto   mesh  = mapped(extrude(polar_plan(0.15, 0.3, 3, 96, {{Plan::Side::top, -3, 6, 1, 1}, {Plan::Side::bottom, 3, 4, 1, 1}}), layers(2, 2)),
-                              [slope](const Point3 &p) { return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2)}}; });
+  const auto   mesh =
+    mapped(extrude(polar_plan(0.15, 0.3, 3, 96, {{Plan::Side::top, -3, 6, 1, 1}, {Plan::Side::bottom, 3, 4, 1, 1}}), layers(2, 2)),
+           [slope](const Point3 &p) {
+             return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2)}};
+           });
   for (const unsigned int degree : {1u, 2u})
     for (const ContactNode &node : pairs(mesh, degree))
       {
@@ -140,8 +146,7 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
         // b = n × t
         for (int k = 0; k < 3; ++k)
           EXPECT_NEAR(node.radial[k],
-                      node.normal[(k + 1) % 3] * node.sliding[(k + 2) % 3] - node.normal[(k + 2) % 3] * node.sliding[(k + 1) % 3],
-                      1e-15);
+                      node.normal[(k + 1) % 3] * node.sliding[(k + 2) % 3] - node.normal[(k + 2) % 3] * node.sliding[(k + 1) % 3], 1e-15);
       }
 }
 
@@ -150,8 +155,9 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
   // The disc's rim and bore are curved; the pads' edges there must follow, whatever the shape of the rest of their outline.
-  const HexMesh mesh = extrude(polar_plan(0.15, 0.3, 3, 16, {{Plan::Side::top, -1, 2, 1, 2}, {Plan::Side::bottom, 3, 3, 0, 1}}), layers(1, 1));
-  const auto    interface = pairs(mesh, 2);
+  const HexMesh mesh =
+    extrude(polar_plan(0.15, 0.3, 3, 16, {{Plan::Side::top, -1, 2, 1, 2}, {Plan::Side::bottom, 3, 3, 0, 1}}), layers(1, 1));
+  const auto interface = pairs(mesh, 2);
   EXPECT_EQ(interface.size(), 25u + 21u);
   int n_rim = 0, n_bore = 0;
   for (const ContactNode &node : interface)
@@ -248,8 +254,8 @@ TEST(ContactInterface, ANodeOnTheAxisIsRefused)
 
 TEST(RadialDissipation, SharesTheLoadOfEachSide)
 {
-  const auto          interface = pairs(flat_mesh());
-  OperationParameters operation = operating(RadialDissipation::consistent);
+  const auto          interface  = pairs(flat_mesh());
+  OperationParameters operation  = operating(RadialDissipation::consistent);
   operation.friction_coefficient = 0.37;
   operation.rotation_speed       = 3.;
   operation.load_per_side        = 500.;

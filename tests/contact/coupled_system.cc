@@ -33,7 +33,7 @@ namespace
 
   Scene scene(const Case &c, const RadialDissipation dissipation = RadialDissipation::consistent, const Bodies bodies = Bodies::undamped)
   {
-    const MaterialParameters    materials = mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}});
+    const MaterialParameters materials = mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}});
     // Fewer elements where they are quadratic
     const int                   n    = c.degree == 1 ? 2 : 1;
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, n, 1, 1}, {Plan::Side::bottom, -1, n, 0, 1}};
@@ -158,10 +158,10 @@ TEST_P(Contact, CoupledMatricesAreSymmetric)
 
 TEST_P(Contact, FrictionIsThatOfTheUnreducedEquation)
 {
-  const Scene  s  = scene(GetParam());
-  const double mu = 0.37;
-  const auto  &T  = *s.contact.kernel;
-  const auto   P_t_P_n = multiply(*s.contact.tangential, *s.contact.normal, true, false);
+  const Scene  s        = scene(GetParam());
+  const double mu       = 0.37;
+  const auto  &T        = *s.contact.kernel;
+  const auto   P_t_P_n  = multiply(*s.contact.tangential, *s.contact.normal, true, false);
   const auto   expected = [&](const SparseMatrix &matrix) {
     const auto with = add(1., matrix, -0.5 * mu, *multiply(*P_t_P_n, matrix));
     return multiply(T, *multiply(*with, T), true, false);
@@ -207,9 +207,9 @@ TEST_P(Contact, FrictionTakesItsPartOfTheDampingOfTheBodies)
 TEST_P(Contact, DampingTracesTheCoefficients)
 {
   // trace C_b = Σ c_b ‖P_bᵀ row‖² = 2 Σ c_b
-  const Scene  s   = scene(GetParam());
-  const auto   c_b = radial_dissipation(s.interface, equal_load_shares(s.interface, s.operation.load_per_side), s.operation);
-  double       sum = 0.;
+  const Scene s   = scene(GetParam());
+  const auto  c_b = radial_dissipation(s.interface, equal_load_shares(s.interface, s.operation.load_per_side), s.operation);
+  double      sum = 0.;
   for (const double c : c_b)
     sum += 2. * c;
   Epetra_Vector diagonal(s.contact_damping->RowMap());
@@ -236,9 +236,11 @@ TEST_P(Contact, DampingOfSpeedDependentFrictionActsAlongT)
       c_b.push_back(1. + c);
       c_t.push_back(-3. + c % 5); // of either sign
     }
-  const auto diagonal = [&](const std::vector<double> &values) { return Testing::diagonal(P_t.RowMap(), [&](const int c) { return values[c]; }); };
-  const auto both     = contact_damping(s.contact, {c_b, c_t});
-  const auto along_t  = contact_damping(s.contact, {{}, c_t});
+  const auto diagonal = [&](const std::vector<double> &values) {
+    return Testing::diagonal(P_t.RowMap(), [&](const int c) { return values[c]; });
+  };
+  const auto both    = contact_damping(s.contact, {c_b, c_t});
+  const auto along_t = contact_damping(s.contact, {{}, c_t});
   EXPECT_LT(difference(*both, *add(1., *contact_damping(s.contact, {c_b, {}}), 1., *along_t)), 1e-15);
 
   // P_t C = 2 diag(c_t) P_t, P_b C = 2 diag(c_b) P_b; friction takes no part: P_n C = 0
@@ -264,8 +266,8 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       for (const double mu : {0., 0.4, 1.3, 0.2})
         {
           const SecondOrderSystem matrices = with_friction(s.coupled, mu);
-          auto Q = add(shift * shift, *matrices.mass, 1., *matrices.stiffness);
-          Q      = add(1., *Q, shift, *matrices.damping);
+          auto                    Q        = add(shift * shift, *matrices.mass, 1., *matrices.stiffness);
+          Q                                = add(1., *Q, shift, *matrices.damping);
           inverse.set_friction_coefficient(mu);
           MultiVector X(B), Y(B);
           inverse.apply(B, X);
@@ -277,8 +279,8 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 
           // The frictionless inverse does not change.
           inverse.apply_frictionless(B, Y);
-          auto S = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);
-          S      = add(1., *S, shift, *with_friction(s.coupled, 0.).damping);
+          auto S        = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);
+          S             = add(1., *S, shift, *with_friction(s.coupled, 0.).damping);
           MultiVector R = *S * Y;
           R.Update(-1., B, 1.);
           EXPECT_LT(column_norms(R)[0], 1e-10 * column_norms(B)[0]);
@@ -286,7 +288,9 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       // Attachment modes: S X = A
       auto S = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);
       S      = add(1., *S, shift, *with_friction(s.coupled, 0.).damping);
-      EXPECT_LT(max_norm(add(replicate(*S * inverse.attachment_modes()), replicate(s.coupled.friction_forces->columns(0, s.coupled.n_contact())), -1.)), 1e-10);
+      EXPECT_LT(max_norm(add(replicate(*S * inverse.attachment_modes()),
+                             replicate(s.coupled.friction_forces->columns(0, s.coupled.n_contact())), -1.)),
+                1e-10);
     }
 }
 
@@ -300,8 +304,8 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
                                             {RadialDissipation::none, Bodies::damped},
                                             {RadialDissipation::consistent, Bodies::damped}})
     {
-      const Scene      s     = scene(GetParam(), dissipation, bodies);
-      const double     mu    = 0.6;
+      const Scene      s  = scene(GetParam(), dissipation, bodies);
+      const double     mu = 0.6;
       SolverParameters solvers;
       solvers.complex_tolerance = 1e-10;
       UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
@@ -312,7 +316,7 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 
       DenseMatrix r_re, r_im;
       normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part, r_re, r_im);
-      const auto         forces = [&](const DenseMatrix &r) {
+      const auto forces = [&](const DenseMatrix &r) {
         const MultiVector distributed = distribute(r, s.contact.normal->RowMap());
         MultiVector       F           = transpose_times(*s.contact.normal, distributed);
         F.Update(mu, transpose_times(*s.contact.tangential, distributed), 1.);
@@ -346,7 +350,7 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
         }
       const auto residual_re = column_norms(R_re), residual_im = column_norms(R_im);
       const auto size_re = column_norms(K_re), size_im = column_norms(K_im), force_re = column_norms(f_re), force_im = column_norms(f_im);
-      int n_touching = 0;
+      int        n_touching = 0;
       for (int j = 0; j < k; ++j)
         {
           const double size = std::hypot(size_re[j], size_im[j]);

@@ -73,9 +73,8 @@ TEST(DenseQuadratic, VectorsOfBothSides)
       EXPECT_EQ(2 * modes.values.size() + modes.real_values.size(), 120u);
       EXPECT_LT(backward_error(pencil, damped, modes, false), 1e-12);
       EXPECT_LT(backward_error(pencil, damped, modes, true), 1e-12);
-      EXPECT_TRUE(std::is_sorted(modes.values.begin(), modes.values.end(), [](const Complex &a, const Complex &b) {
-        return a.imag() < b.imag();
-      }));
+      EXPECT_TRUE(
+        std::is_sorted(modes.values.begin(), modes.values.end(), [](const Complex &a, const Complex &b) { return a.imag() < b.imag(); }));
     }
 }
 
@@ -116,10 +115,10 @@ TEST(DenseQuadratic, OscillatorsOverWideRange)
 TEST(DenseQuadratic, FlutterPairsShareTheFrequency)
 {
   DenseMatrix K(2, 2);
-  K(0, 0) = 2.;
-  K(1, 1) = 2.2;
-  K(0, 1) = 1.;
-  K(1, 0) = -0.5;
+  K(0, 0)          = 2.;
+  K(1, 1)          = 2.2;
+  K(0, 1)          = 1.;
+  K(1, 0)          = -0.5;
   const auto modes = dense_quadratic_modes(identity(2), nullptr, K);
   ASSERT_EQ(modes.values.size(), 2u);
   EXPECT_NEAR(modes.values[0].imag(), modes.values[1].imag(), 1e-14);
@@ -130,9 +129,9 @@ TEST(DenseQuadratic, FlutterPairsShareTheFrequency)
 TEST(DenseQuadratic, OverdampedAndDivergentValuesAreReal)
 {
   DenseMatrix C(2, 2), K(2, 2);
-  C(0, 0) = 3.;
-  K(0, 0) = 2.;
-  K(1, 1) = -9.;
+  C(0, 0)           = 3.;
+  K(0, 0)           = 2.;
+  K(1, 1)           = -9.;
   const auto damped = dense_quadratic_modes(identity(2), &C, K), undamped = dense_quadratic_modes(identity(2), nullptr, K);
   ASSERT_EQ(damped.real_values.size(), 4u);
   EXPECT_NEAR(damped.real_values[0], -3., 1e-13);

@@ -130,9 +130,8 @@ namespace
     ASSERT_EQ(values.size(), expected.size());
     for (const Complex &x : expected)
       {
-        const auto nearest = std::min_element(values.begin(), values.end(), [&x](const Complex &a, const Complex &b) {
-          return std::abs(a - x) < std::abs(b - x);
-        });
+        const auto nearest = std::min_element(values.begin(), values.end(),
+                                              [&x](const Complex &a, const Complex &b) { return std::abs(a - x) < std::abs(b - x); });
         EXPECT_LT(std::abs(*nearest - x), relative * std::abs(x)) << "eigenvalue " << x;
         values.erase(nearest);
       }
@@ -156,11 +155,11 @@ TEST(QuadraticModes, TwoDegreesOfFreedomFlutter)
 {
   // x'' + k11 x + (k12 - μ k_c) y = 0, y'' + k12 x + k22 y = 0: λ² = -(tr ± sqrt(tr² - 4 det)) / 2.
   const double k11 = 2., k22 = 2.2, k12 = -0.5, mu = 1.5;
-  DenseMatrix  M = identity(2), K(2, 2);
-  K(0, 0) = k11;
-  K(1, 1) = k22;
-  K(0, 1) = k12 + mu;
-  K(1, 0) = k12;
+  DenseMatrix  M       = identity(2), K(2, 2);
+  K(0, 0)              = k11;
+  K(1, 1)              = k22;
+  K(0, 1)              = k12 + mu;
+  K(1, 0)              = k12;
   const Complex root   = std::sqrt(Complex((k11 + k22) * (k11 + k22) - 4. * (k11 * k22 - K(0, 1) * K(1, 0))));
   Complex       square = 0.5 * (-(k11 + k22) + root);
   Complex       lambda = std::sqrt(square);
@@ -176,10 +175,10 @@ TEST(QuadraticModes, TwoDegreesOfFreedomFlutter)
 TEST(QuadraticModes, DampedOscillators)
 {
   // λ² + 2 ζ ω λ + ω² = 0; two are overdamped.
-  const int                 n = 60;
-  std::vector<double>       stiffness(n), damping(n);
-  std::vector<Complex>      expected;
-  std::vector<double>       expected_real;
+  const int            n = 60;
+  std::vector<double>  stiffness(n), damping(n);
+  std::vector<Complex> expected;
+  std::vector<double>  expected_real;
   for (int i = 0; i < n; ++i)
     {
       const double omega = 1. + i, zeta = i == 3 || i == 5 ? 1.1 : 0.01 * (i % 7);
@@ -243,17 +242,16 @@ TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
 
 TEST(QuadraticModes, NonsymmetricAgreesWithTheCompanionForm)
 {
-  const int         n = 120;
-  const DenseMatrix R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
-  const DenseMatrix M = add(identity(n), R, 0.01), C = add(multiply(S, S, true, false, 1e-3), T, 1e-3);
-  DenseMatrix       K = add(diagonal([n] {
+  const int                  n = 120;
+  const DenseMatrix          R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
+  const DenseMatrix          M = add(identity(n), R, 0.01), C = add(multiply(S, S, true, false, 1e-3), T, 1e-3);
+  DenseMatrix                K        = add(diagonal([n] {
                         std::vector<double> values(n);
                         for (int i = 0; i < n; ++i)
                           values[i] = std::pow(1. + 0.3 * i, 2);
                         return values;
                       }()),
-                      T,
-                      0.5);
+                                            T, 0.5);
   const double               largest  = 12.;
   const std::vector<Complex> expected = companion_values(M, C, K, largest);
   ASSERT_GT(expected.size(), 30u);
@@ -314,9 +312,8 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
   ASSERT_GT(one.values.size(), 15u);
   expect_same(two.values, one.values, 1e-9);
   for (const Complex &value : two.values)
-    EXPECT_TRUE(std::any_of(two.values.begin(), two.values.end(), [&value](const Complex &other) {
-      return std::abs(other + std::conj(value)) < 1e-9 * std::abs(value);
-    }));
+    EXPECT_TRUE(std::any_of(two.values.begin(), two.values.end(),
+                            [&value](const Complex &other) { return std::abs(other + std::conj(value)) < 1e-9 * std::abs(value); }));
 }
 
 TEST(QuadraticModes, FreeBodyNeedsAShift)
@@ -372,8 +369,8 @@ TEST(QuadraticModes, VectorsAreNormalised)
   const int         n = 50;
   const DenseMatrix K = chain(n), C = multiply(K, K, false, false, 0.05);
   DensePencil       pencil(identity(n), &C, K, 0.);
-  const auto        modes     = pencil.modes(0.7);
-  const auto        real      = column_norms(*modes.real_part), imaginary = column_norms(*modes.imaginary_part);
+  const auto        modes = pencil.modes(0.7);
+  const auto        real = column_norms(*modes.real_part), imaginary = column_norms(*modes.imaginary_part);
   const auto        recomputed = residuals(pencil.pencil, modes.values, *modes.real_part, *modes.imaginary_part);
   for (std::size_t i = 0; i < modes.values.size(); ++i)
     {

@@ -94,11 +94,11 @@ TEST_P(SymmetricModesBy, TwelvefoldAndTwentyfourfoldEigenvalues)
 {
   // Twelve equal bodies with a simple mode, then threefold ones: 12- and
   // 36-fold exactly, more than the block size; 24 more of a second kind.
-  const int          m = 5, n_copies = 12;
-  const auto         K     = laplacian(m, n_copies, distribution());
-  const auto         M     = diagonal(K->RowMap(), [](int) { return 1.; });
-  const double       limit = 1.7;
-  const auto         exact = laplacian_eigenvalues(m, n_copies);
+  const int            m = 5, n_copies = 12;
+  const auto           K     = laplacian(m, n_copies, distribution());
+  const auto           M     = diagonal(K->RowMap(), [](int) { return 1.; });
+  const double         limit = 1.7;
+  const auto           exact = laplacian_eigenvalues(m, n_copies);
   const SymmetricModes modes = symmetric_modes(*K, *M, limit, options);
   EXPECT_EQ(modes.n_counted, 12 + 36);
   check_modes(*K, *M, limit, modes);
@@ -109,17 +109,17 @@ TEST_P(SymmetricModesBy, TwelvefoldAndTwentyfourfoldEigenvalues)
 
 TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
 {
-  const Body   body       = plate({{12, 8, 2}}, 0.02, 0., distribution());
-  const double limit      = std::pow(2. * M_PI * 20e3, 2);
-  const auto   modes      = symmetric_modes(*body.stiffness, *body.mass, limit, options);
+  const Body   body  = plate({{12, 8, 2}}, 0.02, 0., distribution());
+  const double limit = std::pow(2. * M_PI * 20e3, 2);
+  const auto   modes = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   EXPECT_EQ(modes.n_rigid_body, 6);
   EXPECT_GT(modes.n_counted, 10);
   EXPECT_GT(modes.eigenvalues[6], 1e-4 * limit);
   check_modes(*body.stiffness, *body.mass, limit, modes);
 
   // The same with a shift of the caller's choice.
-  options.shift         = 0.2 * limit;
-  const auto by_shift   = symmetric_modes(*body.stiffness, *body.mass, limit, options);
+  options.shift       = 0.2 * limit;
+  const auto by_shift = symmetric_modes(*body.stiffness, *body.mass, limit, options);
   ASSERT_EQ(by_shift.n_counted, modes.n_counted);
   for (int j = 6; j < modes.n_counted; ++j)
     EXPECT_NEAR(by_shift.eigenvalues[j] / modes.eigenvalues[j], 1., 1e-9);
@@ -157,9 +157,9 @@ TEST_P(SymmetricModesBy, SmallSystemsAndBandsWithoutModes)
 TEST_P(SymmetricModesBy, EigenvalueOnTheLimitIsIncluded)
 {
   // Above the size of dense solution; λ = 1 twelvefold.
-  const Epetra_Map map = rows(400, distribution());
-  const auto       K   = diagonal(map, [](const int i) { return i < 12 ? 1. : (i < 20 ? 0.1 * i : 5. + i); });
-  const auto       M   = diagonal(map, [](int) { return 1.; });
+  const Epetra_Map map   = rows(400, distribution());
+  const auto       K     = diagonal(map, [](const int i) { return i < 12 ? 1. : (i < 20 ? 0.1 * i : 5. + i); });
+  const auto       M     = diagonal(map, [](int) { return 1.; });
   const auto       modes = symmetric_modes(*K, *M, 1., options);
   EXPECT_EQ(modes.n_counted, 12);
   EXPECT_NEAR(modes.eigenvalues.front(), 1., 1e-13);
@@ -233,15 +233,15 @@ TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
 {
   // Seven equal chains of 60 masses, whose entries alternate: every eigenvalue comes seven times.
   constexpr int n_chains = 7, length = 60;
-  const auto    map      = rows(n_chains * length, distribution());
-  const auto    K        = sparse(map, map, [](const int i) {
+  const auto    map = rows(n_chains * length, distribution());
+  const auto    K   = sparse(map, map, [](const int i) {
     Row row = {{i, 2.}};
     for (const int j : {i - n_chains, i + n_chains})
       if (j >= 0 && j < n_chains * length)
         row[j] = -1.;
     return row;
   });
-  const auto M = Testing::diagonal(map, [](int) { return 1.; });
+  const auto    M   = Testing::diagonal(map, [](int) { return 1.; });
 
   const double         limit = 0.05;
   const SymmetricModes whole = symmetric_modes(*K, *M, limit, options);
@@ -263,10 +263,10 @@ TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
 // The basis must leave room for one more block.
 TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
 {
-  constexpr int n   = 420;
-  const auto    map = rows(n, distribution());
-  const auto    K   = Testing::diagonal(map, [](const int i) { return 1. + i / 12; });
-  const auto    M   = Testing::diagonal(map, [](int) { return 1.; });
+  constexpr int n            = 420;
+  const auto    map          = rows(n, distribution());
+  const auto    K            = Testing::diagonal(map, [](const int i) { return 1. + i / 12; });
+  const auto    M            = Testing::diagonal(map, [](int) { return 1.; });
   options.block_size         = 24;
   const SymmetricModes modes = symmetric_modes(*K, *M, 7.5, options);
   check_modes(*K, *M, 7.5, modes);

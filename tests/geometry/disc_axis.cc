@@ -42,13 +42,24 @@ TEST(DiscAxes, OtherAxesAreRefusedByName)
 {
   const double a = 0.02;
   for (const auto &[map, direction, centre, text] : std::vector<std::tuple<Map, HexMesh::Point, HexMesh::Point, std::string>>{
-         {[](const auto &p) { return HexMesh::Point{{p[0] + 0.001, p[1] - 0.002, p[2] + 0.7}}; }, {{0., 0., 1.}}, {{0.001, -0.002, 0.7}},
+         {[](const auto &p) {
+            return HexMesh::Point{{p[0] + 0.001, p[1] - 0.002, p[2] + 0.7}};
+          },
+          {{0., 0., 1.}},
+          {{0.001, -0.002, 0.7}},
           "through (0.001, -0.002, 0.7) m in direction (0, 0, 1)"},
-         {[](const auto &p) { return HexMesh::Point{{p[1], p[2], p[0]}}; }, {{0., 1., 0.}}, {{0., 0., 0.}}, "in direction (0, 1, 0)"},
+         {[](const auto &p) {
+            return HexMesh::Point{{p[1], p[2], p[0]}};
+          },
+          {{0., 1., 0.}},
+          {{0., 0., 0.}},
+          "in direction (0, 1, 0)"},
          {[a](const auto &p) {
             return HexMesh::Point{{p[0], std::cos(a) * p[1] - std::sin(a) * p[2], std::sin(a) * p[1] + std::cos(a) * p[2]}};
           },
-          {{0., -std::sin(a), std::cos(a)}}, {{0., 0., 0.}}, "in direction (0, -0.02, 0.9998)"}})
+          {{0., -std::sin(a), std::cos(a)}},
+          {{0., 0., 0.}},
+          "in direction (0, -0.02, 0.9998)"}})
     {
       const HexMesh  mesh = moved(map);
       const DiscAxis axis = find_disc_axis(mesh);

@@ -23,8 +23,7 @@ namespace
       {
         double nearest = 1e300;
         for (const unsigned int b : to)
-          nearest = std::min(nearest, std::hypot(mesh.points[a][0] - mesh.points[b][0],
-                                                 mesh.points[a][1] - mesh.points[b][1],
+          nearest = std::min(nearest, std::hypot(mesh.points[a][0] - mesh.points[b][0], mesh.points[a][1] - mesh.points[b][1],
                                                  mesh.points[a][2] - mesh.points[b][2]));
         largest = std::max(largest, nearest);
       }
@@ -106,8 +105,7 @@ TEST(GenerateMesh, DiscFillsTheAnnulusAndTheSurfacesBoundIt)
 
   const unsigned int n_bore = nodes_on(mesh, "disc_bore").size() / (parameters.disc_layers + 1);
   const unsigned int n_rim  = nodes_on(mesh, "disc_rim").size() / (parameters.disc_layers + 1);
-  EXPECT_NEAR(volume(mesh, "disc"),
-              t * (polygon(parameters.disc_outer_radius, n_rim) - polygon(parameters.disc_inner_radius, n_bore)),
+  EXPECT_NEAR(volume(mesh, "disc"), t * (polygon(parameters.disc_outer_radius, n_rim) - polygon(parameters.disc_inner_radius, n_bore)),
               1e-4 * volume(mesh, "disc"));
   EXPECT_NEAR(area(mesh, "disc_bore"), 2. * pi * parameters.disc_inner_radius * t, 0.01 * area(mesh, "disc_bore"));
   EXPECT_NEAR(area(mesh, "disc_rim"), 2. * pi * parameters.disc_outer_radius * t, 0.01 * area(mesh, "disc_rim"));

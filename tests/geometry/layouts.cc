@@ -57,10 +57,10 @@ TEST(Layouts, OppositePinsStayWhereThePlanHasThem)
   for (const unsigned int nodes : {7, 19})
     {
       GeometryParameters parameters;
-      parameters.nodes_per_pin_face = nodes;
-      parameters.element_size       = 0.02;
-      const HexMesh                              mesh = generate_mesh(parameters);
-      std::set<std::pair<double, double>>        above, below;
+      parameters.nodes_per_pin_face            = nodes;
+      parameters.element_size                  = 0.02;
+      const HexMesh                       mesh = generate_mesh(parameters);
+      std::set<std::pair<double, double>> above, below;
       for (const unsigned int node : nodes_on(mesh, "disc_contact"))
         (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
       EXPECT_EQ(above.size(), 6 * nodes);
@@ -93,7 +93,7 @@ TEST(Layouts, InvertedFacesAreTurnedOver)
       }
 
   // Faces that nothing can help, and faces that need no help, stay
-  std::vector<Plan::Point> flat = {{{0., 0.}}, {{1., 0.}}, {{2., 0.}}, {{3., 0.}}};
+  std::vector<Plan::Point> flat   = {{{0., 0.}}, {{1., 0.}}, {{2., 0.}}, {{3., 0.}}};
   const auto               before = flat, good = points;
   untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);
   EXPECT_EQ(flat, before);
@@ -106,7 +106,7 @@ TEST(Layouts, ScaledParametersGiveTheScaledMesh)
   const HexMesh mesh = generate_mesh(one_pin());
   for (const int exponent : {-6, -3, 3, 6})
     {
-      const auto scaled = [exponent](const std::string &value) { return std::stod(value + "e" + std::to_string(exponent)); };
+      const auto         scaled     = [exponent](const std::string &value) { return std::stod(value + "e" + std::to_string(exponent)); };
       GeometryParameters parameters = one_pin();
       parameters.disc_inner_radius  = scaled("0.1505");
       parameters.disc_outer_radius  = scaled("0.3155");
@@ -150,7 +150,8 @@ TEST(ProblemSizes, WhatDoesNotFitIsRefusedBeforehand)
 {
   GeometryParameters parameters;
   parameters.disc_layers = 1000000;
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available", "Geometry/Disc layers"});
+  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }),
+                  {"hexahedra", "dofs", "GB are available", "Geometry/Disc layers"});
   parameters.file = "disc_pad.geo";
   expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available"});
   EXPECT_NO_THROW(check_memory({1e4, 3e4, 200.}, 1, 100., "here"));

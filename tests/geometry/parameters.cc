@@ -16,8 +16,8 @@ namespace
 
 TEST(GeometryParameters, DefaultsAreAcceptedAndSurviveTheHandler)
 {
-  GeometryParameters         parameters;
-  dealii::ParameterHandler   prm;
+  GeometryParameters       parameters;
+  dealii::ParameterHandler prm;
   parameters.add_parameters(prm);
   prm.parse_input_from_string("");
   parameters.check();
@@ -64,12 +64,10 @@ TEST(GeometryParameters, EveryTextSaysUnits)
 
 TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)
 {
-  expect_mentions(refusal([](auto &p) { p.disc_inner_radius = 0.4; }),
-                  {"Geometry/Disc inner radius is 0.4", "Geometry/Disc outer radius"});
+  expect_mentions(refusal([](auto &p) { p.disc_inner_radius = 0.4; }), {"Geometry/Disc inner radius is 0.4", "Geometry/Disc outer radius"});
   expect_mentions(refusal([](auto &p) { p.disc_thickness = 0.; }), {"Geometry/Disc thickness is 0", "positive"});
   expect_mentions(refusal([](auto &p) { p.pin_layers = 0; }), {"Geometry/Pin layers is 0"});
-  expect_mentions(refusal([](auto &p) { p.top.angles.pop_back(); }),
-                  {"Geometry/Top pin radii has 6 values", "Top pin angles has 5"});
+  expect_mentions(refusal([](auto &p) { p.top.angles.pop_back(); }), {"Geometry/Top pin radii has 6 values", "Top pin angles has 5"});
   expect_mentions(refusal([](auto &p) { p.top = p.bottom = {}; }), {"both empty", "at least one pin"});
   expect_mentions(refusal([](auto &p) { p.element_size = 0.1; }), {"Geometry/Element size is 0.1", "at most 0.0825"});
   expect_mentions(refusal([](auto &p) { p.pairing_tolerance = 0.01; }), {"Geometry/Pairing tolerance is 0.01"});
@@ -78,8 +76,8 @@ TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)
 
 TEST(GeometryParameters, NodesPerPinFaceNamesTheNearest)
 {
-  for (const auto &[given, nearest] : std::vector<std::pair<unsigned int, std::string>>{
-         {1, "7"}, {8, "7"}, {12, "7"}, {14, "19"}, {20, "19"}, {36, "37"}, {50, "61"}, {62, "61"}})
+  for (const auto &[given, nearest] : std::vector<
+         std::pair<unsigned int, std::string>>{{1, "7"}, {8, "7"}, {12, "7"}, {14, "19"}, {20, "19"}, {36, "37"}, {50, "61"}, {62, "61"}})
     expect_mentions(refusal([n = given](auto &p) { p.nodes_per_pin_face = n; }),
                     {"Geometry/Nodes per pin face is " + std::to_string(given), "nearest allowed value is " + nearest});
   for (const unsigned int n : {7, 19, 37, 61, 91, 331})
@@ -95,8 +93,7 @@ TEST(GeometryParameters, PinsMustFitOnTheDisc)
   expect_mentions(refusal([](auto &p) { p.top.radii[3] = 0.3; }), {"Top pin radii: pin 4", "0.0105 m beyond the outer"});
   expect_mentions(refusal([](auto &p) { p.bottom.radii[0] = 0.16; }),
                   {"Bottom pin radii: pin 1", "0.0165 m beyond the inner", "between 0.1765 m and 0.2895 m"});
-  expect_mentions(refusal([](auto &p) { p.bottom.angles[1] = -10.; }),
-                  {"Bottom pin angles: pins 1 and 2", "overlap by 0.0231", "0.052 m"});
+  expect_mentions(refusal([](auto &p) { p.bottom.angles[1] = -10.; }), {"Bottom pin angles: pins 1 and 2", "overlap by 0.0231", "0.052 m"});
 
   // In a plan of the user's own the positions need not mean anything
   GeometryParameters parameters;

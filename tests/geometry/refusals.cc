@@ -108,10 +108,8 @@ TEST(Refusals, PlanThatDoesNotFit)
   expect_mentions(refusal(plate + pad), {"no physical surface 'disc'"});
   expect_mentions(refusal(plate + disc), {"no pin"});
   expect_mentions(refusal(plate + disc + "Physical Surface(\"pad\") = {2};"), {"'pad'", "pin_top"});
-  expect_mentions(refusal(plate + disc + pad + "Physical Surface(\"pin_top_2\") = {2};"),
-                  {"'pin_top_1' and 'pin_top_2' touch"});
-  expect_mentions(refusal(plate + disc + pad + "Physical Curve(\"edge\") = {Boundary{ Surface{2}; }};"),
-                  {"'edge'", "not on the boundary"});
+  expect_mentions(refusal(plate + disc + pad + "Physical Surface(\"pin_top_2\") = {2};"), {"'pin_top_1' and 'pin_top_2' touch"});
+  expect_mentions(refusal(plate + disc + pad + "Physical Curve(\"edge\") = {Boundary{ Surface{2}; }};"), {"'edge'", "not on the boundary"});
   expect_mentions(refusal(plate + disc + pad + "Physical Curve(\"pin_clamp\") = {Boundary{ Surface{3}; }};"),
                   {"'pin_clamp'", "another name"});
   expect_mentions(refusal(plate + disc + "c() = Boundary{ Surface{2}; }; Physical Curve(\"pin_top_1\") = {c(0)};"),
@@ -147,8 +145,7 @@ TEST(Refusals, BadElementsAreFound)
 {
   HexMesh mesh;
   mesh.volume_names = {"disc"};
-  mesh.points       = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}},
-                       {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
+  mesh.points       = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
   mesh.hexahedra    = {{{{0, 1, 2, 3, 4, 5, 6, 7}}, 0}};
   EXPECT_DOUBLE_EQ(check_mesh(mesh).worst_scaled_jacobian, 1.);
   EXPECT_DOUBLE_EQ(check_mesh(mesh).worst_edge_ratio, 1.);

@@ -43,9 +43,15 @@ namespace Scenes
       if (!content.empty())
         std::ofstream(path) << content;
     }
-    ~File() { std::filesystem::remove_all(directory); }
+    ~File()
+    {
+      std::filesystem::remove_all(directory);
+    }
 
-    std::string string() const { return path.string(); }
+    std::string string() const
+    {
+      return path.string();
+    }
 
     std::filesystem::path directory, path;
   };
@@ -93,8 +99,7 @@ namespace Scenes
   /// Volume of all hexahedra of the volumes whose name begins so, by 2 x 2 x 2 Gauss points [m³].
   inline double volume(const HexMesh &mesh, const std::string &prefix)
   {
-    constexpr double corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1},
-                                     {-1, -1, 1},  {1, -1, 1},  {1, 1, 1},  {-1, 1, 1}};
+    constexpr double corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
     double           sum          = 0.;
     for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
       if (mesh.volume_names[hexahedron.volume].rfind(prefix, 0) == 0)
@@ -113,8 +118,7 @@ namespace Scenes
                   for (unsigned int i = 0; i < 3; ++i)
                     J[i][d] += mesh.points[hexahedron.nodes[v]][i] * gradient;
                 }
-            sum += J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) -
-                   J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
+            sum += J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
                    J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
           }
     return sum;

@@ -64,10 +64,10 @@ TEST(DenseMatrices, SymmetricEigenvalues)
   EXPECT_LT(max_norm(add(multiply(V, V, true), identity(2), -1.)), 1e-15);
 
   DenseMatrix B(2, 2);
-  B(0, 0)           = 2.;
-  B(1, 1)           = 1.;
-  DenseMatrix W     = A;
-  const auto values = symmetric_eigenvalues(W, B);
+  B(0, 0)            = 2.;
+  B(1, 1)            = 1.;
+  DenseMatrix W      = A;
+  const auto  values = symmetric_eigenvalues(W, B);
   EXPECT_NEAR(values[0] * values[1], 3. / 2., 1e-14);
   EXPECT_NEAR(values[0] + values[1], 3., 1e-14);
   EXPECT_LT(max_norm(add(multiply(W, multiply(B, W), true), identity(2), -1.)), 1e-14);
@@ -82,7 +82,7 @@ TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
   A(0, 0) = 2.;
   A(1, 2) = -3.;
   A(2, 1) = 3.;
-  A(0, 1) = A(2, 0) = 0.5;
+  A(0, 1) = A(2, 0)           = 0.5;
   const DenseEigenpairs pairs = eigenpairs(A, true);
 
   ComplexDenseMatrix C(3, 3);
@@ -110,8 +110,8 @@ TEST(DenseMatrices, SingularValuesAndKernel)
   const DenseMatrix A = example(), tall = multiply(A, columns(A, 0, 2), true);
   for (const DenseMatrix &B : {A, tall, transpose(tall)})
     {
-      const auto  [values, V] = singular_values(B);
-      const int   n           = B.n_columns(), k = values.size();
+      const auto [values, V] = singular_values(B);
+      const int n = B.n_columns(), k = values.size();
       ASSERT_EQ(k, std::min(B.n_rows(), n));
       EXPECT_TRUE(std::is_sorted(values.rbegin(), values.rend()));
       EXPECT_LT(max_norm(add(multiply(V, V, true), identity(n), -1.)), 1e-14);

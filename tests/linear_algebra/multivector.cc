@@ -174,9 +174,9 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
 TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 {
   // Two unit vectors at an angle: the Gram matrix has the eigenvalues 1 ± cos.
-  const Epetra_Map  map = rows(60, GetParam());
-  const auto        M   = inner_product(map);
-  const MultiVector Q   = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
+  const Epetra_Map  map    = rows(60, GetParam());
+  const auto        M      = inner_product(map);
+  const MultiVector Q      = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
   const double      cosine = 0.8, sine = 0.6;
   MultiVector       X(map, 2);
   X(0)->Update(5., *Q(0), 0.);

@@ -52,12 +52,13 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   for (const int n : {3, 7, 20})
     {
       const Epetra_Map  many = rows(n, GetParam()), fewer = rows(n - 1, GetParam()), few = rows(std::max(1, n / 5), GetParam());
-      const auto        S    = sparse(many, fewer, [n](const int i) { return Row{{(3 * i + 1) % (n - 1), 1. + i}}; });
-      const auto        P    = sparse(few, many, [n](const int i) { return Row{{n - 1 - 2 * i, -1. - i}}; });
+      const auto        S = sparse(many, fewer, [n](const int i) { return Row{{(3 * i + 1) % (n - 1), 1. + i}}; });
+      const auto        P = sparse(few, many, [n](const int i) { return Row{{n - 1 - 2 * i, -1. - i}}; });
       const DenseMatrix s = to_dense(*S), p = to_dense(*P);
       EXPECT_EQ(max_norm(add(to_dense(*multiply(*S, *P, true, true)), multiply(s, p, true, true), -1.)), 0.) << n;
       EXPECT_EQ(max_norm(add(to_dense(*multiply(*P, *S)), multiply(p, s), -1.)), 0.) << n;
-      EXPECT_EQ(max_norm(add(to_dense(*multiply(*S, *multiply(*S, *P, true, true))), multiply(s, multiply(s, p, true, true)), -1.)), 0.) << n;
+      EXPECT_EQ(max_norm(add(to_dense(*multiply(*S, *multiply(*S, *P, true, true))), multiply(s, multiply(s, p, true, true)), -1.)), 0.)
+        << n;
     }
 
   const auto T = congruence(*A, *B);
@@ -80,8 +81,12 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
   const auto P = sparse(A->RowMap(), A->RowMap(), [](const int i) { return Row{{(5 * i + 2) % 27, 1.}}; });
   for (const auto &B : {D, P, A})
     {
-      EXPECT_LT(max_norm(add(to_dense(*add(2., *A, -3., *B)), add(multiply(to_dense(*A), identity(27), false, false, 2.), to_dense(*B), -3.), -1.)), 1e-13);
-      EXPECT_LT(max_norm(add(to_dense(*add(2., *B, -3., *A)), add(multiply(to_dense(*B), identity(27), false, false, 2.), to_dense(*A), -3.), -1.)), 1e-13);
+      EXPECT_LT(
+        max_norm(add(to_dense(*add(2., *A, -3., *B)), add(multiply(to_dense(*A), identity(27), false, false, 2.), to_dense(*B), -3.), -1.)),
+        1e-13);
+      EXPECT_LT(
+        max_norm(add(to_dense(*add(2., *B, -3., *A)), add(multiply(to_dense(*B), identity(27), false, false, 2.), to_dense(*A), -3.), -1.)),
+        1e-13);
     }
   EXPECT_DOUBLE_EQ(max_norm(*D), 27.);
   EXPECT_DOUBLE_EQ(symmetry_defect(*P), 1.);
@@ -96,7 +101,8 @@ TEST_P(Sparse, MatrixMarketFilesReturnTheSameNumbers)
   A->Scale(1. / 3.);
   const auto        S    = laplacian(3, 1, GetParam());
   const std::string file = (std::filesystem::temp_directory_path() / "squeal_sparse_test.mtx").string();
-  for (const auto &[matrix, symmetry] : {std::make_pair(A, MatrixMarketSymmetry::general), std::make_pair(S, MatrixMarketSymmetry::symmetric)})
+  for (const auto &[matrix, symmetry] :
+       {std::make_pair(A, MatrixMarketSymmetry::general), std::make_pair(S, MatrixMarketSymmetry::symmetric)})
     {
       write_matrix_market(*matrix, file, symmetry);
       const DenseMatrix expected = to_dense(*matrix);
@@ -104,7 +110,8 @@ TEST_P(Sparse, MatrixMarketFilesReturnTheSameNumbers)
       std::ifstream     stream(file);
       std::string       header;
       std::getline(stream, header);
-      EXPECT_EQ(header, symmetry == MatrixMarketSymmetry::general ? "%%MatrixMarket matrix coordinate real general" : "%%MatrixMarket matrix coordinate real symmetric");
+      EXPECT_EQ(header, symmetry == MatrixMarketSymmetry::general ? "%%MatrixMarket matrix coordinate real general" :
+                                                                    "%%MatrixMarket matrix coordinate real symmetric");
       int n_rows, n_columns, n_entries, i, j;
       stream >> n_rows >> n_columns >> n_entries;
       EXPECT_EQ(n_rows, expected.n_rows());

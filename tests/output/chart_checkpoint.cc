@@ -60,7 +60,8 @@ namespace
     return std::memcmp(&a.friction_coefficient, &b.friction_coefficient, sizeof(double)) == 0 && same_bits(a.lambda, b.lambda) &&
            same_bits(a.right, b.right) && same_bits(a.left, b.left) && same_bits(a.right_residuals, b.right_residuals) &&
            same_bits(a.left_residuals, b.left_residuals) && same_bits(a.errors, b.errors) && same_bits(a.uncertainties, b.uncertainties) &&
-           a.verdicts == b.verdicts && same_bits(a.corrections, b.corrections) && same_bits(a.real_values, b.real_values) && a.n_zeros == b.n_zeros;
+           a.verdicts == b.verdicts && same_bits(a.corrections, b.corrections) && same_bits(a.real_values, b.real_values) &&
+           a.n_zeros == b.n_zeros;
   }
 
   /// Three modes, the last beyond the band, with numbers that no short text tells.
@@ -75,7 +76,8 @@ namespace
         *matrix = ComplexDenseMatrix(matrix == &point.corrections ? 3 : 7, 3);
         for (int j = 0; j < matrix->n_columns(); ++j)
           for (int i = 0; i < matrix->n_rows(); ++i)
-            (*matrix)(i, j) = {std::sin(1. + i + 10. * j + friction), matrix == &point.left ? -0. : std::numeric_limits<double>::denorm_min()};
+            (*matrix)(i, j) = {std::sin(1. + i + 10. * j + friction),
+                               matrix == &point.left ? -0. : std::numeric_limits<double>::denorm_min()};
       }
     point.right_residuals = {1e-9 / 3., 2e-9, 3e-9};
     point.left_residuals  = {1e-7 / 3., 2e-7, 3e-7};
@@ -145,8 +147,9 @@ namespace
   protected:
     ChartCheckpoints()
       : rows(n_rows, 0, Epetra_MpiComm(MPI_COMM_WORLD))
-      , place(fs::temp_directory_path() /
-              ("squeal_checkpoint_test_" + std::to_string(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()), 0))))
+      , place(
+          fs::temp_directory_path() /
+          ("squeal_checkpoint_test_" + std::to_string(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()), 0))))
       , folder((place / "deep" / "results.checkpoint").string())
     {
       alone([&] { fs::create_directories(place); });
@@ -331,10 +334,11 @@ TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
   keep_some();
   const std::string message = refusal([&] { checkpoint("# squeal 1\nsubsection Operation\n  set Load = 400\nend\n"); });
   for (const std::string &part :
-       {std::string("an unfinished sweep of other parameters"), std::string("`set Load = 300` there, `set Load = 400` here"), "folder " + folder,
-        archive.string(), std::string("--output"), std::string("delete the folder")})
+       {std::string("an unfinished sweep of other parameters"), std::string("`set Load = 300` there, `set Load = 400` here"),
+        "folder " + folder, archive.string(), std::string("--output"), std::string("delete the folder")})
     EXPECT_NE(message.find(part), std::string::npos) << part << " in: " << message;
-  EXPECT_NE(refusal([&] { checkpoint(key + "set Study = stability\n"); }).find("nothing there, `set Study = stability` here"), std::string::npos);
+  EXPECT_NE(refusal([&] { checkpoint(key + "set Study = stability\n"); }).find("nothing there, `set Study = stability` here"),
+            std::string::npos);
   EXPECT_EQ(checkpoint().n_found(), 3);
   // Another format
   alone([&] {
@@ -360,7 +364,7 @@ TEST_F(ChartCheckpoints, LieNowhereBeforeAnythingIsFound)
 
 TEST_F(ChartCheckpoints, HaveTheLastWholeStateWhereverARunWasKilled)
 {
-  const auto ends = keep_some();
+  const auto  ends = keep_some();
   std::string whole;
   alone([&] { whole = content(archive); });
   const std::vector<int> n_results = {0, 0, 1, 2, 2, 3}, n_blocks = {0, 1, 1, 1, 2, 2};
@@ -393,7 +397,7 @@ TEST_F(ChartCheckpoints, HaveTheLastWholeStateWhereverARunWasKilled)
 
 TEST_F(ChartCheckpoints, ForgetDamagedResults)
 {
-  const auto ends = keep_some();
+  const auto  ends = keep_some();
   std::string whole;
   alone([&] { whole = content(archive); });
   // Checksum, first and last byte, and the middle of the second result

@@ -196,7 +196,14 @@ TEST(RunRecords, AreJson)
   progress.finish("12 elements");
   progress.begin("Modes");
   progress.finish();
-  const RunRecord    record{"squeal \"a b.prm\" --set \"Operation/Rotation=negative\"", 3, 1, {{"dofs", 123456789012L}, {"modes", 0}}, {{"worst scaled Jacobian [-]", 0.5}}, {}, {}, "abc1234"};
+  const RunRecord    record{"squeal \"a b.prm\" --set \"Operation/Rotation=negative\"",
+                         3,
+                         1,
+                         {{"dofs", 123456789012L}, {"modes", 0}},
+                         {{"worst scaled Jacobian [-]", 0.5}},
+                         {},
+                         {},
+                         "abc1234"};
   std::ostringstream stream;
   write_run_record(stream, record, progress);
 
@@ -225,7 +232,7 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
       const Scene  s(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), degree);
       ResultFolder folder(results, true);
       const FieldWriter writer(s.model, s.interface, {}, folder);
-      ModeField             mode{"complex_001_A0-2", {1., 1000.}, {}, {}};
+      ModeField         mode{"complex_001_A0-2", {1., 1000.}, {}, {}};
       for (int i = 0; i < s.model.free_map().NumGlobalElements(); ++i)
         mode.displacement.emplace_back(std::cos(i), std::sin(i));
       mode.reactions.assign(s.interface.size(), {-1., 2.});
@@ -234,14 +241,15 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
       folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
       folder.commit();
 
-      const std::string body = content(results + "/modes/complex_001_A0-2.vtu"), contact = content(results + "/modes/complex_001_A0-2_contact.vtu");
+      const std::string body    = content(results + "/modes/complex_001_A0-2.vtu"),
+                        contact = content(results + "/modes/complex_001_A0-2_contact.vtu");
       for (const char *field : {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
         EXPECT_NE(body.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
       for (const char *field : {"normal_reaction_real", "normal_reaction_imag"})
         EXPECT_NE(contact.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
 
       // The animation covers one period 2π/ω with equal steps, and its pictures exist where it says.
-      const std::string pvd = content(results + "/animations/complex_001_A0-2.pvd");
+      const std::string pvd      = content(results + "/animations/complex_001_A0-2.pvd");
       int               n_frames = 0;
       for (auto at = pvd.find("timestep=\""); at != std::string::npos; at = pvd.find("timestep=\"", at + 1), ++n_frames)
         {

@@ -160,7 +160,8 @@ TEST_F(SafeFolders, WithoutAListGoByNames)
 {
   make_results("one");
   put(results + "/run.json", "{}");
-  for (const char *name : {"notes.txt", "modes/picture.png", "own/table.csv", "plots/old.svg", "animations/a_frames/000.vtu", "matrices/K.mtx", "mesh.msh"})
+  for (const char *name :
+       {"notes.txt", "modes/picture.png", "own/table.csv", "plots/old.svg", "animations/a_frames/000.vtu", "matrices/K.mtx", "mesh.msh"})
     put(fs::path(results) / name, name);
   make_results("two");
   EXPECT_EQ(files(), (Names{"results/modes/picture.png", "results/modes/two.vtu", "results/notes.txt", "results/own/table.csv",

@@ -23,7 +23,10 @@ namespace
       std::string pattern = (fs::temp_directory_path() / "squeal-test-XXXXXX").string();
       path                = ::mkdtemp(pattern.data());
     }
-    ~Folder() { fs::remove_all(path); }
+    ~Folder()
+    {
+      fs::remove_all(path);
+    }
 
     std::string write(const std::string &name, const std::string &text) const
     {
@@ -51,7 +54,7 @@ TEST(GeometryFiles, VariablesAreThoseThatOthersMaySet)
     other = 3;
     Include "part.geo";
   )"));
-  std::string found;
+  std::string          found;
   for (const GeometryVariable &variable : script.variables())
     found += variable.name + " = " + variable.value + " (" + variable.onelab_name + "); ";
   EXPECT_EQ(found, "a = 0.15 (); b = 2 * Pi / 3 (); c = 0 (); h = 0.02 (Parameters/Height [m]); inner = 3 (); ");

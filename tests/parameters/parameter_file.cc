@@ -70,7 +70,8 @@ namespace
 
 TEST_F(ParameterFile, StatementsComeInTheirOrder)
 {
-  const std::string text = "# comment\nset Study = sweep # why\nsubsection  A  B\n\tset  c   d =  1, \\\n  2\nend\nSUBSECTION E\nSET f =\nEND\n";
+  const std::string text =
+    "# comment\nset Study = sweep # why\nsubsection  A  B\n\tset  c   d =  1, \\\n  2\nend\nSUBSECTION E\nSET f =\nEND\n";
   EXPECT_EQ(statements(write("a.prm", text)), (Statements{"Study=sweep", "A B/", "A B/c d=1, 2", "E/", "E/f="}));
   EXPECT_EQ(statements(write("empty.prm", "")), Statements());
   EXPECT_EQ(statements(write("no_end_of_line.prm", "set a = b=c")), Statements{"a=b=c"});

@@ -84,11 +84,12 @@ TEST(ParameterFiles, AnEmptyFileGivesTheDefaults)
 
 TEST(ParameterFiles, ValuesReachTheirMembers)
 {
-  const Parameters p = read(in_section("Operation", "set Friction coefficient = 0.25\n set Rotation = negative\n set Radial dissipation = published") +
-                            in_section("Mounts", "set Elastic mounts = disc_bore: 1, 2e3, 3e10; disc_rim: 0, 0, 5") +
-                            in_section("Geometry", "set Top pin radii = 0.2, 0.25\n set Top pin angles = -10, 12.5") +
-                            in_section("Disc material", "set Rayleigh alpha = 2.5") + in_section("Pin material", "set Rayleigh beta = 3e-7") +
-                            in_section("Complex modes", "set Solver = residual iteration"));
+  const Parameters p =
+    read(in_section("Operation", "set Friction coefficient = 0.25\n set Rotation = negative\n set Radial dissipation = published") +
+         in_section("Mounts", "set Elastic mounts = disc_bore: 1, 2e3, 3e10; disc_rim: 0, 0, 5") +
+         in_section("Geometry", "set Top pin radii = 0.2, 0.25\n set Top pin angles = -10, 12.5") +
+         in_section("Disc material", "set Rayleigh alpha = 2.5") + in_section("Pin material", "set Rayleigh beta = 3e-7") +
+         in_section("Complex modes", "set Solver = residual iteration"));
   EXPECT_EQ(p.materials.disc.rayleigh_alpha, 2.5);
   EXPECT_EQ(p.materials.disc.rayleigh_beta, 0.);
   EXPECT_EQ(p.materials.pin.rayleigh_alpha, 0.);
@@ -117,7 +118,8 @@ TEST(ParameterFiles, ValuesReachTheirMembers)
 TEST(ParameterFiles, OverridesComeLast)
 {
   const std::string text = in_section("Operation", "set Friction coefficient = 0.25");
-  const Parameters  p    = read(text, {"Operation/Friction coefficient=0.3", "Band/Maximum frequency = 1234", "Operation/Friction coefficient=0.35"});
+  const Parameters  p =
+    read(text, {"Operation/Friction coefficient=0.3", "Band/Maximum frequency = 1234", "Operation/Friction coefficient=0.35"});
   EXPECT_EQ(p.operation.friction_coefficient, 0.35);
   EXPECT_EQ(p.discretization.maximum_frequency, 1234.);
 
@@ -250,9 +252,9 @@ TEST(Catalogue, KnowsWhatEveryPatternAccepts)
                                                 "integers in -2 ... 7, separated by commas", ""}));
 
   // Those of the program, whatever kinds they are
-  dealii::ParameterHandler    all;
-  Parameters                  parameters;
-  std::vector<std::string>    free_texts;
+  dealii::ParameterHandler all;
+  Parameters               parameters;
+  std::vector<std::string> free_texts;
   parameters.add_parameters(all);
   for (const CataloguedParameter &parameter : catalogue(all))
     if (accepted_values(parameter).empty())
@@ -267,10 +269,12 @@ TEST(Catalogue, KnowsWhatEveryPatternAccepts)
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
 {
-  const Parameters p = read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
-                                 "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
-                                 "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7", "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02",
-                                 "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
+  const Parameters p =
+    read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
+              "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
+              "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7",
+              "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02", "Output/Mode shapes=unstable",
+              "Linear algebra/Factorization=MUMPS"});
   EXPECT_NE(print(p), print(Parameters()));
   EXPECT_EQ(print(read(print(p))), print(p));
   EXPECT_EQ(read(print(p)).geometry.element_size, 0.0123456789);
@@ -305,8 +309,8 @@ TEST(ParameterFiles, DefaultsSurviveUnchanged)
 
 TEST(ParameterFiles, ZeroHasNoSign)
 {
-  const Parameters p = read("", {"Operation/Friction coefficient=-0", "Mounts/Elastic mounts=disc_bore: -0, 1, 1", "Geometry/Top pin radii=0.2, 0.2",
-                                 "Geometry/Top pin angles=-0, 20"});
+  const Parameters p = read("", {"Operation/Friction coefficient=-0", "Mounts/Elastic mounts=disc_bore: -0, 1, 1",
+                                 "Geometry/Top pin radii=0.2, 0.2", "Geometry/Top pin angles=-0, 20"});
   EXPECT_FALSE(std::signbit(p.operation.friction_coefficient));
   EXPECT_FALSE(std::signbit(p.materials.mounts[0].radial));
   EXPECT_EQ(print(p).find("-0\n"), std::string::npos);
@@ -401,7 +405,8 @@ TEST(ParameterChecks, Solvers)
   EXPECT_EQ(refusal("", {"Linear algebra/Factorization=CHOLMOD"}), "accepted");
   EXPECT_EQ(refusal("", {"Linear algebra/Factorization=UMFPACK", "Complex modes/Shift inverse=sparse LU"}), "accepted");
   // The residual iteration has no use for LU factors.
-  EXPECT_EQ(refusal("", {"Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU", "Complex modes/Solver=residual iteration"}),
+  EXPECT_EQ(refusal("", {"Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU",
+                         "Complex modes/Solver=residual iteration"}),
             "accepted");
 }
 

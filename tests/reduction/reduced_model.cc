@@ -36,10 +36,9 @@ namespace
     double largest = 0.;
     for (const Complex &value : values)
       {
-        const auto nearest = std::min_element(others.begin(), others.end(), [&](const Complex &a, const Complex &b) {
-          return std::abs(a - value) < std::abs(b - value);
-        });
-        largest            = std::max(largest, std::abs(*nearest - value) / std::abs(value));
+        const auto nearest = std::min_element(
+          others.begin(), others.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - value) < std::abs(b - value); });
+        largest = std::max(largest, std::abs(*nearest - value) / std::abs(value));
         others.erase(nearest);
       }
     return largest;
@@ -75,7 +74,8 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
           DenseMatrix             C;
           if (matrices.damping)
             C = to_dense(*matrices.damping);
-          const auto full = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness), limit);
+          const auto full =
+            dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness), limit);
           const auto pencil = reduced.at(s.coupled.at(mu));
           EXPECT_EQ(pencil.has_damping, matrices.damping != nullptr);
           const auto small = dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, limit);

@@ -20,7 +20,11 @@ namespace
   }
 
   /// Nodes pressed by one backplate with a given load.
-  ContactProblem pressed(const DenseMatrix &F_nn, const DenseMatrix &F_nt, const double mu, const std::vector<double> &gap, const double load)
+  ContactProblem pressed(const DenseMatrix         &F_nn,
+                         const DenseMatrix         &F_nt,
+                         const double               mu,
+                         const std::vector<double> &gap,
+                         const double               load)
   {
     const int      n = gap.size();
     ContactProblem problem{F_nn, F_nt, mu, gap, DenseMatrix(n, 1), DenseMatrix(1, n), {load}, {}};
@@ -126,7 +130,7 @@ namespace
 TEST(ContactProblem, TwoSpringsClosedForm)
 {
   // Springs of flexibility 1 and 2 under one plate, the second with a gap of 3: it closes when the first is compressed by 3.
-  const DenseMatrix F = matrix({{1., 0.}, {0., 2.}}), zero(2, 2);
+  const DenseMatrix F     = matrix({{1., 0.}, {0., 2.}}), zero(2, 2);
   const auto        light = solve_contact(pressed(F, zero, 0.4, {0., -3.}, 2.));
   EXPECT_EQ(light.closed, (std::vector<bool>{true, false}));
   EXPECT_DOUBLE_EQ(light.reactions[0], -2.);
@@ -151,8 +155,14 @@ TEST(ContactProblem, FrictionTiltsABlock)
   const double a = 1., h = 2.;
   for (const double mu : {0., 0.2, 0.4, 0.6})
     {
-      const ContactProblem problem{matrix({{1., 0.}, {0., 1.}}), DenseMatrix(2, 2), mu, {0., 0.}, matrix({{1., a}, {1., -a}}),
-                                   matrix({{-1., -1.}, {-(a - mu * h), a + mu * h}}), {1., 0.}, {}};
+      const ContactProblem problem{matrix({{1., 0.}, {0., 1.}}),
+                                   DenseMatrix(2, 2),
+                                   mu,
+                                   {0., 0.},
+                                   matrix({{1., a}, {1., -a}}),
+                                   matrix({{-1., -1.}, {-(a - mu * h), a + mu * h}}),
+                                   {1., 0.},
+                                   {}};
       if (mu * h < a)
         {
           const auto solution = solve_contact(problem);

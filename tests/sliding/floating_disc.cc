@@ -25,11 +25,11 @@ namespace
     problem.forces.push_back(0.);
     for (int c = 0; c < n; ++c)
       {
-        const int side                    = c < 3 ? 0 : 1;
-        problem.motions(c, side)          = rounded(1.);
-        problem.motions(c, 2)             = rounded(unit * ((side == 0 ? 1. : -1.) + tilt * c));
-        problem.balance(side, c)          = -problem.motions(c, side);
-        problem.balance(2, c)             = -problem.motions(c, 2);
+        const int side           = c < 3 ? 0 : 1;
+        problem.motions(c, side) = rounded(1.);
+        problem.motions(c, 2)    = rounded(unit * ((side == 0 ? 1. : -1.) + tilt * c));
+        problem.balance(side, c) = -problem.motions(c, side);
+        problem.balance(2, c)    = -problem.motions(c, 2);
       }
     return problem;
   }
@@ -99,8 +99,8 @@ TEST(ContactMotions, OfADiscThatOnlyTurns)
 {
   // All free motions slide: nothing but rounding is left along the normals
   const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}};
-  const Scene                 s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({{"disc_bore", 1e10, 0., 1e10}}), operating());
-  const auto N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
+  const Scene s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({{"disc_bore", 1e10, 0., 1e10}}), operating());
+  const auto  N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
   ASSERT_TRUE(N);
   ASSERT_EQ(N->NumVectors(), 1);
   const auto motions = contact_motions(*s.contact.normal, *N);

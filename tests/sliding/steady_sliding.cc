@@ -80,7 +80,8 @@ namespace
     for (int i = 0; i < r.MyLength(); ++i)
       r.ReplaceMyValue(i, 0, state.reactions[r.Map().GID(i)]);
     MultiVector rest = *s.system.stiffness * *state.displacement;
-    rest.Update(-1., transpose_times(*s.contact.normal, r), -s.operation.friction_coefficient, transpose_times(*s.contact.tangential, r), 1.);
+    rest.Update(-1., transpose_times(*s.contact.normal, r), -s.operation.friction_coefficient, transpose_times(*s.contact.tangential, r),
+                1.);
     EXPECT_LT(column_norms(rest)[0], 1e-10 * s.operation.load_per_side);
   }
 
@@ -116,10 +117,10 @@ TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
 {
   // Poisson's ratio zero, a pin of the same cross-section on both sides of a ring sector: far from bending the way of a
   // backplate is that of a pin in compression, F h / (E A), plus the disc's share. A stiff disc on a stiff mount leaves the pin.
-  auto materials               = mounted({{"disc_bore", 1e18, 1e18, 1e18}});
-  materials.pin.poisson_ratio  = 0.;
-  materials.disc.young_modulus = 1e18;
-  auto operation               = operating();
+  auto materials                 = mounted({{"disc_bore", 1e18, 1e18, 1e18}});
+  materials.pin.poisson_ratio    = 0.;
+  materials.disc.young_modulus   = 1e18;
+  auto operation                 = operating();
   operation.friction_coefficient = 0.;
   const Scene          s(four_pins(), materials, operation);
   const StaticResponse response(s.model, s.system, band, FactorizationLibrary::automatic);
@@ -146,8 +147,9 @@ TEST(SteadySliding, WithoutFrictionItIsThePunchOfLeastEnergy)
   check(s, state);
   EXPECT_GT(std::count(state.closed.begin(), state.closed.end(), false), 0);
 
-  const int         n    = s.interface.size();
-  const DenseMatrix F_nn = replicate(*s.contact.normal * s.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->RowMap()))));
+  const int         n = s.interface.size();
+  const DenseMatrix F_nn =
+    replicate(*s.contact.normal * s.response.solve(transpose_times(*s.contact.normal, unit_vectors(s.contact.normal->RowMap()))));
   std::vector<double> r(n, 0.), gap(n);
   for (int c = 0; c < n; ++c)
     {
@@ -237,12 +239,12 @@ TEST(SteadySliding, LoadsOfSinglePinsAndDisplacements)
     EXPECT_NEAR(pins[pin].load, load, 1e-8 * load);
 
   // Moved as far as the load moved it, a side carries that load.
-  const SlidingState loaded  = s.solve();
-  SlidingParameters  guided  = SlidingScene::steady();
-  guided.control             = BackplateControl::displacement;
-  guided.displacement        = loaded.approach[1];
+  const SlidingState loaded = s.solve();
+  SlidingParameters  guided = SlidingScene::steady();
+  guided.control            = BackplateControl::displacement;
+  guided.displacement       = loaded.approach[1];
   ASSERT_NEAR(loaded.approach[1], loaded.approach[3], 1e-12 * loaded.approach[1]); // both sides alike
-  const SlidingState moved   = s.solve(guided);
+  const SlidingState moved = s.solve(guided);
   check(s, moved);
   EXPECT_NEAR(side_load(s, moved, 1), 1000., 1e-6);
 }
@@ -262,11 +264,11 @@ TEST(SteadySliding, ScalesWithTheLoad)
   for (std::size_t c = 0; c < s.interface.size(); ++c)
     EXPECT_NEAR(twice.reactions[c], 2. * once.reactions[c], 1e-9 * 1000.);
 
-  s.operation                    = operating(RadialDissipation::consistent);
-  const auto before              = radial_dissipation(s.interface, s.solve().reactions, s.operation);
-  s.operation.load_per_side     *= 7.;
-  s.operation.rotation_speed    *= 7.;
-  const auto after               = radial_dissipation(s.interface, s.solve().reactions, s.operation);
+  s.operation       = operating(RadialDissipation::consistent);
+  const auto before = radial_dissipation(s.interface, s.solve().reactions, s.operation);
+  s.operation.load_per_side *= 7.;
+  s.operation.rotation_speed *= 7.;
+  const auto after = radial_dissipation(s.interface, s.solve().reactions, s.operation);
   for (std::size_t c = 0; c < s.interface.size(); ++c)
     EXPECT_NEAR(after[c], before[c], 1e-10 * before[c]);
 }
@@ -307,7 +309,9 @@ TEST(SteadySliding, RandomGapsAreSolvedOrRefused)
 TEST(SteadySliding, ConesAndQuadraticElements)
 {
   const auto cone = [](const double slope) {
-    return mapped(four_pins(), [slope](const Point3 &p) { return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * slope * p[1]}}; });
+    return mapped(four_pins(), [slope](const Point3 &p) {
+      return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * slope * p[1]}};
+    });
   };
   for (const unsigned int degree : {1u, 2u})
     for (const double slope : {0., 0.3})

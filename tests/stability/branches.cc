@@ -27,7 +27,7 @@ namespace
 
     ChartPoint at(const double mu) const
     {
-      const DenseMatrix K = stiffness(mu), C = damping ? damping(mu) : DenseMatrix();
+      const DenseMatrix   K = stiffness(mu), C = damping ? damping(mu) : DenseMatrix();
       DenseQuadraticModes modes = dense_quadratic_modes(identity(K.n_rows()), damping ? &C : nullptr, K, last);
       ChartPoint          point;
       point.friction_coefficient = mu;
@@ -195,7 +195,7 @@ TEST(Branches, CoalescenceInClosedForm)
   for (const double k22 : {2., 2.3, 2.7, 3.2, 4.})
     {
       Flutter flutter;
-      flutter.k22 = k22;
+      flutter.k22                 = k22;
       Family               family = flutter.family();
       const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
       ASSERT_EQ(chart.thresholds.size(), 1u);
@@ -222,7 +222,7 @@ TEST(Branches, RestabilisationInClosedForm)
     for (const double p : {2.5, 3., 4.})
       {
         Family family;
-        family.stiffness = [=](const double mu) { return matrix({{10. + gap, mu}, {mu - p, 10.}}); };
+        family.stiffness           = [=](const double mu) { return matrix({{10. + gap, mu}, {mu - p, 10.}}); };
         const double         root  = std::sqrt(p * p - gap * gap);
         const StabilityChart chart = family.chart(uniform_grid(-0.1, 4.1, 15), precise());
         ASSERT_EQ(chart.thresholds.size(), 2u);
@@ -286,7 +286,7 @@ TEST(Branches, VeeringsAreRefined)
   for (const double coupling : {1e-1, 1e-2, 1e-3, 1e-4})
     {
       Family family;
-      family.stiffness = [=](const double mu) { return matrix({{4. + mu, coupling}, {coupling, 6. - mu}}); };
+      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {coupling, 6. - mu}}); };
       const StabilityChart chart = family.chart(uniform_grid(0., 2., 5), precise());
       EXPECT_TRUE(chart.thresholds.empty());
       ASSERT_EQ(chart.branches.size(), 2u);
@@ -306,7 +306,7 @@ TEST(Branches, NarrowWindowsOfInstabilityAreFound)
   for (const double coupling : {1e-1, 1e-3, 1e-5})
     {
       Family family;
-      family.stiffness = [=](const double mu) { return matrix({{4. + mu, coupling}, {-coupling, 6. - mu}}); };
+      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {-coupling, 6. - mu}}); };
       const StabilityChart chart = family.chart(uniform_grid(0., 2., 7), precise());
       ASSERT_EQ(chart.thresholds.size(), 2u);
       EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 1. - coupling, 1e-10);
@@ -385,9 +385,7 @@ TEST(Branches, DoubleModesMayGrowAtOnce)
 {
   // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
   Family family;
-  family.stiffness = [](const double mu) {
-    return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}});
-  };
+  family.stiffness = [](const double mu) { return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}); };
   const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise());
   ASSERT_EQ(chart.thresholds.size(), 2u);
   EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
@@ -454,8 +452,8 @@ TEST(Branches, OverdampedModesReachTheRealAxis)
 {
   // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
   Family family;
-  family.stiffness = [](double) { return matrix({{1., 0.}, {0., 9.}}); };
-  family.damping   = [](const double mu) { return matrix({{2.09 - (mu - 1.) * (mu - 1.), 0.}, {0., 0.1}}); };
+  family.stiffness           = [](double) { return matrix({{1., 0.}, {0., 9.}}); };
+  family.damping             = [](const double mu) { return matrix({{2.09 - (mu - 1.) * (mu - 1.), 0.}, {0., 0.1}}); };
   const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
   ASSERT_EQ(chart.crossings.size(), 2u);
   EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.7, 1e-10);
@@ -508,7 +506,8 @@ TEST(Branches, UncertaintyCoversThePerturbation)
         };
         const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
         ASSERT_EQ(chart.thresholds.size(), 1u);
-        const double error = std::abs(chart.thresholds[0].friction_coefficient - (damped ? perturbed.threshold() : perturbed.coalescence()));
+        const double error =
+          std::abs(chart.thresholds[0].friction_coefficient - (damped ? perturbed.threshold() : perturbed.coalescence()));
         const double bound = chart.thresholds[0].uncertainty;
         EXPECT_LT(error, bound);
         EXPECT_LT(bound, 20. * error);
@@ -648,11 +647,11 @@ TEST(Branches, WindowsBetweenPointsAreFound)
 
 TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
 {
-  Flutter flutter;
-  Family  family                 = flutter.family();
-  ChartOptions options           = precise();
-  options.maximum_refinements    = 0;
-  const StabilityChart chart     = family.chart(uniform_grid(0., 2., 10), options);
+  Flutter      flutter;
+  Family       family         = flutter.family();
+  ChartOptions options        = precise();
+  options.maximum_refinements = 0;
+  const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), options);
   ASSERT_EQ(chart.thresholds.size(), 1u);
   EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.9, 1e-12);
   EXPECT_NEAR(chart.thresholds[0].uncertainty, 0.1, 1e-12);
@@ -662,9 +661,9 @@ TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
 
 TEST(Branches, CoordinatesInABasisThatGrows)
 {
-  Flutter flutter;
-  Family  family             = flutter.family();
-  const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+  Flutter              flutter;
+  Family               family = flutter.family();
+  const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
   int                  n_rows = 2;
   family.disturb              = [&n_rows](ChartPoint &point) {
     ++n_rows;

@@ -12,10 +12,10 @@ namespace
 {
   constexpr double mu = 0.6;
 
-  Scene scene(const RadialDissipation        dissipation  = RadialDissipation::none,
-              const std::vector<PolarPin>   &pins         = skewed_pins,
-              const Rotation                 rotation     = Rotation::positive,
-              const MPI_Comm                 communicator = MPI_COMM_WORLD)
+  Scene scene(const RadialDissipation      dissipation  = RadialDissipation::none,
+              const std::vector<PolarPin> &pins         = skewed_pins,
+              const Rotation               rotation     = Rotation::positive,
+              const MPI_Comm               communicator = MPI_COMM_WORLD)
   {
     return Scene(mesh_of(pins), mounted(), operating(dissipation, rotation), 1, communicator);
   }
@@ -59,8 +59,8 @@ TEST(ComplexModes, WithoutFrictionTheyAreTheRealOnes)
 
 TEST(ComplexModes, DampingAloneOnlyDampens)
 {
-  const Scene s     = scene(RadialDissipation::consistent);
-  const auto  modes = krylov(s.coupled, 0.);
+  const Scene s        = scene(RadialDissipation::consistent);
+  const auto  modes    = krylov(s.coupled, 0.);
   int         n_damped = 0;
   for (const Complex &l : modes.lambda)
     {
@@ -79,7 +79,7 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
       const Scene s = scene(losses);
       for (const ComplexModes &modes : {krylov(s.coupled, mu), iterated(s.coupled, mu, 1e-8)})
         {
-          const auto       &M = *s.coupled.mass;
+          const auto       &M    = *s.coupled.mass;
           const MultiVector M_re = M * *modes.real_part, M_im = M * *modes.imaginary_part;
           const MultiVector R = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.real_part, *modes.imaginary_part);
 
@@ -101,7 +101,8 @@ TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
                   Q_re.Update(l.real(), *C * re, -l.imag(), *C * im, 1.);
                   Q_im.Update(l.real(), *C * im, l.imag(), *C * re, 1.);
                 }
-              EXPECT_NEAR(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, modes.residuals[j], 1e-12 + 0.01 * modes.residuals[j]);
+              EXPECT_NEAR(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, modes.residuals[j],
+                          1e-12 + 0.01 * modes.residuals[j]);
               Q_re.Update(-1., view(R, j, 1), 1.);
               Q_im.Update(-1., view(R, modes.lambda.size() + j, 1), 1.);
               EXPECT_LT(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, 1e-11);
@@ -150,8 +151,8 @@ TEST(ComplexModes, ResidualIterationKeepsItsPromise)
           EXPECT_LT(largest(errors), 2. * tolerance);
           // The estimate is one of the error, not a bound far above or below it; on the small basis the next
           // Galerkin step, which it looks at, need not be the last.
-          const double factor = tolerance > 1e-6 ? 20. : 10.;
-          int n_compared = 0;
+          const double factor     = tolerance > 1e-6 ? 20. : 10.;
+          int          n_compared = 0;
           for (std::size_t j = 0; j < errors.size(); ++j)
             {
               EXPECT_LE(modes.estimated_errors[j], tolerance);
@@ -172,7 +173,7 @@ TEST(ComplexModes, ResidualIterationKeepsItsPromise)
 TEST(ComplexModes, UndampedSpectrumIsSymmetric)
 {
   // λ → -λ; with a damping matrix of zeros, so that the solver cannot know
-  Scene      s = scene();
+  Scene      s       = scene();
   const auto without = krylov(s.coupled, mu);
   auto       zero    = std::make_shared<SparseMatrix>(*s.coupled.mass);
   zero->PutScalar(0.);
@@ -226,8 +227,8 @@ TEST(ComplexModes, GrowthIsThePowerBalance)
       const auto  modes = krylov(s.coupled, mu);
       DenseMatrix r_re, r_im;
       normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part, r_re, r_im);
-      const DenseMatrix a_re = s.coupled.friction_forces->transpose_times(*modes.real_part);
-      const DenseMatrix a_im = s.coupled.friction_forces->transpose_times(*modes.imaginary_part);
+      const DenseMatrix a_re      = s.coupled.friction_forces->transpose_times(*modes.real_part);
+      const DenseMatrix a_im      = s.coupled.friction_forces->transpose_times(*modes.imaginary_part);
       int               n_checked = 0;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
         if (const Complex l = modes.lambda[j]; std::abs(l.real()) > 1e-4 * l.imag())
@@ -272,12 +273,12 @@ TEST(ComplexModes, AllProcessesFindWhatOneFinds)
 TEST(ComplexModes, RoundPinsOfAMeshFromGmsh)
 {
   // Pins that are not opposite, curved in degree 2: both solvers agree, and all modes fulfil the power balance.
-  GeometryParameters geometry   = layers(1, 1);
-  geometry.element_size         = 0.04;
-  geometry.nodes_per_pin_face   = 7;
-  geometry.top                  = {{0.2}, {-10.}};
-  geometry.bottom               = {{0.25}, {25.}};
-  const HexMesh            mesh = generate_mesh(geometry, {"disc_bore"});
+  GeometryParameters geometry = layers(1, 1);
+  geometry.element_size       = 0.04;
+  geometry.nodes_per_pin_face = 7;
+  geometry.top                = {{0.2}, {-10.}};
+  geometry.bottom             = {{0.25}, {25.}};
+  const HexMesh mesh          = generate_mesh(geometry, {"disc_bore"});
   for (const unsigned int degree : {1u, 2u})
     {
       const Scene s(mesh, mounted(), operating(RadialDissipation::consistent), degree);

@@ -73,8 +73,17 @@ namespace
     {
       const Epetra_Map map = rows(2), contact = rows(1);
       return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
-                        sparse(map, map, [](const int i) { return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}}; })},
-                       sparse(contact, map, [](int) { return Row{{0, 1.}}; }), sparse(contact, map, [](int) { return Row{{1, 1.3}}; }));
+                        sparse(map, map,
+                               [](const int i) {
+                                 return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}};
+                               })},
+                       sparse(contact, map,
+                              [](int) {
+                                return Row{{0, 1.}};
+                              }),
+                       sparse(contact, map, [](int) {
+                         return Row{{1, 1.3}};
+                       }));
     }
 
     /// The mode that grows or, below the threshold, the higher one.
@@ -137,10 +146,12 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
       const SecondOrderSystem matrices = with_friction(s.coupled, mu);
       const auto              dense    = dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), omega_max);
       std::vector<Complex>    inside;
-      std::copy_if(dense.values.begin(), dense.values.end(), std::back_inserter(inside), [&](const Complex &l) { return std::abs(l) <= radius; });
+      std::copy_if(dense.values.begin(), dense.values.end(), std::back_inserter(inside),
+                   [&](const Complex &l) { return std::abs(l) <= radius; });
       EXPECT_LT(largest(distances(found.lambda, inside)), 1e-7);
       std::vector<double> real;
-      std::copy_if(dense.real_values.begin(), dense.real_values.end(), std::back_inserter(real), [&](const double l) { return std::abs(l) <= radius; });
+      std::copy_if(dense.real_values.begin(), dense.real_values.end(), std::back_inserter(real),
+                   [&](const double l) { return std::abs(l) <= radius; });
       ASSERT_EQ(found.real_values.size(), real.size());
       ASSERT_EQ(other.real_values.size(), real.size());
       for (std::size_t j = 0; j < real.size(); ++j)
@@ -195,7 +206,7 @@ TEST(ContourCount, OneLessWhereTheBandEndsBelowAMode)
       const Scene s     = scene(dissipation);
       const auto  modes = krylov(s.coupled, 0.4);
       // The highest mode that does not coalesce with another one
-      std::size_t j = modes.lambda.size() - 2;
+      std::size_t j   = modes.lambda.size() - 2;
       const auto  gap = [&](const std::size_t i) { return (modes.lambda[i + 1].imag() - modes.lambda[i].imag()) / modes.lambda[i].imag(); };
       while (j > 0 && std::min(gap(j), gap(j - 1)) < 1e-3)
         --j;
@@ -302,10 +313,10 @@ TEST(ContourCount, ADiscThatMovesFreely)
 
 TEST(ContourCount, RefusesAContourOnAMode)
 {
-  const Scene  s       = scene(RadialDissipation::none);
-  const auto   modes   = krylov(s.coupled, 0.4);
-  const auto   real    = real_modes(s.coupled);
-  const double omega   = modes.lambda[5].imag(), omega_real = std::sqrt(real.eigenvalues[5]);
+  const Scene  s     = scene(RadialDissipation::none);
+  const auto   modes = krylov(s.coupled, 0.4);
+  const auto   real  = real_modes(s.coupled);
+  const double omega = modes.lambda[5].imag(), omega_real = std::sqrt(real.eigenvalues[5]);
   for (const ContourMethod method : methods(s.coupled))
     {
       const std::string message = refusal(s.coupled, 0.4, contour(omega * (1. + 1e-13), 0., method));

@@ -146,13 +146,13 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
   };
   const HexMesh mesh      = mesh_of(skewed_pins);
   int           n_growing = 0;
-  for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}},
-                                                  Case{with_clamped_rim(mesh), 0., 5e-6, {}},
+  for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}}, Case{with_clamped_rim(mesh), 0., 5e-6, {}},
                                                   Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
     {
       const Scene s(mesh, proportional(alpha, beta, mounts), operating());
-      const auto  real     = real_modes(s.coupled);
-      const auto  expected = damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
+      const auto  real = real_modes(s.coupled);
+      const auto  expected =
+        damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
       ASSERT_GT(expected.size(), 3u);
       EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
@@ -220,8 +220,8 @@ TEST(RayleighDamping, TwoBodiesFromTheEquations)
   bool            stable = false, unstable = false;
   for (const double friction : {0., 0.3, 0.9, 1.5})
     {
-      const auto expected = two.lambda(friction);
-      const bool grows    = std::any_of(expected.begin(), expected.end(), [](const Complex &l) { return l.real() > 0.01; });
+      const auto expected         = two.lambda(friction);
+      const bool grows            = std::any_of(expected.begin(), expected.end(), [](const Complex &l) { return l.real() > 0.01; });
       (grows ? unstable : stable) = true;
       for (const auto &values : solutions(coupled, friction))
         EXPECT_LT(largest(distances(values, expected)), 1e-12) << "mu " << friction;
@@ -230,7 +230,8 @@ TEST(RayleighDamping, TwoBodiesFromTheEquations)
 
   // The reaction to the damping matters.
   auto &terms = coupled.terms;
-  terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.name == "friction, damping of the bodies"; }), terms.end());
+  terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.name == "friction, damping of the bodies"; }),
+              terms.end());
   EXPECT_GT(largest(distances(solutions(coupled, 0.9).front(), two.lambda(0.9))), 1e-3);
 }
 
@@ -241,9 +242,10 @@ TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
   const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent));
   const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
   const MultiVector          X = random_vectors(s.coupled.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
-  const MultiVector          L = force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, true);
+  const MultiVector          L        = force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, true);
   const auto                 matrices = with_friction(s.coupled, mu);
-  const MultiVector          K = transpose_times(*matrices.stiffness, X), C = transpose_times(*matrices.damping, X), M = transpose_times(*matrices.mass, X);
+  const MultiVector          K = transpose_times(*matrices.stiffness, X), C = transpose_times(*matrices.damping, X),
+                    M = transpose_times(*matrices.mass, X);
   for (int j = 0; j < 2; ++j)
     for (const double part : {0., 1.})
       {
@@ -351,8 +353,8 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
     {
       const Scene               s(mesh_of(skewed_pins), others ? damped(mounted()) : mounted(), operating());
       const std::vector<double> c_b(s.interface.size(), others ? 50. : 0.), c_t(s.interface.size(), others ? -20. : 0.);
-      const CoupledSystem       bare   = couple(s.system, s.contact, {c_b, c_t});
-      const auto                system = with_modal_damping(bare, real_modes(bare));
+      const CoupledSystem       bare      = couple(s.system, s.contact, {c_b, c_t});
+      const auto                system    = with_modal_damping(bare, real_modes(bare));
       const auto                reference = krylov(system, mu);
       for (const double tolerance : {1e-4, 1e-8})
         EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
@@ -404,7 +406,8 @@ TEST(ModalDamping, OfADiscThatMovesFreely)
   options.tolerance         = 1e-10;
   const auto modes          = residual_iteration(system, inverse, *real.vectors, 0., options, progress);
   EXPECT_EQ(modes.n_rigid_body, 3);
-  EXPECT_LT(largest(distances(modes.lambda, damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; }))), 1e-9);
+  EXPECT_LT(largest(distances(modes.lambda, damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; }))),
+            1e-9);
 
   try
     {

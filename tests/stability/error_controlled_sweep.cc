@@ -95,7 +95,10 @@ namespace
     int                                          n_left = 1000000;
   };
 
-  ErrorControlledSweep sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const ErrorControlledSweepOptions &options, ChartStore *store = nullptr)
+  ErrorControlledSweep sweep(ChartModel                        &model,
+                             const std::vector<OperatingPoint> &points,
+                             const ErrorControlledSweepOptions &options,
+                             ChartStore                        *store = nullptr)
   {
     Progress progress;
     return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
@@ -136,16 +139,16 @@ TEST(ErrorControlledSweep, AgreesWithFullOrder)
 
 TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
 {
-  const Chart           chart(40.);
-  const auto            points = chart.points();
+  const Chart                 chart(40.);
+  const auto                  points = chart.points();
   ErrorControlledSweepOptions options;
-  MemoryStore           whole;
-  ChartModel            model  = chart.model();
-  const auto            result = sweep(model, points, options, &whole);
+  MemoryStore                 whole;
+  ChartModel                  model  = chart.model();
+  const auto                  result = sweep(model, points, options, &whole);
   for (const int n_before : {0, 1, 4, 8})
     {
       MemoryStore store;
-      store.n_left = n_before;
+      store.n_left      = n_before;
       ChartModel killed = chart.model();
       EXPECT_THROW(sweep(killed, points, options, &store), MemoryStore::Killed);
       EXPECT_EQ(store.results.size(), static_cast<std::size_t>(n_before));
@@ -172,8 +175,8 @@ TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
 
 TEST(ErrorControlledSweep, StopsAtWhatItProved)
 {
-  const Chart           chart(0.);
-  const auto            points = chart.points();
+  const Chart                 chart(0.);
+  const auto                  points = chart.points();
   ErrorControlledSweepOptions options;
   options.tolerance     = 1e-9;
   options.maximum_basis = static_cast<int>(2 * chart.real.eigenvalues.size());

@@ -47,13 +47,22 @@ namespace
     CoupledSystem system(std::shared_ptr<const SparseMatrix> C = nullptr) const
     {
       const Epetra_Map map = rows(2), contact = rows(1);
-      const auto       M   = Testing::diagonal(map, [](int) { return 1.; });
-      const auto       K   = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
+      const auto       M = Testing::diagonal(map, [](int) { return 1.; });
+      const auto       K = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
       if (!C && (damping != 0. || beta != 0.))
         C = add(damping, *M, beta, *K);
-      return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{{0, 1.}}; }),
-                       sparse(contact, map, [this](int) { return Row{{1, k_c}}; }),
-                       sparse(contact, map, [this](int) { return Row{{1, beta * k_c}}; }));
+      return system_of({M, C, K},
+                       sparse(contact, map,
+                              [](int) {
+                                return Row{{0, 1.}};
+                              }),
+                       sparse(contact, map,
+                              [this](int) {
+                                return Row{{1, k_c}};
+                              }),
+                       sparse(contact, map, [this](int) {
+                         return Row{{1, beta * k_c}};
+                       }));
     }
   };
 

@@ -60,8 +60,7 @@ namespace
   MultiVector exact_basis(const Reference &r)
   {
     const MultiVector noise = random_vectors(r.s.coupled.map(), 5);
-    return orthonormalize(*r.s.coupled.mass, nullptr, join({r.complex.real_part.get(), r.complex.imaginary_part.get(), &noise}),
-                          1e-10);
+    return orthonormalize(*r.s.coupled.mass, nullptr, join({r.complex.real_part.get(), r.complex.imaginary_part.get(), &noise}), 1e-10);
   }
 
   /**
@@ -69,16 +68,28 @@ namespace
    * and a stiff third one by which each of the others is known too stiff: eliminated
    * statically, it takes c²/k33 from the diagonal.
    */
-  CoupledSystem
-  flutter(const double k11, const double k22, const double k12, const double k_c, const double c, const double k33, const double damping)
+  CoupledSystem flutter(const double k11,
+                        const double k22,
+                        const double k12,
+                        const double k_c,
+                        const double c,
+                        const double k33,
+                        const double damping)
   {
     const Epetra_Map map = rows(3), contact = rows(1);
     const auto       M = Testing::diagonal(map, [](const int i) { return i == 2 ? 1e-6 : 1.; });
     const auto       K = sparse(map, map, [=](const int i) {
       return i == 0 ? Row{{0, k11 + c * c / k33}, {1, k12}, {2, c}} : i == 1 ? Row{{0, k12}, {1, k22}} : Row{{0, c}, {2, k33}};
     });
-    const auto C = damping != 0. ? Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; }) : nullptr;
-    return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{{0, 1.}}; }), sparse(contact, map, [k_c](int) { return Row{{1, k_c}}; }));
+    const auto       C = damping != 0. ? Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; }) : nullptr;
+    return system_of({M, C, K},
+                     sparse(contact, map,
+                            [](int) {
+                              return Row{{0, 1.}};
+                            }),
+                     sparse(contact, map, [k_c](int) {
+                       return Row{{1, k_c}};
+                     }));
   }
 
   /// The basis without the third degree of freedom.
@@ -133,10 +144,10 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
       EXPECT_EQ(found.lambda.front(), error.reduced);
       EXPECT_NEAR(found.energy_residuals.front(), error.residual, 1e-6 * error.residual + 1e-14);
 
-      const int         j = &error - errors.data();
-      const auto       &M = *r.s.coupled.mass;
-      const MultiVector X   = join({&*found.real_part, &*found.imaginary_part});
-      const MultiVector re  = view(*r.complex.real_part, j, 1), im = view(*r.complex.imaginary_part, j, 1), Y = join({&re, &im});
+      const int         j  = &error - errors.data();
+      const auto       &M  = *r.s.coupled.mass;
+      const MultiVector X  = join({&*found.real_part, &*found.imaginary_part});
+      const MultiVector re = view(*r.complex.real_part, j, 1), im = view(*r.complex.imaginary_part, j, 1), Y = join({&re, &im});
       const DenseMatrix G   = gram(Y, M * X);
       const double      mac = std::norm(Complex(G(0, 0) + G(1, 1), G(0, 1) - G(1, 0)));
       EXPECT_NEAR(error.shape, 1. - mac, 1e-10);
@@ -145,8 +156,8 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
           EXPECT_NEAR(error.subspace, error.shape, 1e-10);
         }
       EXPECT_NEAR(error.frequency, std::abs(error.reduced.imag() - error.reference.imag()) / error.reference.imag(), 1e-15);
-      EXPECT_NEAR(error.divergence,
-                  std::abs(error.reduced.real() / error.reduced.imag() - error.reference.real() / error.reference.imag()), 1e-15);
+      EXPECT_NEAR(error.divergence, std::abs(error.reduced.real() / error.reduced.imag() - error.reference.real() / error.reference.imag()),
+                  1e-15);
     }
 }
 
@@ -199,16 +210,16 @@ TEST(ReductionErrors, OfFrictionlessModes)
 TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
 {
   // The same mode twice, a third nearby, one apart: turned vectors have no counterpart of their own, their span has.
-  const Epetra_Map map = rows(6), contact = rows(1);
+  const Epetra_Map          map = rows(6), contact = rows(1);
   const std::vector<double> k       = {1., 1., 1.0005, 4., 9., 16.};
   const auto                nothing = sparse(contact, map, [](int) { return Row{}; });
-  const CoupledSystem       system =
-    system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr, Testing::diagonal(map, [k](const int i) { return k[i]; })}, nothing, nothing);
+  const CoupledSystem       system  = system_of(
+           {Testing::diagonal(map, [](int) { return 1.; }), nullptr, Testing::diagonal(map, [k](const int i) { return k[i]; })}, nothing, nothing);
   const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
 
   SymmetricModes turned;
-  turned.eigenvalues = {k[0], k[1], k[2], k[3]};
-  turned.residuals   = {0., 0., 0., 0.};
+  turned.eigenvalues  = {k[0], k[1], k[2], k[3]};
+  turned.residuals    = {0., 0., 0., 0.};
   const MultiVector I = unit_vectors(map);
   turned.vectors      = std::make_shared<MultiVector>(map, 4);
   (*turned.vectors)(0)->Update(0.6, *I(0), 0.8, *I(1), 0.);
@@ -286,8 +297,8 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
         ReducedModel         model(system), full(system);
         model.extend(first_two(system));
         full.extend(unit_vectors(system.map()));
-        const double friction  = factor * threshold;
-        const auto   modes     = reduced_modes(model, friction, 10.), exact = reduced_modes(full, friction, 10.);
+        const double friction = factor * threshold;
+        const auto   modes = reduced_modes(model, friction, 10.), exact = reduced_modes(full, friction, 10.);
         const auto   estimates = estimate_eigenvalues(system, inverse, model, modes);
         ASSERT_EQ(modes.lambda.size(), 2u);
         ASSERT_EQ(exact.lambda.size(), 2u);
@@ -301,7 +312,9 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
             EXPECT_LT(std::abs(estimates.corrections[j] - error), 0.05 * std::abs(error)) << "factor " << factor << ", mode " << j;
             EXPECT_EQ(estimates.errors[j], std::abs(estimates.corrections[j]) / std::abs(modes.lambda[j]));
             EXPECT_GE(estimates.conditions[j], 1. - 1e-10);
-            const Verdict expected = damping == 0. && factor < 1. ? Verdict::stable : nearest.real() > 0. ? Verdict::unstable : Verdict::stable;
+            const Verdict expected = damping == 0. && factor < 1. ? Verdict::stable :
+                                     nearest.real() > 0.          ? Verdict::unstable :
+                                                                    Verdict::stable;
             EXPECT_EQ(estimates.verdicts[j], expected) << "factor " << factor << ", mode " << j;
           }
       }
@@ -385,7 +398,8 @@ TEST(GrownBasis, IsAccurateAtAllItsFrictionCoefficients)
   EXPECT_LT(orthonormality_defect(*r.s.coupled.mass, grown.model.basis()), 1e-12);
   EXPECT_LE(grown.worst_error, options.tolerance);
   for (const double friction : coefficients)
-    EXPECT_LT(Testing::largest(distances(reduced_modes(grown.model, friction, omega_max).lambda, krylov(r.s.coupled, friction).lambda)), 3e-6);
+    EXPECT_LT(Testing::largest(distances(reduced_modes(grown.model, friction, omega_max).lambda, krylov(r.s.coupled, friction).lambda)),
+              3e-6);
 
   // As a basis like the others
   BasisIngredients in;
@@ -408,11 +422,11 @@ TEST(GrownBasis, LeftModesAreThoseOfTheTransposedProblem)
       const auto  modes = iterated(s.coupled, mu, 1e-10);
       const auto &M     = *s.coupled.mass;
       ASSERT_NE(modes.left_real_part, nullptr);
-      const MultiVector L  = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.left_real_part, *modes.left_imaginary_part, true),
-                        KX = *s.coupled.stiffness * *modes.left_real_part,
-                        KY = *s.coupled.stiffness * *modes.left_imaginary_part;
-      const auto residual = column_norms(L), re = column_norms(KX), im = column_norms(KY);
-      const int  k = modes.lambda.size();
+      const MultiVector L  = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.left_real_part, *modes.left_imaginary_part,
+                                             true),
+                        KX = *s.coupled.stiffness * *modes.left_real_part, KY = *s.coupled.stiffness * *modes.left_imaginary_part;
+      const auto        residual = column_norms(L), re = column_norms(KX), im = column_norms(KY);
+      const int         k    = modes.lambda.size();
       const DenseMatrix m_re = gram(*modes.left_real_part, M * *modes.left_real_part),
                         m_im = gram(*modes.left_imaginary_part, M * *modes.left_imaginary_part);
       for (int j = 0; j < k; ++j)
@@ -438,8 +452,8 @@ TEST(PrincipalAxesOfModes, ServeBetweenTheirFrictionCoefficients)
       parts.push_back(part.get());
   const MultiVector snapshots = join(parts);
   BasisIngredients  in;
-  in.coupled   = &r.s.coupled;
-  in.snapshots = &snapshots;
+  in.coupled       = &r.s.coupled;
+  in.snapshots     = &snapshots;
   const auto basis = reduced_basis(BasisKind::pod, in);
   EXPECT_LT(basis.size(), snapshots.NumVectors());
   EXPECT_EQ(basis.size() + basis.n_dropped, snapshots.NumVectors());

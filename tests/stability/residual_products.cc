@@ -16,7 +16,11 @@ namespace
     double coupling = 0., energy = 0., largest_energy = 0.;
   };
 
-  Deviation deviation(const CoupledSystem &system, const double shift, const double friction, const ContactDamping &damping, const MultiVector &real)
+  Deviation deviation(const CoupledSystem  &system,
+                      const double          shift,
+                      const double          friction,
+                      const ContactDamping &damping,
+                      const MultiVector    &real)
   {
     const UpdatedInverse inverse(shift > 0. ? undamped(system) : system, shift, FactorizationLibrary::automatic);
     ProjectedResiduals   projected(system, inverse, shift, damping.values());
@@ -28,8 +32,8 @@ namespace
     projected.extend(model);
     const ParameterValues values  = system.at(friction, damping.values());
     const auto            vectors = [&](const ReducedModes &modes) { return residual_vectors(system, inverse, model, modes); };
-    ReducedModes modes = local_reduced_modes(model, values, omega_max);
-    std::vector<int> all(modes.lambda.size());
+    ReducedModes          modes   = local_reduced_modes(model, values, omega_max);
+    std::vector<int>      all(modes.lambda.size());
     std::iota(all.begin(), all.end(), 0);
     model.extend(*new_vectors(system, model, residual_directions(vectors(modes), modes, all)));
     projected.extend(model);
@@ -39,9 +43,9 @@ namespace
     const auto products = projected.products(values, modes.lambda, modes.right, modes.left);
     const int  k        = static_cast<int>(modes.lambda.size());
     EXPECT_GT(k, 3);
-    const DenseMatrix  K      = model.stiffness();
-    const auto         energy = [&](const ComplexDenseMatrix &X, const int j) {
-      const ComplexDenseMatrix KX = multiply(K, X);
+    const DenseMatrix K      = model.stiffness();
+    const auto        energy = [&](const ComplexDenseMatrix &X, const int j) {
+      const ComplexDenseMatrix KX  = multiply(K, X);
       Complex                  sum = 0.;
       for (int i = 0; i < KX.n_rows(); ++i)
         sum += std::conj(X(i, j)) * KX(i, j);
@@ -51,12 +55,12 @@ namespace
     for (int j = 0; j < k; ++j)
       {
         const double right = energy(modes.right, j), left = energy(modes.left, j);
-        result.energy = std::max(result.energy, std::abs(products.right_energies[j] - direct.right_energies[j]) / right);
-        result.energy = std::max(result.energy, std::abs(products.left_energies[j] - direct.left_energies[j]) / left);
+        result.energy         = std::max(result.energy, std::abs(products.right_energies[j] - direct.right_energies[j]) / right);
+        result.energy         = std::max(result.energy, std::abs(products.left_energies[j] - direct.left_energies[j]) / left);
         result.largest_energy = std::max({result.largest_energy, direct.right_energies[j] / right, direct.left_energies[j] / left});
         for (int i = 0; i < k; ++i)
-          result.coupling = std::max(result.coupling, std::abs(products.coupling(i, j) - direct.coupling(i, j)) /
-                                                        std::sqrt(energy(modes.left, i) * right));
+          result.coupling =
+            std::max(result.coupling, std::abs(products.coupling(i, j) - direct.coupling(i, j)) / std::sqrt(energy(modes.left, i) * right));
       }
     return result;
   }
@@ -106,7 +110,7 @@ TEST(ProjectedResiduals, AreThoseOfFullOrder)
 
 TEST(ProjectedResiduals, KnowEveryDamping)
 {
-  MaterialParameters materials = mounted();
+  MaterialParameters materials  = mounted();
   materials.disc.rayleigh_alpha = 3.;
   materials.disc.rayleigh_beta  = 1e-7;
   materials.pin.rayleigh_beta   = 1e-6;
@@ -124,7 +128,7 @@ TEST(ProjectedResiduals, KnowEveryDamping)
 
 TEST(ProjectedResiduals, OfAFreeDiscUseTheShiftedStiffness)
 {
-  const Scene s(mesh_of(skewed_pins), mounted({}), operating());
+  const Scene  s(mesh_of(skewed_pins), mounted({}), operating());
   const double shift = stabilizing_shift(s.model, s.coupled, omega_max);
   ASSERT_GT(shift, 0.);
   SymmetricModesOptions options;

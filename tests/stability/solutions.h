@@ -31,7 +31,9 @@ namespace Squeal::Testing
                                                        {Plan::Side::top, 4, 2, 0, 1},
                                                        {Plan::Side::top, -6, 2, 0, 1},
                                                        {Plan::Side::bottom, -1, 2, 1, 1}};
-  inline const std::vector<PolarPin> skewed_pins    = {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::top, 3, 2, 0, 1}, {Plan::Side::bottom, 0, 2, 1, 1}};
+  inline const std::vector<PolarPin> skewed_pins    = {{Plan::Side::top, -1, 2, 1, 1},
+                                                       {Plan::Side::top, 3, 2, 0, 1},
+                                                       {Plan::Side::bottom, 0, 2, 1, 1}};
 
   inline HexMesh mesh_of(const std::vector<PolarPin> &pins)
   {
@@ -129,9 +131,8 @@ namespace Squeal::Testing
       return result;
     for (const Complex &value : values)
       {
-        const auto nearest = std::min_element(others.begin(), others.end(), [&](const Complex &a, const Complex &b) {
-          return std::abs(a - value) < std::abs(b - value);
-        });
+        const auto nearest = std::min_element(
+          others.begin(), others.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - value) < std::abs(b - value); });
         result.push_back(std::abs(*nearest - value) / std::abs(value));
         others.erase(nearest);
       }

@@ -39,54 +39,53 @@ namespace
   /// A value other than the default for every parameter that some run does not use.
   const std::map<std::string, std::string> &other_values()
   {
-    static const std::map<std::string, std::string> values = {
-      {"Disc material/Rayleigh alpha", "1"},
-      {"Disc material/Rayleigh beta", "1e-9"},
-      {"Pin material/Rayleigh alpha", "1"},
-      {"Pin material/Rayleigh beta", "1e-9"},
-      {"Damping/Modal damping ratio", "100: 0.01"},
-      {"Operation/Friction coefficient", "0.3"},
-      {"Operation/Rotation", "negative"},
-      {"Operation/Rotation speed", "5"},
-      {"Operation/Gyroscopic forces", "true"},
-      {"Operation/Load per side", "500"},
-      {"Operation/Radial dissipation", "consistent"},
-      {"Operation/Friction slope", "-0.01"},
-      {"Steady sliding/Contact state", "steady sliding"},
-      {"Steady sliding/Control", "load per pin"},
-      {"Steady sliding/Displacement", "1e-5"},
-      {"Steady sliding/Loads", "pin_top_1: 100"},
-      {"Steady sliding/Gaps", "pin_top_1: 1e-6"},
-      {"Reduction/Problem", "frictionless"},
-      {"Reduction/Bases", "free"},
-      {"Reduction/Component modes", "6000"},
-      {"Reduction/Coupled frequency", "6000"},
-      {"Reduction/Rank tolerance", "1e-9"},
-      {"Reduction/Grown tolerances", "1e-5"},
-      {"Reduction/Snapshots", "0.1"},
-      {"Reduction/POD tolerance", "1e-5"},
-      {"Sweep/First friction coefficient", "0.1"},
-      {"Sweep/Last friction coefficient", "0.3"},
-      {"Sweep/Number of friction coefficients", "10"},
-      {"Sweep/Tolerance", "1e-5"},
-      {"Sweep/Maximum basis", "1000"},
-      {"Sweep/Threshold tolerance", "1e-5"},
-      {"Sweep/Compare dissipation", "false"},
-      {"Sweep/Mode shapes at", "0.2"},
-      {"Sweep/Count modes at", "0.2"},
-      {"Sweep/Map parameter", "load"},
-      {"Sweep/First map value", "200"},
-      {"Sweep/Last map value", "2000"},
-      {"Sweep/Number of map values", "3"},
-      {"Sweep/Map friction coefficients", "3"},
-      {"Complex modes/Solver", "residual iteration"},
-      {"Complex modes/Shift inverse", "sparse LU"},
-      {"Complex modes/Tolerance", "1e-8"},
-      {"Complex modes/Iteration tolerance", "1e-6"},
-      {"Complex modes/Maximum basis", "1000"},
-      {"Output/Mode shapes", "unstable"},
-      {"Output/Animation frames", "3"},
-      {"Output/Write matrices", "true"}};
+    static const std::map<std::string, std::string> values = {{"Disc material/Rayleigh alpha", "1"},
+                                                              {"Disc material/Rayleigh beta", "1e-9"},
+                                                              {"Pin material/Rayleigh alpha", "1"},
+                                                              {"Pin material/Rayleigh beta", "1e-9"},
+                                                              {"Damping/Modal damping ratio", "100: 0.01"},
+                                                              {"Operation/Friction coefficient", "0.3"},
+                                                              {"Operation/Rotation", "negative"},
+                                                              {"Operation/Rotation speed", "5"},
+                                                              {"Operation/Gyroscopic forces", "true"},
+                                                              {"Operation/Load per side", "500"},
+                                                              {"Operation/Radial dissipation", "consistent"},
+                                                              {"Operation/Friction slope", "-0.01"},
+                                                              {"Steady sliding/Contact state", "steady sliding"},
+                                                              {"Steady sliding/Control", "load per pin"},
+                                                              {"Steady sliding/Displacement", "1e-5"},
+                                                              {"Steady sliding/Loads", "pin_top_1: 100"},
+                                                              {"Steady sliding/Gaps", "pin_top_1: 1e-6"},
+                                                              {"Reduction/Problem", "frictionless"},
+                                                              {"Reduction/Bases", "free"},
+                                                              {"Reduction/Component modes", "6000"},
+                                                              {"Reduction/Coupled frequency", "6000"},
+                                                              {"Reduction/Rank tolerance", "1e-9"},
+                                                              {"Reduction/Grown tolerances", "1e-5"},
+                                                              {"Reduction/Snapshots", "0.1"},
+                                                              {"Reduction/POD tolerance", "1e-5"},
+                                                              {"Sweep/First friction coefficient", "0.1"},
+                                                              {"Sweep/Last friction coefficient", "0.3"},
+                                                              {"Sweep/Number of friction coefficients", "10"},
+                                                              {"Sweep/Tolerance", "1e-5"},
+                                                              {"Sweep/Maximum basis", "1000"},
+                                                              {"Sweep/Threshold tolerance", "1e-5"},
+                                                              {"Sweep/Compare dissipation", "false"},
+                                                              {"Sweep/Mode shapes at", "0.2"},
+                                                              {"Sweep/Count modes at", "0.2"},
+                                                              {"Sweep/Map parameter", "load"},
+                                                              {"Sweep/First map value", "200"},
+                                                              {"Sweep/Last map value", "2000"},
+                                                              {"Sweep/Number of map values", "3"},
+                                                              {"Sweep/Map friction coefficients", "3"},
+                                                              {"Complex modes/Solver", "residual iteration"},
+                                                              {"Complex modes/Shift inverse", "sparse LU"},
+                                                              {"Complex modes/Tolerance", "1e-8"},
+                                                              {"Complex modes/Iteration tolerance", "1e-6"},
+                                                              {"Complex modes/Maximum basis", "1000"},
+                                                              {"Output/Mode shapes", "unstable"},
+                                                              {"Output/Animation frames", "3"},
+                                                              {"Output/Write matrices", "true"}};
     return values;
   }
 
@@ -121,7 +120,8 @@ namespace
     return paths;
   }
 
-  const std::vector<std::string> sweep_map = {"Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction"};
+  const std::vector<std::string> sweep_map = {"Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values",
+                                              "Sweep/Map friction"};
 
   std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string> &b)
   {
@@ -135,16 +135,16 @@ namespace
 TEST(ParameterUsage, EveryParameterIsAccountedFor)
 {
   // Of these sections every run uses everything; of the others every parameter must be in the table of the tests below.
-  const std::set<std::string> always = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra"};
+  const std::set<std::string> always       = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra"};
   const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density"};
-  Parameters               parameters;
-  dealii::ParameterHandler prm;
+  Parameters                  parameters;
+  dealii::ParameterHandler    prm;
   parameters.add_parameters(prm);
   std::set<std::string> declared;
   for (const CataloguedParameter &parameter : catalogue(prm))
     {
       declared.insert(parameter.path);
-      const auto parts = parameter.path_parts();
+      const auto parts          = parameter.path_parts();
       const bool is_always_used = parameter.path == "Study" || always.count(parts.front()) > 0 || of_materials.count(parts.back()) > 0;
       EXPECT_TRUE(is_always_used || other_values().count(parameter.path) > 0) << parameter.path << " has no rule of when it is used";
     }
@@ -182,11 +182,13 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
 TEST(ParameterUsage, OfStability)
 {
   const std::vector<std::string> others = {"Reduction/", "Sweep/", "Complex modes/Iteration", "Complex modes/Maximum"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Operation/Radial dissipation=consistent"}), those_of(joined(others, steady)));
   EXPECT_EQ(unused_alone({"Steady sliding/Contact state=steady sliding"}), those_of(others));
-  EXPECT_EQ(unused_alone({"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
+  EXPECT_EQ(unused_alone(
+              {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
             those_of(joined({"Reduction/", "Sweep/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}, steady)));
@@ -204,8 +206,13 @@ TEST(ParameterUsage, OfDissipation)
 
 TEST(ParameterUsage, OfReduction)
 {
-  const std::vector<std::string> always = {"Sweep/", "Output/", "Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps", "Complex modes/Iteration"};
+  const std::vector<std::string> always = {"Sweep/",
+                                           "Output/",
+                                           "Steady sliding/Control",
+                                           "Steady sliding/Displacement",
+                                           "Steady sliding/Loads",
+                                           "Steady sliding/Gaps",
+                                           "Complex modes/Iteration"};
   EXPECT_EQ(unused_alone({"Study=reduction"}), those_of(joined(always, {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Bases=real, free", "Operation/Radial dissipation=consistent"}),
             those_of(joined(always, {"Complex modes/Maximum", "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
@@ -221,11 +228,13 @@ TEST(ParameterUsage, OfReduction)
 TEST(ParameterUsage, OfSweeps)
 {
   const std::vector<std::string> always = {"Reduction/", "Complex modes/", "Operation/Friction coefficient", "Output/Write"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
-  EXPECT_EQ(unused_alone({"Study=sweep"}), those_of(joined(joined(joined(always, sweep_map), steady),
-                                                           {"Operation/Load", "Operation/Rotation speed", "Output/"})));
-  EXPECT_EQ(unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
-            those_of(joined(always, steady)));
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
+  EXPECT_EQ(unused_alone({"Study=sweep"}),
+            those_of(joined(joined(joined(always, sweep_map), steady), {"Operation/Load", "Operation/Rotation speed", "Output/"})));
+  EXPECT_EQ(
+    unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
+    those_of(joined(always, steady)));
 }
 
 
@@ -246,8 +255,9 @@ TEST(ParameterUsage, OfGeometries)
             std::set<std::string>{"Geometry/Pin diameter"});
   EXPECT_EQ(with(file("solid.geo", "r = pin_diameter;\nPhysical  Volume(\"disc\") = {1};\n")),
             (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius"}));
-  EXPECT_EQ(with(file("solid.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n")),
-            (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius", "Geometry/Pin diameter"}));
+  EXPECT_EQ(
+    with(file("solid.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n")),
+    (std::set<std::string>{"Geometry/Disc thickness", "Geometry/Disc outer radius", "Geometry/Pin diameter"}));
   EXPECT_EQ(with(file("plan.msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n2 1 \"disc\"\n$EndPhysicalNames\n")),
             (std::set<std::string>{"Geometry/Disc outer radius", "Geometry/Pin diameter"}));
   fs::remove_all(folder);

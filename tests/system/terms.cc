@@ -16,17 +16,18 @@ namespace
   struct Terms
   {
     Epetra_Map                           map = rows(4), short_map = rows(2);
-    std::shared_ptr<const SparseMatrix>  S   = sparse(map, map, [](const int i) { return Row{{i, 1. + i}, {3 - i, 0.5}}; });
-    std::shared_ptr<const SparseMatrix>  G   = sparse(map, map, [](const int i) { return i < 2 ? Row{{i + 2, 1.5 - i}} : Row{{i - 2, i - 3.5}}; });
-    std::shared_ptr<const SparseMatrix>  L   = sparse(short_map, map, [](const int i) { return Row{{i, 2.}, {3, -1.}}; });
-    std::shared_ptr<const SparseMatrix>  R   = sparse(short_map, map, [](const int i) { return Row{{2 - i, 1.}, {3, 0.3}}; });
+    std::shared_ptr<const SparseMatrix>  S    = sparse(map, map, [](const int i) { return Row{{i, 1. + i}, {3 - i, 0.5}}; });
+    std::shared_ptr<const SparseMatrix>  G    = sparse(map, map, [](const int i) {
+      return i < 2 ? Row{{i + 2, 1.5 - i}} : Row{{i - 2, i - 3.5}};
+    });
+    std::shared_ptr<const SparseMatrix>  L    = sparse(short_map, map, [](const int i) { return Row{{i, 2.}, {3, -1.}}; });
+    std::shared_ptr<const SparseMatrix>  R    = sparse(short_map, map, [](const int i) { return Row{{2 - i, 1.}, {3, 0.3}}; });
     std::shared_ptr<const LowRankFactor> left = std::make_shared<LowRankFactor>(L), right = std::make_shared<LowRankFactor>(R);
     ParameterValues                      values = {{"a", {0.7}}, {"b", {1.3}}, {"d", {4., -2.}}};
-    std::vector<Term>                    terms = {sparse_term("symmetric", 1, {2., {{"a", 1}, {"b", 2}}}, S),
-                                                  sparse_term("skew", 1, {-3., {{"a", 1}}}, G, Symmetry::skew),
-                                                  low_rank_term("of low rank", 1, {}, left, right),
-                                                  low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
-                                                  sparse_term("of another power", 2, {}, S)};
+    std::vector<Term>                    terms  = {sparse_term("symmetric", 1, {2., {{"a", 1}, {"b", 2}}}, S),
+                                                   sparse_term("skew", 1, {-3., {{"a", 1}}}, G, Symmetry::skew),
+                                                   low_rank_term("of low rank", 1, {}, left, right), low_rank_term("weighted", 1, {0.5, {}}, left, right, "d"),
+                                                   sparse_term("of another power", 2, {}, S)};
 
     /// The sum of those with λ.
     DenseMatrix expected() const
@@ -100,7 +101,9 @@ TEST(Terms, MergedTermsHaveTheSameSum)
   const std::vector<Term> few    = merged(sparse, t.values);
   ASSERT_EQ(few.size(), 3u); // symmetric and skew with λ, symmetric with λ²
   for (const int power : {1, 2})
-    EXPECT_LT(deviation(replicate(times(few, {}, power, unit_vectors(t.map))), replicate(times(sparse, t.values, power, unit_vectors(t.map)))), 1e-15);
+    EXPECT_LT(
+      deviation(replicate(times(few, {}, power, unit_vectors(t.map))), replicate(times(sparse, t.values, power, unit_vectors(t.map)))),
+      1e-15);
 }
 
 

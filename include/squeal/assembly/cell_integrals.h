@@ -19,6 +19,5 @@ namespace Squeal
    *
    * @param integral fills the matrix of a cell, as large as it has dofs
    */
-  std::shared_ptr<const SparseMatrix>
-  assemble_cells(const Model &model, const CellPredicate &contributes, const CellIntegral &integral);
+  std::shared_ptr<const SparseMatrix> assemble_cells(const Model &model, const CellPredicate &contributes, const CellIntegral &integral);
 } // namespace Squeal

@@ -14,10 +14,10 @@ namespace Squeal
   struct StepRecord
   {
     std::string name;
-    double      seconds;      ///< wall time [s]
-    double      cpu_seconds;  ///< processor time of this process [s]
-    double      peak_memory;  ///< peak resident memory of this process so far [byte]
-    std::string summary;      ///< what the step found, one phrase
+    double      seconds;     ///< wall time [s]
+    double      cpu_seconds; ///< processor time of this process [s]
+    double      peak_memory; ///< peak resident memory of this process so far [byte]
+    std::string summary;     ///< what the step found, one phrase
   };
 
   /**

@@ -10,10 +10,10 @@ namespace Squeal
   /// Normal modes of the disc, or of the whole set of pins, on the uncoupled dofs.
   struct ComponentModes
   {
-    std::vector<std::string>     labels;       ///< A m-n, R m-n, C m-n; F1, T1, L1, ...; RB: rigid body
-    std::vector<double>          eigenvalues;  ///< ω² [rad²/s²], ascending
-    std::vector<double>          residuals;    ///< as in SymmetricModes [-]
-    std::shared_ptr<MultiVector> vectors;      ///< n_free × k, orthonormal in M, zero on the other components
+    std::vector<std::string>     labels;      ///< A m-n, R m-n, C m-n; F1, T1, L1, ...; RB: rigid body
+    std::vector<double>          eigenvalues; ///< ω² [rad²/s²], ascending
+    std::vector<double>          residuals;   ///< as in SymmetricModes [-]
+    std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
   /// Component sets of the paper.

@@ -28,8 +28,7 @@ namespace Squeal
    * k² = (ω/c)² − (nπ/h)². Pins: bending twice, torsion and extension of a bar, and waves across the section for every order
    * along it. Bending follows 1/ω² = 1/ω_b² + 1/ω_s² with ω_b ∝ k² (thin) and ω_s ∝ k (shear). Mounts are left out.
    */
-  ModeCountEstimate
-  expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, double largest_circular_frequency);
+  ModeCountEstimate expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, double largest_circular_frequency);
 
   /**
    * Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear

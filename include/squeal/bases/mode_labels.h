@@ -29,10 +29,10 @@ namespace Squeal
    * larger energy, numbered in ascending order of frequency: the first two F
    * modes of every pin are F1. Modes must come in that order.
    */
-  std::vector<std::string> pin_labels(const Model            &model,
-                                      const ContactInterface &interface,
+  std::vector<std::string> pin_labels(const Model               &model,
+                                      const ContactInterface    &interface,
                                       const std::vector<double> &nodal_masses,
-                                      const DenseMatrix      &modes);
+                                      const DenseMatrix         &modes);
 
   /// Label of a mode that resembles none of the component modes left for it.
   inline constexpr const char *no_label = "unnamed";

@@ -40,12 +40,12 @@ namespace Squeal
   struct ReducedBasis
   {
     std::string                  name;
-    std::shared_ptr<MultiVector> vectors;   ///< T_r in coupled coordinates, n × r, M_c-orthonormal
-    int                          n_r0;      ///< columns of T_r0
-    int                          n_nominal; ///< columns of T_r by the formula
-    int                          n_dropped; ///< columns of T_r0 T_cr found dependent, or left out by POD
-    double                       tolerance; ///< of that decision [-]
-    double                       condition; ///< of the Gram matrix of T_r0 T_cr, columns scaled to unit M-norm (POD: as they are)
+    std::shared_ptr<MultiVector> vectors;        ///< T_r in coupled coordinates, n × r, M_c-orthonormal
+    int                          n_r0;           ///< columns of T_r0
+    int                          n_nominal;      ///< columns of T_r by the formula
+    int                          n_dropped;      ///< columns of T_r0 T_cr found dependent, or left out by POD
+    double                       tolerance;      ///< of that decision [-]
+    double                       condition;      ///< of the Gram matrix of T_r0 T_cr, columns scaled to unit M-norm (POD: as they are)
     double                       orthonormality; ///< max |T_rᵀ M_c T_r − I|, below 1e-10
     ConnectionRank               connection;
 

@@ -24,10 +24,7 @@ namespace Squeal
      *
      * Throws SolverError if K (or K + s² M) is not positive definite.
      */
-    StaticResponse(const Model             &model,
-                   const SecondOrderSystem &system,
-                   double                   largest_circular_frequency,
-                   FactorizationLibrary     library);
+    StaticResponse(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency, FactorizationLibrary library);
 
     /// u for every column of @p forces.
     MultiVector solve(const MultiVector &forces) const;

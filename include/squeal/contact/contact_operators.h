@@ -40,8 +40,8 @@ namespace Squeal
    * for which @p selected says yes, the others being at rest: n × n_components.
    * It selects the dofs of the components; with `sliding` n·u = 0 holds at their contact nodes.
    */
-  std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
-                                                 const ContactInterface &interface,
+  std::shared_ptr<SparseMatrix> component_kernel(const Model             &model,
+                                                 const ContactInterface  &interface,
                                                  const std::vector<bool> &selected,
                                                  ContactBoundary          boundary);
 

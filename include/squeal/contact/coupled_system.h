@@ -11,10 +11,11 @@ namespace Squeal
   /// Parameters of a coupled system that stay free; those of the bodies have their values.
   namespace SystemParameter
   {
-    inline constexpr const char *friction        = "mu";                           ///< μ [-]
+    inline constexpr const char *friction        = "mu";                             ///< μ [-]
     inline constexpr const char *radial_damping  = "damping along b of the contact"; ///< c_b of each contact node [N s/m]
     inline constexpr const char *sliding_damping = "damping along t of the contact"; ///< c_t of each contact node [N s/m]
     inline constexpr const char *modal_damping   = "modal damping";                  ///< 2 ζ ω of each damped mode [1/s]
+
   } // namespace SystemParameter
 
   /// Viscous damping of the contact nodes, one coefficient for each [N s/m]; an empty list means zeros.
@@ -85,10 +86,10 @@ namespace Squeal
    * @param tangential Aᵀ = P_t T_c, n_c × n
    * @param radial     R = P_b T_c, n_c × n
    */
-  CoupledSystem coupled_system(const std::vector<CoupledTerm>      &bodies,
-                               std::shared_ptr<const SparseMatrix>  tangential,
-                               std::shared_ptr<const SparseMatrix>  radial,
-                               const ContactDamping                &damping = {});
+  CoupledSystem coupled_system(const std::vector<CoupledTerm>     &bodies,
+                               std::shared_ptr<const SparseMatrix> tangential,
+                               std::shared_ptr<const SparseMatrix> radial,
+                               const ContactDamping               &damping = {});
 
   /// Couples bodies, given by merged() terms.
   CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping = {});

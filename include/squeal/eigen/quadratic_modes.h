@@ -27,14 +27,14 @@ namespace Squeal
     /// ... that have |λ| ≤ ρ = hypot(1, this) largest_frequency, among them all with |Re λ| ≤ this times largest_frequency [-].
     double largest_damping = 0.1;
 
-    int    expected   = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
-    double tolerance  = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
+    int    expected  = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
+    double tolerance = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
 
     /// A norm of K. Modes far below the others have a small ‖Kφ‖; their ‖Q(λ)φ‖ may be as large as its rounding
     /// errors, ten times the machine precision times this norm. 0: may not.
     double stiffness_norm = 0.;
 
-    int    block_size = 4;    ///< vectors per block solve
+    int block_size = 4; ///< vectors per block solve
 
     /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
     int n_fresh_directions = 4;

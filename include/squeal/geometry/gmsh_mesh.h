@@ -13,10 +13,10 @@ namespace Squeal
     /// Elements of one type on one physical group.
     struct Block
     {
-      std::string               type;            ///< Gmsh's name, e.g. "Quadrilateral 4"
+      std::string               type; ///< Gmsh's name, e.g. "Quadrilateral 4"
       unsigned int              nodes_per_element;
-      std::vector<std::size_t>  tags;            ///< one per element, ascending
-      std::vector<unsigned int> nodes;           ///< indices into points, element by element
+      std::vector<std::size_t>  tags;  ///< one per element, ascending
+      std::vector<unsigned int> nodes; ///< indices into points, element by element
     };
 
     struct Group
@@ -26,8 +26,8 @@ namespace Squeal
       std::vector<Block> blocks;
     };
 
-    std::vector<std::array<double, 3>> points; ///< in the order of Gmsh's node tags [m]
-    std::vector<Group>                 groups; ///< by dimension, then in the order of their numbers
+    std::vector<std::array<double, 3>> points;                    ///< in the order of Gmsh's node tags [m]
+    std::vector<Group>                 groups;                    ///< by dimension, then in the order of their numbers
     std::size_t                        n_unnamed_volume_elements; ///< 3-D elements in no physical group
 
     /// The highest dimension that has a physical group; 0 without any.

@@ -51,5 +51,6 @@ namespace Squeal
     inline constexpr const char *pin_side     = "pin_side";     ///< surface, optional: lateral faces of the pins
     inline constexpr const char *disc_bore    = "disc_bore";    ///< surface, optional: inner boundary of the disc
     inline constexpr const char *disc_rim     = "disc_rim";     ///< surface, optional: outer boundary of the disc
+
   } // namespace PhysicalNames
 } // namespace Squeal

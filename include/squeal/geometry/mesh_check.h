@@ -46,9 +46,7 @@ namespace Squeal
    * shared by two volumes; and every named surface on the outside of volumes
    * of its kind (`disc_*` on the disc, `pin_*` on pins).
    */
-  void check_parts(const HexMesh                  &mesh,
-                   const std::vector<std::string> &additional_surfaces,
-                   const std::string              &where);
+  void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
   /**
    * Throws MeshError, naming @p where, for a body in several pieces, a pin that

@@ -19,9 +19,7 @@ namespace Squeal
    * `pin_*`; and for surfaces whose name is neither a known one nor in
    * @p additional_surfaces.
    */
-  HexMesh make_hex_mesh(const GmshMesh                 &mesh,
-                        const std::vector<std::string> &additional_surfaces,
-                        const std::string              &where);
+  HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
   /**
    * Writes a mesh with its physical names as .msh (Gmsh 4.1, text), from where

@@ -30,8 +30,8 @@ namespace Squeal
     {
       std::string               name; ///< "pin_top..." or "pin_bottom..."
       Side                      side;
-      std::vector<unsigned int> faces; ///< indices into Plan::faces, ascending
-      Point                     displacement; ///< from the place in the plan to that on the disc [m]
+      std::vector<unsigned int> faces;            ///< indices into Plan::faces, ascending
+      Point                     displacement;     ///< from the place in the plan to that on the disc [m]
       bool                      is_round = false; ///< filled by fill_with_o_grid(): it may turn about its centre
     };
 
@@ -71,8 +71,7 @@ namespace Squeal
    * first node and every 2 k-th after it lie at the end of a spoke. Appends the
    * new nodes to @p points.
    */
-  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop,
-                                           std::vector<Plan::Point>        &points);
+  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points);
 
   /// Edges that belong to one of the given faces only, in the sense of rotation of that face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);

@@ -70,15 +70,9 @@ namespace Squeal
   using ComplexDenseMatrix = DenseMatrixOf<std::complex<double>>;
 
   /// alpha op(A) op(B), op = transpose where asked.
-  DenseMatrix multiply(const DenseMatrix &A,
-                       const DenseMatrix &B,
-                       bool               transpose_A = false,
-                       bool               transpose_B = false,
-                       double             alpha       = 1.);
+  DenseMatrix multiply(const DenseMatrix &A, const DenseMatrix &B, bool transpose_A = false, bool transpose_B = false, double alpha = 1.);
 
-  ComplexDenseMatrix multiply(const ComplexDenseMatrix &A,
-                              const ComplexDenseMatrix &B,
-                              bool                      conjugate_transpose_A = false);
+  ComplexDenseMatrix multiply(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, bool conjugate_transpose_A = false);
 
   /// A X of a real and a complex matrix.
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);

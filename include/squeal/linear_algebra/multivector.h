@@ -85,8 +85,11 @@ namespace Squeal
                                                    PrincipalAxes      *axes = nullptr);
 
   /// The same where at least one direction must be left; throws SolverError otherwise.
-  MultiVector
-  orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, double tolerance, PrincipalAxes *axes = nullptr);
+  MultiVector orthonormalize(const SparseMatrix &M,
+                             const MultiVector  *Q,
+                             const MultiVector  &X,
+                             double              tolerance,
+                             PrincipalAxes      *axes = nullptr);
 
   /**
    * Proper orthogonal decomposition: the M-orthonormal principal axes of the

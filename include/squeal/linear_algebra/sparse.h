@@ -10,8 +10,7 @@
 namespace Squeal
 {
   /// op(A) op(B), op = transpose where asked; rows distributed like those of op(A).
-  std::shared_ptr<SparseMatrix>
-  multiply(const SparseMatrix &A, const SparseMatrix &B, bool transpose_A = false, bool transpose_B = false);
+  std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, bool transpose_A = false, bool transpose_B = false);
 
   /// Tᵀ A T, n_T × n_T, distributed like the columns of T.
   std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T);
@@ -44,9 +43,7 @@ namespace Squeal
    * process 0, which writes to a temporary name and renames at the end: no
    * reader ever sees half a file. Throws FileError on all processes.
    */
-  void write_matrix_market(const SparseMatrix  &A,
-                           const std::string   &file,
-                           MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
+  void write_matrix_market(const SparseMatrix &A, const std::string &file, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 
   /**
    * The local rows of a matrix with rows and columns numbered without gaps over

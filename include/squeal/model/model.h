@@ -79,15 +79,15 @@ namespace Squeal
     void create_triangulation(const HexMesh &mesh);
     void distribute_dofs();
 
-    std::vector<std::string>                 components, surfaces;
-    Epetra_MpiComm                           epetra_communicator;
+    std::vector<std::string>                   components, surfaces;
+    Epetra_MpiComm                             epetra_communicator;
     dealii::parallel::shared::Triangulation<3> tria;
-    dealii::FESystem<3>                      fe;
-    dealii::MappingQ<3>                      geometry_mapping;
-    dealii::DoFHandler<3>                    dofs;
-    std::vector<int>                         free_numbers;
-    std::vector<unsigned int>                dof_nodes;
-    std::vector<Node>                        node_table;
-    std::unique_ptr<Epetra_Map>              map;
+    dealii::FESystem<3>                        fe;
+    dealii::MappingQ<3>                        geometry_mapping;
+    dealii::DoFHandler<3>                      dofs;
+    std::vector<int>                           free_numbers;
+    std::vector<unsigned int>                  dof_nodes;
+    std::vector<Node>                          node_table;
+    std::unique_ptr<Epetra_Map>                map;
   };
 } // namespace Squeal

@@ -49,10 +49,7 @@ namespace Squeal
   {
   public:
     /// @param closed numbers of the pairs that are in contact, among those of @p interface
-    FieldWriter(const Model                     &model,
-                const ContactInterface          &interface,
-                const std::vector<unsigned int> &closed,
-                const ResultFolder              &folder);
+    FieldWriter(const Model &model, const ContactInterface &interface, const std::vector<unsigned int> &closed, const ResultFolder &folder);
 
     /// `modes/NAME.vtu` and `modes/NAME_contact.vtu`.
     void write_mode(const ModeField &mode) const;
@@ -82,14 +79,14 @@ namespace Squeal
 
     void write_contact(const ModeField &mode) const;
 
-    const Model                         &model;
-    const ContactInterface              &interface;
-    const ResultFolder                  &folder;
-    dealii::Vector<double>               components;
-    std::vector<double>                  closed; ///< 1 for pairs in contact
-    dealii::Triangulation<2, 3>          contact_mesh;
-    std::unique_ptr<dealii::FE_Q<2, 3>>  contact_fe;
-    dealii::DoFHandler<2, 3>             contact_dofs;
-    std::vector<unsigned int>            contact_node_of_dof;
+    const Model                        &model;
+    const ContactInterface             &interface;
+    const ResultFolder                 &folder;
+    dealii::Vector<double>              components;
+    std::vector<double>                 closed; ///< 1 for pairs in contact
+    dealii::Triangulation<2, 3>         contact_mesh;
+    std::unique_ptr<dealii::FE_Q<2, 3>> contact_fe;
+    dealii::DoFHandler<2, 3>            contact_dofs;
+    std::vector<unsigned int>           contact_node_of_dof;
   };
 } // namespace Squeal

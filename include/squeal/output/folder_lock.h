@@ -34,7 +34,7 @@ namespace Squeal
 
   private:
     const std::filesystem::path file;
-    int                         descriptor = -1;
+    int                         descriptor  = -1;
     bool                        left_behind = false;
   };
 } // namespace Squeal

@@ -34,8 +34,8 @@ namespace Squeal
    *
    * Returns old and new name of what had to change its name. Throws std::filesystem::filesystem_error.
    */
-  std::vector<std::pair<std::string, std::string>> bring_over(const std::filesystem::path                   &from,
-                                                              const std::filesystem::path                   &to,
+  std::vector<std::pair<std::string, std::string>> bring_over(const std::filesystem::path                    &from,
+                                                              const std::filesystem::path                    &to,
                                                               const std::function<bool(const std::string &)> &is_of_run);
 
   /// Exchanges the names of two folders in one step; returns false where the file system cannot. Throws std::filesystem::filesystem_error.

@@ -15,14 +15,14 @@ namespace Squeal
   /// What a run was: enough to repeat it and to compare its cost.
   struct RunRecord
   {
-    std::string                                  command;     ///< as typed
-    int                                          n_processes; ///< of MPI
-    int                                          blas_threads;
-    std::vector<std::pair<std::string, long>>    counts;      ///< elements, dofs, contact nodes, modes, ...
-    std::vector<std::pair<std::string, double>>  quantities;  ///< worst element quality, ...
-    std::vector<std::string>                     warnings;    ///< doubts about the input
-    FileSizes                                    files    = {};        ///< what the run has written, but for the record itself
-    std::string                                  revision = "unknown"; ///< of the program's sources
+    std::string                                 command;     ///< as typed
+    int                                         n_processes; ///< of MPI
+    int                                         blas_threads;
+    std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...
+    std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
+    std::vector<std::string>                    warnings;             ///< doubts about the input
+    FileSizes                                   files    = {};        ///< what the run has written, but for the record itself
+    std::string                                 revision = "unknown"; ///< of the program's sources
   };
 
   /// Versions, revision, machine, counts, time and peak memory of each step, the margins of decisions, and files, as JSON.

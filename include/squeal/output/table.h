@@ -12,7 +12,7 @@ namespace Squeal
   {
     std::string name;
     std::string unit;           ///< "-" for none; "" for text
-    int         digits  = 3;    ///< on the screen: after the point, or significant if scientific
+    int         digits     = 3; ///< on the screen: after the point, or significant if scientific
     bool        scientific = false;
 
     /// "name [unit]", as the header has it.

@@ -10,10 +10,10 @@ namespace Squeal
   /// A declared parameter, read back from the handler that it was declared to.
   struct CataloguedParameter
   {
-    std::string path;          ///< "Section/Name"
+    std::string path; ///< "Section/Name"
     std::string value;
     std::string documentation;
-    std::string pattern;       ///< deal.II's description of what it accepts, such as "[Double 0...10 (inclusive)]"
+    std::string pattern; ///< deal.II's description of what it accepts, such as "[Double 0...10 (inclusive)]"
 
     /// "Section", "Subsection", ... and last the name.
     std::vector<std::string> path_parts() const;

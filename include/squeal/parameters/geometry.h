@@ -27,10 +27,8 @@ namespace Squeal
     double       disc_thickness       = 0.0463;          ///< [m]
     double       pin_diameter         = 0.0520;          ///< [m]
     double       pin_height           = 0.0318;          ///< [m]
-    PinLayout    top                  = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585},
-                                         {-18.4, 0., 18.4, -18.4, 0., 18.4}};
-    PinLayout    bottom               = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585},
-                                         {-18.4, 0., 18.4, -18.4, 0., 18.4}};
+    PinLayout    top                  = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585}, {-18.4, 0., 18.4, -18.4, 0., 18.4}};
+    PinLayout    bottom               = {{0.1970, 0.1970, 0.1970, 0.2585, 0.2585, 0.2585}, {-18.4, 0., 18.4, -18.4, 0., 18.4}};
     unsigned int nodes_per_pin_face   = 19;
     unsigned int pin_layers           = 4;
     unsigned int disc_layers          = 3;

@@ -16,8 +16,7 @@ namespace Squeal
   template <>
   struct EnumTable<Rotation>
   {
-    static constexpr std::array<EnumName<Rotation>, 2> names = {
-      {{Rotation::positive, "positive"}, {Rotation::negative, "negative"}}};
+    static constexpr std::array<EnumName<Rotation>, 2> names = {{{Rotation::positive, "positive"}, {Rotation::negative, "negative"}}};
   };
 
   /**
@@ -35,15 +34,14 @@ namespace Squeal
   template <>
   struct EnumTable<RadialDissipation>
   {
-    static constexpr std::array<EnumName<RadialDissipation>, 3> names = {{{RadialDissipation::none, "none"},
-                                                                          {RadialDissipation::consistent, "consistent"},
-                                                                          {RadialDissipation::published, "published"}}};
+    static constexpr std::array<EnumName<RadialDissipation>, 3> names = {
+      {{RadialDissipation::none, "none"}, {RadialDissipation::consistent, "consistent"}, {RadialDissipation::published, "published"}}};
   };
 
   /// The braking conditions (section `Operation`).
   struct OperationParameters
   {
-    double            friction_coefficient = 0.4;   ///< μ [-]
+    double            friction_coefficient = 0.4; ///< μ [-]
     Rotation          rotation             = Rotation::positive;
     double            rotation_speed       = 4.;    ///< Ω [rad/s]
     double            load_per_side        = 1000.; ///< [N]

@@ -12,8 +12,8 @@ namespace Squeal
   /// The state about which the system is linearised.
   enum class ContactState
   {
-    equal_load,     ///< every node of a side carries the same share of the load, all are closed
-    steady_sliding  ///< quasi-static solution with unilateral contact and friction
+    equal_load,    ///< every node of a side carries the same share of the load, all are closed
+    steady_sliding ///< quasi-static solution with unilateral contact and friction
   };
 
   template <>

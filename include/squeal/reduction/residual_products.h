@@ -73,9 +73,9 @@ namespace Squeal
     struct Sparse
     {
       const Term              *term;
-      std::size_t              number; ///< among the terms of the system
-      double                   sign;   ///< Aᵀ = sign A
-      double                   sigma;  ///< part of the term in S
+      std::size_t              number;          ///< among the terms of the system
+      double                   sign;            ///< Aᵀ = sign A
+      double                   sigma;           ///< part of the term in S
       DenseMatrix              factor_products; ///< of the factors with S⁻¹ A T
       std::vector<DenseMatrix> products;        ///< (A' T)ᵀ S⁻¹ A T with each sparse term A'
     };
@@ -84,7 +84,7 @@ namespace Squeal
     struct Factor
     {
       const LowRankFactor *factor;
-      int                  first = 0;      ///< among the columns of all factors
+      int                  first = 0;         ///< among the columns of all factors
       bool                 in_left, in_right; ///< whether left or right residuals have it
     };
 
@@ -98,9 +98,9 @@ namespace Squeal
     std::vector<const Term *>                    low_rank;
     std::vector<Factor>                          factors; ///< those of left residuals only come first, those of right residuals only last
     int                                          n_left = 0, n_shared = 0, n_right = 0; ///< columns of these three kinds
-    DenseMatrix                                  factor_gram;               ///< Fᵀ S⁻¹ F of all factors
-    std::map<const LowRankFactor *, DenseMatrix> motions;                   ///< FᵀT
-    int                                          r = 0;                     ///< size of the basis
+    DenseMatrix                                  factor_gram;                           ///< Fᵀ S⁻¹ F of all factors
+    std::map<const LowRankFactor *, DenseMatrix> motions;                               ///< FᵀT
+    int                                          r = 0;                                 ///< size of the basis
     DenseMatrix                                  left_columns, right_block; ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal

@@ -39,7 +39,7 @@ namespace Squeal
     std::vector<double> gaps;      ///< g [m] ≤ 0; exactly zero at closed nodes
     std::vector<double> motions;   ///< z [m]
     std::vector<bool>   closed;
-    int                 n_steps;   ///< changes of the active set
+    int                 n_steps; ///< changes of the active set
   };
 
   /**
@@ -56,11 +56,11 @@ namespace Squeal
   /// What is known about other solutions of a contact problem.
   struct ContactUniqueness
   {
-    double           unique_below; ///< every friction coefficient below has exactly one solution; 0: unknown
-    bool             is_certified; ///< μ lies below
-    unsigned int     n_searches;   ///< other starts tried where it is not certified
-    bool             found_other;  ///< one of them led to another solution
-    ContactSolution  other;        ///< that one
+    double          unique_below; ///< every friction coefficient below has exactly one solution; 0: unknown
+    bool            is_certified; ///< μ lies below
+    unsigned int    n_searches;   ///< other starts tried where it is not certified
+    bool            found_other;  ///< one of them led to another solution
+    ContactSolution other;        ///< that one
   };
 
   /**

@@ -26,11 +26,11 @@ namespace Squeal
   /// The quasi-static state about which the system is linearised.
   struct SlidingState
   {
-    std::vector<double>          reactions;    ///< R_n0 [N] ≤ 0, one for each contact node
-    std::vector<double>          gaps;         ///< g [m] ≤ 0
-    std::vector<bool>            closed;       ///< S_0
-    std::vector<double>          approach;     ///< way of the backplate of each component [m]; 0 for the disc
-    std::shared_ptr<MultiVector> displacement; ///< u [m], n × 1, elastic, relative to the moved backplates
+    std::vector<double>          reactions;          ///< R_n0 [N] ≤ 0, one for each contact node
+    std::vector<double>          gaps;               ///< g [m] ≤ 0
+    std::vector<bool>            closed;             ///< S_0
+    std::vector<double>          approach;           ///< way of the backplate of each component [m]; 0 for the disc
+    std::shared_ptr<MultiVector> displacement;       ///< u [m], n × 1, elastic, relative to the moved backplates
     std::shared_ptr<MultiVector> total_displacement; ///< u with the way of the backplates [m], n × 1
     SlidingCertificate           certificate;
     ContactUniqueness            uniqueness;
@@ -91,17 +91,17 @@ namespace Squeal
   struct PinContact
   {
     std::string  pin;
-    int          side;            ///< ±1
+    int          side; ///< ±1
     unsigned int n_nodes, n_open;
-    double       load;            ///< −Σ r_n [N]
-    double       sliding_offset;  ///< centre of pressure from the centre of the face along t [m]
-    double       radial_offset;   ///< outwards [m]
+    double       load;             ///< −Σ r_n [N]
+    double       sliding_offset;   ///< centre of pressure from the centre of the face along t [m]
+    double       radial_offset;    ///< outwards [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
-    double       sliding_speed;   ///< w_0 at the centre of pressure [m/s]
-    double       radial_damping;  ///< Σ c_b [N s/m]
-    double       sliding_damping; ///< Σ c_t [N s/m]
-    double       approach;        ///< way of the backplate [m]
-    double       largest_gap;     ///< of its nodes [m]
+    double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
+    double       radial_damping;   ///< Σ c_b [N s/m]
+    double       sliding_damping;  ///< Σ c_t [N s/m]
+    double       approach;         ///< way of the backplate [m]
+    double       largest_gap;      ///< of its nodes [m]
   };
 
   /**

@@ -15,10 +15,10 @@ namespace Squeal
   /// How closely modes are followed.
   struct ChartOptions
   {
-    double largest_frequency     = 0.;   ///< end of the band [rad/s]
-    double threshold_tolerance   = 1e-6; ///< widest interval of μ left around a threshold or a crossing [-]
-    double smallest_step         = 1e-5; ///< of μ, below which steps are not halved to tell modes apart [-]
-    int    maximum_refinements   = 1000; ///< evaluations beyond those of the grid
+    double largest_frequency   = 0.;   ///< end of the band [rad/s]
+    double threshold_tolerance = 1e-6; ///< widest interval of μ left around a threshold or a crossing [-]
+    double smallest_step       = 1e-5; ///< of μ, below which steps are not halved to tell modes apart [-]
+    int    maximum_refinements = 1000; ///< evaluations beyond those of the grid
   };
 
   /**
@@ -108,12 +108,12 @@ namespace Squeal
   /// Modes over the friction coefficient.
   struct StabilityChart
   {
-    std::vector<ChartPoint>   points;        ///< ascending, those of refinement included
-    std::vector<bool>         is_refinement; ///< whether a point is none of the grid
-    std::vector<Branch>       branches;      ///< in the order in which they begin; modes beyond the band, too
-    std::vector<Threshold>    thresholds;    ///< ascending
-    std::vector<BandCrossing> crossings;     ///< ascending
-    std::vector<ModeCount>    counts;        ///< one for each point
+    std::vector<ChartPoint>   points;               ///< ascending, those of refinement included
+    std::vector<bool>         is_refinement;        ///< whether a point is none of the grid
+    std::vector<Branch>       branches;             ///< in the order in which they begin; modes beyond the band, too
+    std::vector<Threshold>    thresholds;           ///< ascending
+    std::vector<BandCrossing> crossings;            ///< ascending
+    std::vector<ModeCount>    counts;               ///< one for each point
     int                       n_doubtful_steps = 0; ///< in which modes could not be told apart but by closeness of λ
   };
 

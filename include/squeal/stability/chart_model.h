@@ -61,9 +61,9 @@ namespace Squeal
     /// Some modes of a result at an operating point.
     struct ModesAt
     {
-      OperatingPoint   point;
+      OperatingPoint    point;
       const ChartPoint *chart;
-      std::vector<int> modes;
+      std::vector<int>  modes;
     };
 
     /// New vectors from the residuals of modes; nothing if they lie in the basis. All processes must call.

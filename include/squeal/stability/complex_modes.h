@@ -17,15 +17,15 @@ namespace Squeal
    */
   struct ComplexModes
   {
-    std::vector<std::complex<double>> lambda;                   ///< [rad/s]
-    std::shared_ptr<MultiVector>      real_part, imaginary_part; ///< φ_c, n × k
-    std::shared_ptr<MultiVector>      left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null where the method gives none
-    std::vector<double>               residuals;                ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
-    std::vector<double>               energy_residuals;         ///< ε_res, eq. (16) of the paper [-]
-    std::vector<double>               estimated_errors;         ///< |δλ| / |λ| [-]; empty where the method gives none
-    int                               n_rigid_body = 0;         ///< modes with λ = 0
-    std::vector<double>               real_values;              ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
-    std::string                       summary;                  ///< how they were found, one phrase
+    std::vector<std::complex<double>> lambda;                         ///< [rad/s]
+    std::shared_ptr<MultiVector>      real_part, imaginary_part;      ///< φ_c, n × k
+    std::shared_ptr<MultiVector> left_real_part, left_imaginary_part; ///< ψ, ψᵀQ(λ) = 0, ψᴴM_cψ = 1; null where the method gives none
+    std::vector<double>          residuals;                           ///< ‖Q(λ)φ‖ / ‖Kφ‖ [-]
+    std::vector<double>          energy_residuals;                    ///< ε_res, eq. (16) of the paper [-]
+    std::vector<double>          estimated_errors;                    ///< |δλ| / |λ| [-]; empty where the method gives none
+    int                          n_rigid_body = 0;                    ///< modes with λ = 0
+    std::vector<double>          real_values;                         ///< real λ ≠ 0, |λ| ≤ the band's radius, ascending [1/s]
+    std::string                  summary;                             ///< how they were found, one phrase
   };
 
   /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.

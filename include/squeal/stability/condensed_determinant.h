@@ -12,7 +12,7 @@ namespace Squeal
   /// Where in the λ-plane a CondensedDeterminant is wanted, and how accurately.
   struct CondensedDeterminantRequest
   {
-    std::vector<std::complex<double>> lambda;                        ///< the farthest from the origin and from the real axis [rad/s]
+    std::vector<std::complex<double>> lambda; ///< the farthest from the origin and from the real axis [rad/s]
     double                            largest_friction_coefficient = 0.;
     double                            tolerance                    = 1e-6; ///< largest spectral norm of what is left out of N [-]
   };
@@ -69,8 +69,8 @@ namespace Squeal
     /// W(λ), and what bounds the inverse of N.
     struct OnModes
     {
-      ComplexDenseMatrix                matrix;            ///< W, as large as there are modes
-      std::vector<std::complex<double>> resonances;        ///< D⁻¹
+      ComplexDenseMatrix                matrix;             ///< W, as large as there are modes
+      std::vector<std::complex<double>> resonances;         ///< D⁻¹
       double                            complement_inverse; ///< bound of ‖N_⊥⁻¹‖
       double                            gain;               ///< ‖N⁻¹‖ ≤ ‖N_⊥⁻¹‖ + gain ‖W⁻¹ D⁻¹‖
     };
@@ -104,8 +104,8 @@ namespace Squeal
     double               deflation_square, shift;
     std::vector<double>  omega;
     std::vector<Block>   blocks;
-    int                  n_rows = 0;       ///< of N
-    int                  n_terms = 0;
+    int                  n_rows      = 0; ///< of N
+    int                  n_terms     = 0;
     double               forces_norm = 0.; ///< ‖(K + s M)^−½ E‖ on the complement
     ComplexDenseMatrix   modes_forces;     ///< ΦᵀE
   };

@@ -52,9 +52,9 @@ namespace Squeal
     int    n_frictionless     = 0;  ///< real modes with ω_low < ω < ω_high without friction and damping, by inertia
     int    n_points           = 0;  ///< where determinants were evaluated
     double largest_phase_step = 0.; ///< of the accepted steps [rad]
-    double truncation_bound   = 0.; ///< bound of the largest ‖ΔN N⁻¹‖ on the contour (condensed): Rouché's theorem asks for less than 1 [-]
-    int    n_moments          = 0;  ///< terms of the series (condensed)
-    int    n_deflated         = 0;  ///< real modes up to ω_d (condensed)
+    double truncation_bound = 0.; ///< bound of the largest ‖ΔN N⁻¹‖ on the contour (condensed): Rouché's theorem asks for less than 1 [-]
+    int n_moments           = 0; ///< terms of the series (condensed)
+    int n_deflated          = 0; ///< real modes up to ω_d (condensed)
   };
 
   /**
@@ -86,6 +86,8 @@ namespace Squeal
    * if the bodies have damping of their own (condensed) or modes have (sparse LU);
    * on several processes (sparse LU).
    */
-  std::vector<ContourCount>
-  count_by_contour(const CoupledSystem &system, const std::vector<double> &mu, const ContourOptions &options, Progress &progress);
+  std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,
+                                             const std::vector<double> &mu,
+                                             const ContourOptions      &options,
+                                             Progress                  &progress);
 } // namespace Squeal

@@ -41,15 +41,17 @@ namespace Squeal
   /// What a sweep has found within its tolerance.
   struct ErrorControlledSweep
   {
-    std::vector<std::optional<ChartPoint>> points;    ///< one for each operating point; nothing where the tolerance is missed
+    std::vector<std::optional<ChartPoint>> points;      ///< one for each operating point; nothing where the tolerance is missed
     double                                 worst_error; ///< largest estimated |δλ| / |λ| of the points [-]
     int                                    n_growths;
     std::string                            why_stopped; ///< empty if all points meet the tolerance
   };
 
   /// The results of @p model at several operating points: the processes share them.
-  std::vector<ChartPoint>
-  evaluate(const ChartModel &model, const std::vector<OperatingPoint> &points, MPI_Comm communicator, const std::function<void(int, const ChartPoint &)> &each = {});
+  std::vector<ChartPoint> evaluate(const ChartModel                                   &model,
+                                   const std::vector<OperatingPoint>                  &points,
+                                   MPI_Comm                                            communicator,
+                                   const std::function<void(int, const ChartPoint &)> &each = {});
 
   /**
    * Grows the basis of @p model until the estimated errors of all modes in the
@@ -63,10 +65,10 @@ namespace Squeal
    * not been.
    */
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
-                                 const std::vector<OperatingPoint> &points,
-                                 const std::vector<int>            &training,
-                                 const ErrorControlledSweepOptions       &options,
-                                 ChartStore                        *store,
-                                 MPI_Comm                           communicator,
-                                 Progress                          &progress);
+                                              const std::vector<OperatingPoint> &points,
+                                              const std::vector<int>            &training,
+                                              const ErrorControlledSweepOptions &options,
+                                              ChartStore                        *store,
+                                              MPI_Comm                           communicator,
+                                              Progress                          &progress);
 } // namespace Squeal

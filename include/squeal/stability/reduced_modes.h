@@ -77,11 +77,11 @@ namespace Squeal
   /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
   struct EigenvalueEstimates
   {
-    std::vector<std::complex<double>> corrections;      ///< δλ: λ + δλ is the better value [rad/s]
-    std::vector<double>               errors;           ///< |δλ| / |λ| [-]
-    std::vector<double>               conditions;       ///< κ [-]
-    std::vector<bool>                 claimed;          ///< no coalescence within reach: δλ means something
-    std::vector<double>               uncertainties;    ///< |δλ| and what close modes add to it [rad/s]
+    std::vector<std::complex<double>> corrections;   ///< δλ: λ + δλ is the better value [rad/s]
+    std::vector<double>               errors;        ///< |δλ| / |λ| [-]
+    std::vector<double>               conditions;    ///< κ [-]
+    std::vector<bool>                 claimed;       ///< no coalescence within reach: δλ means something
+    std::vector<double>               uncertainties; ///< |δλ| and what close modes add to it [rad/s]
     std::vector<Verdict>              verdicts;
     std::vector<double>               energy_residuals; ///< ε_res of φ, eq. (16) [-]
     std::vector<double>               left_residuals;   ///< ε_res of ψ [-]
@@ -97,8 +97,10 @@ namespace Squeal
     ResidualProducts products() const;
   };
 
-  ResidualVectors
-  residual_vectors(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
+  ResidualVectors residual_vectors(const CoupledSystem  &system,
+                                   const UpdatedInverse &inverse,
+                                   const ReducedModel   &model,
+                                   const ReducedModes   &modes);
 
   /**
    * Errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and
@@ -133,8 +135,10 @@ namespace Squeal
   EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products);
 
   /// The same with the products of residual_vectors().
-  EigenvalueEstimates
-  estimate_eigenvalues(const CoupledSystem &system, const UpdatedInverse &inverse, const ReducedModel &model, const ReducedModes &modes);
+  EigenvalueEstimates estimate_eigenvalues(const CoupledSystem  &system,
+                                           const UpdatedInverse &inverse,
+                                           const ReducedModel   &model,
+                                           const ReducedModes   &modes);
 
   /// Right and left vectors at full order, with their residuals; @p estimates may be null.
   ComplexModes full_order_modes(const CoupledSystem       &system,

@@ -81,8 +81,8 @@ namespace Squeal
     std::string group;
     int         n_modes;
     double      residual, shape, frequency, divergence, eigenvalue, subspace, corrected_error; ///< as in ModeError
-    double      estimated_divergence; ///< |ξ(λ̂ + δλ) − ξ(λ̂)| [-]
-    double      corrected_divergence; ///< |ξ(λ̂ + δλ) − ξ(λ)| [-]
+    double      estimated_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ̂)| [-]
+    double      corrected_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ)| [-]
   };
 
   /// Maxima of each group, in the order in which the groups first appear.

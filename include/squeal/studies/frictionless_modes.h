@@ -17,7 +17,7 @@ namespace Squeal
     ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
     double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
     std::unique_ptr<UpdatedInverse> inverse;
-    SymmetricModes                  real; ///< coupled, in the band and its margin
+    SymmetricModes                  real;       ///< coupled, in the band and its margin
     std::vector<ModeIdentity>       identities; ///< of the coupled modes
     std::vector<std::string>        labels;
   };
@@ -40,8 +40,9 @@ namespace Squeal
                                              const MultiVector       *imaginary_part);
 
   /// Labels with the marks of doublets, see mark_doublets(); the first @p n_rigid_body are `RB`.
-  std::vector<std::string>
-  labels_of(const std::vector<ModeIdentity> &identities, int n_rigid_body = 0, const std::vector<double> &growth_rates = {});
+  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities,
+                                     int                              n_rigid_body = 0,
+                                     const std::vector<double>       &growth_rates = {});
 
   /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);

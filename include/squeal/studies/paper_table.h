@@ -14,7 +14,7 @@ namespace Squeal
   /// Labelled frequencies and eigenvalues of a run, as they are set beside the paper's.
   struct TableOneResults
   {
-    std::vector<std::string>          component_labels; ///< with the marks of doublets
+    std::vector<std::string>          component_labels;      ///< with the marks of doublets
     std::vector<double>               component_frequencies; ///< [Hz]
     std::vector<std::string>          coupled_labels;
     std::vector<double>               coupled_frequencies; ///< [Hz]

@@ -11,9 +11,9 @@ namespace Squeal
   struct ReductionPlan
   {
     std::vector<const BasisRecipe *> recipes;
-    bool                             has_friction;         ///< complex modes; else real ones
-    double                           friction_coefficient; ///< 0 without friction
-    double                           largest_circular_frequency;    ///< end of the band [rad/s]
+    bool                             has_friction;               ///< complex modes; else real ones
+    double                           friction_coefficient;       ///< 0 without friction
+    double                           largest_circular_frequency; ///< end of the band [rad/s]
 
     /// Whether one of the bases rests on something.
     bool rests_on(BasisSource source) const;

@@ -33,8 +33,9 @@ namespace Squeal
   Table reduction_basis_table(const std::vector<Candidate> &candidates, int n, double full_seconds);
 
   /// Every mode of every basis beside the reference.
-  Table
-  reduction_mode_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &labels, const std::vector<std::string> &groups);
+  Table reduction_mode_table(const std::vector<Candidate>   &candidates,
+                             const std::vector<std::string> &labels,
+                             const std::vector<std::string> &groups);
 
   /// How far the estimates are to be trusted: they know nothing of the reference, by which modes are @p unstable.
   Table reduction_estimate_table(const std::vector<Candidate> &candidates, const std::vector<bool> &unstable);

@@ -14,12 +14,12 @@ namespace Squeal
   /// The bodies before anything is said about their contact.
   struct Scene
   {
-    HexMesh                      mesh;
-    std::unique_ptr<Model>       model;
-    ContactInterface             interface; ///< all pairs of contact nodes
-    ContactOperators             contact;   ///< of all pairs
-    std::vector<Term>            bodies;    ///< merged terms of the uncoupled bodies
-    SecondOrderSystem            system;    ///< M, C, K: their sum
+    HexMesh                mesh;
+    std::unique_ptr<Model> model;
+    ContactInterface       interface; ///< all pairs of contact nodes
+    ContactOperators       contact;   ///< of all pairs
+    std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
+    SecondOrderSystem      system;    ///< M, C, K: their sum
 
     unsigned int n_pins() const;
   };
@@ -30,13 +30,13 @@ namespace Squeal
    */
   struct Linearisation
   {
-    std::optional<SlidingState>         sliding;   ///< where the state is steady sliding
-    std::vector<double>                 reactions; ///< R_n0 of all pairs [N]; zero at open ones
-    std::vector<unsigned int>           closed;    ///< numbers of the closed pairs: S_0
-    ContactInterface                    interface; ///< S_0
-    ContactOperators                    contact;   ///< of S_0
-    ContactDamping                      damping;   ///< of S_0
-    CoupledSystem                       coupled;
+    std::optional<SlidingState> sliding;   ///< where the state is steady sliding
+    std::vector<double>         reactions; ///< R_n0 of all pairs [N]; zero at open ones
+    std::vector<unsigned int>   closed;    ///< numbers of the closed pairs: S_0
+    ContactInterface            interface; ///< S_0
+    ContactOperators            contact;   ///< of S_0
+    ContactDamping              damping;   ///< of S_0
+    CoupledSystem               coupled;
 
     /// Values of the closed pairs, set among those of all pairs; the others are zero.
     template <typename Number>

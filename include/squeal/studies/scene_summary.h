@@ -11,12 +11,12 @@ namespace Squeal
   /// Disc, or pins that are alike.
   struct BodySummary
   {
-    std::vector<std::string> names;                     ///< of the volumes
+    std::vector<std::string> names;                      ///< of the volumes
     double                   inner_radius, outer_radius; ///< least and greatest distance of a node from the z axis [m]
-    double                   height;                    ///< extent along z [m]
-    double                   contact_area;              ///< of one body [m²]
-    double                   volume, mass;              ///< of one body [m³], [kg]
-    double                   bar_speed;                 ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+    double                   height;                     ///< extent along z [m]
+    double                   contact_area;               ///< of one body [m²]
+    double                   volume, mass;               ///< of one body [m³], [kg]
+    double                   bar_speed;                  ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
   };
 
   /// The disc first, then the pins: those with the same height, contact area and volume as one.

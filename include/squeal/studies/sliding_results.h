@@ -9,8 +9,5 @@ namespace Squeal
   void write_sliding_tables(const Scene &scene, const SlidingState &state, const OperationParameters &operation, Run &run);
 
   /// `sliding_state.vtu` and `sliding_state_contact.vtu`.
-  void write_sliding_fields(const Scene               &scene,
-                            const SlidingState        &state,
-                            const OperationParameters &operation,
-                            const FieldWriter         &writer);
+  void write_sliding_fields(const Scene &scene, const SlidingState &state, const OperationParameters &operation, const FieldWriter &writer);
 } // namespace Squeal

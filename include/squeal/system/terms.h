@@ -92,8 +92,11 @@ namespace Squeal
   }
 
   /// Σ θ_k A_k X, or Σ θ_k A_kᵀ X, of the terms with λ to this power.
-  MultiVector
-  times(const std::vector<Term> &terms, const ParameterValues &values, int power, const MultiVector &X, bool transposed = false);
+  MultiVector times(const std::vector<Term> &terms,
+                    const ParameterValues   &values,
+                    int                      power,
+                    const MultiVector       &X,
+                    bool                     transposed = false);
 
   /// Σ θ A of matrices; null where there is none.
   std::shared_ptr<const SparseMatrix> sum(const std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> &summands);

@@ -1,0 +1,15 @@
+#!/usr/bin/env bash
+# Tells the sources whose layout is not that of .clang-format, with clang-format 14, the version of Debian 12:
+#
+#   scripts/check_format.sh          lists them
+#   scripts/check_format.sh --fix    lays them out
+
+set -euo pipefail
+# shellcheck source=scripts/setup.sh
+source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+mode=(--dry-run -Werror)
+[[ ${1:-} == --fix ]] && mode=(-i)
+
+command -v clang-format-14 > /dev/null || install_packages clang-format-14
+cd "$squeal_root"
+find include source tests -name '*.h' -print0 -o -name '*.cc' -print0 | xargs -0 clang-format-14 "${mode[@]}"
