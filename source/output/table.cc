@@ -13,104 +13,85 @@ namespace Squeal
   {
     constexpr int significant_digits = 12;
 
-    std::string csv_text(const Cell &cell)
+    /// A cell as text; @p format says how a stream shows numbers.
+    template <typename Format>
+    std::string text_of(const Cell &cell, const Format &format)
     {
       std::ostringstream text;
       if (const auto *word = std::get_if<std::string>(&cell))
-        {
-          // Quotes only where the comma or a quote would end the cell
-          if (word->find_first_of(",\"\n") == std::string::npos)
-            return *word;
-          text << std::quoted(*word, '"', '"');
-        }
-      else if (const auto *count = std::get_if<long>(&cell))
+        return *word;
+      if (const auto *count = std::get_if<long>(&cell))
         text << *count;
       else if (const auto *number = std::get_if<double>(&cell))
-        // Adding zero takes the sign of a negative one
-        text << std::setprecision(significant_digits) << *number + 0.;
-      return text.str();
+        {
+          format(text);
+          text << *number;
+        }
+      // A minus before zeros says nothing
+      const std::string shown = text.str();
+      return !shown.empty() && shown[0] == '-' && shown.find_first_not_of("-0.") == std::string::npos ? shown.substr(1) : shown;
     }
 
-    std::string screen_text(const Cell &cell, const Column &column)
+    std::string csv_text(const Cell &cell)
     {
-      std::ostringstream text;
-      if (const auto *word = std::get_if<std::string>(&cell))
-        text << *word;
-      else if (const auto *count = std::get_if<long>(&cell))
-        text << *count;
-      else if (const auto *number = std::get_if<double>(&cell))
-        {
-          text << (column.scientific ? std::scientific : std::fixed) << std::setprecision(column.digits) << *number;
-          // A rounded minus zero says nothing.
-          if (text.str().find_first_not_of("-0.") == std::string::npos && text.str()[0] == '-')
-            return text.str().substr(1);
-        }
-      return text.str();
+      const std::string text = text_of(cell, [](std::ostream &stream) { stream << std::setprecision(significant_digits); });
+      // Quotes only where the comma or a quote would end the cell
+      if (text.find_first_of(",\"\n") == std::string::npos)
+        return text;
+      std::ostringstream quoted;
+      quoted << std::quoted(text, '"', '"');
+      return quoted.str();
     }
   } // namespace
 
-  std::string Column::header() const
+  Cell Table::checked(const Cell &cell) const
   {
-    return unit.empty() ? name : name + " [" + unit + "]";
-  }
-
-  Table::Table(std::vector<Column> columns)
-    : columns(std::move(columns))
-  {}
-
-  void Table::add_row(std::vector<Cell> cells)
-  {
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      if (const auto *number = std::get_if<double>(&cells[c]); number != nullptr && !std::isfinite(*number))
-        throw Error("a result is not a finite number", "table column `" + columns[c].header() + "`",
-                    "this is a defect of the program or of an extreme model; check material values and units");
-    rows.push_back(std::move(cells));
-  }
-
-  unsigned int Table::n_rows() const
-  {
-    return rows.size();
+    if (const auto *number = std::get_if<double>(&cell); number != nullptr && !std::isfinite(*number))
+      throw Error("a result is not a finite number", "table column `" + heads.back().name + "`",
+                  "this is a defect of the program or of an extreme model; check material values and units");
+    return cell;
   }
 
   void Table::write_csv(std::ostream &stream) const
   {
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      stream << (c > 0 ? "," : "") << columns[c].header();
-    stream << '\n';
-    for (const auto &row : rows)
-      {
-        for (std::size_t c = 0; c < row.size(); ++c)
-          stream << (c > 0 ? "," : "") << csv_text(row[c]);
-        stream << '\n';
-      }
+    const auto write_row = [&](const auto &text) {
+      for (std::size_t c = 0; c < heads.size(); ++c)
+        stream << (c > 0 ? "," : "") << text(c);
+      stream << '\n';
+    };
+    write_row([&](const std::size_t c) { return heads[c].name; });
+    for (std::size_t row = 0; row < cells[0].size(); ++row)
+      write_row([&](const std::size_t c) { return csv_text(cells[c][row]); });
   }
 
   void Table::print(std::ostream &stream) const
   {
+    // Every column padded to its width, its header first
     std::vector<std::vector<std::string>> texts;
-    std::vector<std::size_t>              widths;
-    std::vector<bool>                     is_text(columns.size(), false);
-    for (const Column &column : columns)
-      widths.push_back(column.header().size());
-    for (const auto &row : rows)
+    for (std::size_t c = 0; c < heads.size(); ++c)
       {
-        texts.emplace_back();
-        for (std::size_t c = 0; c < row.size(); ++c)
-          {
-            texts.back().push_back(screen_text(row[c], columns[c]));
-            widths[c]  = std::max(widths[c], texts.back().back().size());
-            is_text[c] = is_text[c] || std::holds_alternative<std::string>(row[c]);
-          }
+        const auto format = [&](std::ostream &text) {
+          text << (heads[c].scientific ? std::scientific : std::fixed) << std::setprecision(heads[c].digits);
+        };
+        std::vector<std::string> column = {heads[c].name};
+        for (const Cell &cell : cells[c])
+          column.push_back(text_of(cell, format));
+        std::size_t width = 0;
+        for (const std::string &text : column)
+          width = std::max(width, text.size());
+        const bool is_text =
+          std::any_of(cells[c].begin(), cells[c].end(), [](const Cell &cell) { return std::holds_alternative<std::string>(cell); });
+        for (std::string &text : column)
+          text.insert(is_text ? text.size() : 0, width - text.size(), ' ');
+        texts.push_back(std::move(column));
       }
-    const auto print_row = [&](const auto &text_of) {
-      stream << "   ";
-      for (std::size_t c = 0; c < columns.size(); ++c)
-        stream << ' ' << (is_text[c] ? std::left : std::right) << std::setw(widths[c]) << text_of(c) << ' ';
-      stream << std::right << '\n';
-    };
-    print_row([&](const std::size_t c) { return columns[c].header(); });
-    for (const auto &row : texts)
-      print_row([&](const std::size_t c) { return row[c]; });
+    for (std::size_t row = 0; row <= cells[0].size(); ++row)
+      {
+        stream << "   ";
+        for (const auto &column : texts)
+          stream << ' ' << column[row] << ' ';
+        stream << '\n';
+      }
     stream << std::flush;
   }
 } // namespace Squeal

@@ -842,7 +842,7 @@ namespace Squeal
         for (int k = 0; k < n_points(); ++k)
           {
             const auto &values = points[k].lambda;
-            ModeCount   count;
+            ChartCount  count;
             count.friction_coefficient = mu(k);
             count.n_modes              = static_cast<int>(
               std::count_if(values.begin(), values.end(), [&](const Complex &l) { return l.imag() <= options.largest_frequency; }));

@@ -36,15 +36,32 @@ namespace Squeal
       return n > 2 && label[n - 2] == ' ' ? label.substr(0, n - 2) : label;
     }
 
+    /// A line of a table: what the paper prints, where it does, and the divergence rates [%] of all readings.
+    struct Row
+    {
+      std::string                        label;
+      std::optional<double>              paper;
+      std::vector<std::optional<double>> rates;
+    };
+
+    Table table_beside_paper(const std::string          &head,
+                             const std::vector<Row>     &rows,
+                             const std::vector<Reading> &readings,
+                             const bool                  beside_paper,
+                             const int                   digits)
+    {
+      Columns<Row> columns = {{head, "", &Row::label}};
+      if (beside_paper)
+        columns.push_back({"paper with C_b", "%", &Row::paper, digits});
+      for (std::size_t i = 0; i < readings.size(); ++i)
+        columns.push_back({readings[i].name, "%", [i](const Row &row) { return row.rates[i]; }, digits});
+      return Table(columns, rows);
+    }
+
     /// Families in the order of their lowest frequencies; in those of pin modes the members by divergence rate.
     Table mode_table(std::vector<Reading> all, const std::vector<std::string> &families, const bool beside_paper)
     {
-      std::vector<Column> columns = {{"label", ""}};
-      if (beside_paper)
-        columns.push_back({"paper with C_b", "%", 3});
-      for (const Reading &reading : all)
-        columns.push_back({reading.name, "%", 3});
-      Table table(columns);
+      std::vector<Row> rows;
       for (const std::string &name : families)
         {
           std::size_t n = 0;
@@ -56,46 +73,35 @@ namespace Squeal
           for (std::size_t member = 0; member < n; ++member)
             {
               const std::string label = n == 2 ? name + (member == 0 ? " -" : " +") : name;
-              std::vector<Cell> cells;
-              cells.emplace_back(label);
-              if (beside_paper)
-                {
-                  const auto paper = paper_divergence_damped(label);
-                  cells.push_back(paper ? Cell(*paper) : Cell());
-                }
+              rows.push_back({label, paper_divergence_damped(label), {}});
               for (Reading &reading : all)
-                cells.push_back(member < reading.rates[name].size() ? Cell(reading.rates[name][member]) : Cell());
-              table.add_row(std::move(cells));
+                {
+                  const auto &rates = reading.rates[name];
+                  rows.back().rates.push_back(member < rates.size() ? std::make_optional(rates[member]) : std::nullopt);
+                }
             }
         }
-      return table;
+      return table_beside_paper("label", rows, all, beside_paper, 3);
     }
 
     /// The pin modes that the paper lists as damped: all T1, and of F1 the half that bends radially.
     Table range_table(std::vector<Reading> all, const bool beside_paper)
     {
-      std::vector<Column> columns = {{"damped pin modes", ""}};
-      if (beside_paper)
-        columns.push_back({"paper with C_b", "%", 2});
-      for (const Reading &reading : all)
-        columns.push_back({reading.name, "%", 2});
-      Table table(columns);
+      std::vector<Row> rows;
       for (const PaperRange &range : paper_ranges_damped)
         for (const bool lowest : {true, false})
           {
-            std::vector<Cell> cells;
-            cells.emplace_back(std::string(range.label) + (lowest ? " most damped" : " least damped"));
-            if (beside_paper)
-              cells.emplace_back(lowest ? range.lowest : range.highest);
+            rows.push_back(
+              {std::string(range.label) + (lowest ? " most damped" : " least damped"), lowest ? range.lowest : range.highest, {}});
             for (Reading &reading : all)
               {
                 auto &rates = reading.rates[range.label];
                 std::sort(rates.begin(), rates.end());
-                cells.push_back(rates.empty() ? Cell() : Cell(rates[lowest ? 0 : (rates.size() - 1) / range.every]));
+                rows.back().rates.push_back(rates.empty() ? std::nullopt :
+                                                            std::make_optional(rates[lowest ? 0 : (rates.size() - 1) / range.every]));
               }
-            table.add_row(std::move(cells));
           }
-      return table;
+      return table_beside_paper("damped pin modes", rows, all, beside_paper, 2);
     }
   } // namespace
 

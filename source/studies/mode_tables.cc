@@ -1,6 +1,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/mode_tables.h>
 
+#include <boost/range/irange.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,133 +11,136 @@ namespace Squeal
 {
   Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
   {
-    struct ComponentSet
+    struct Row
     {
-      const char           *component, *contact;
-      const ComponentModes &modes;
+      const char *component, *contact;
+      std::string label;
+      double      frequency, residual;
     };
-    Table table({{"component", ""}, {"contact", ""}, {"label", ""}, {"frequency", "Hz", 2}, {"residual", "-", 1, true}});
-    for (const ComponentSet &set : {ComponentSet{"disc", "free", modes.disc}, ComponentSet{"pins", "sliding", modes.pins_sliding},
-                                    ComponentSet{"pins", "free", modes.pins_free}})
-      {
-        const std::size_t        n = n_in_band(set.modes.eigenvalues, largest_eigenvalue);
-        std::vector<std::string> labels(set.modes.labels.begin(), set.modes.labels.begin() + static_cast<std::ptrdiff_t>(n));
-        mark_doublets(labels);
-        for (std::size_t j = 0; j < n; ++j)
-          table.add_row({std::string(set.component), std::string(set.contact), labels[j], hertz(std::sqrt(set.modes.eigenvalues[j])),
-                         set.modes.residuals[j]});
-      }
-    return table;
+    std::vector<Row> rows;
+    const auto       add = [&](const char *component, const char *contact, const ComponentModes &set) {
+      const std::size_t        n = n_in_band(set.eigenvalues, largest_eigenvalue);
+      std::vector<std::string> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
+      mark_doublets(labels);
+      for (std::size_t j = 0; j < n; ++j)
+        rows.push_back({component, contact, labels[j], hertz(std::sqrt(set.eigenvalues[j])), set.residuals[j]});
+    };
+    add("disc", "free", modes.disc);
+    add("pins", "sliding", modes.pins_sliding);
+    add("pins", "free", modes.pins_free);
+    return Table(Columns<Row>{{"component", "", &Row::component},
+                              {"contact", "", &Row::contact},
+                              {"label", "", &Row::label},
+                              {"frequency", "Hz", &Row::frequency, 2},
+                              {"residual", "-", &Row::residual, 1, true}},
+                 rows);
   }
 
   Table real_table(const FrictionlessModes &modes)
   {
-    Table table({{"label", ""}, {"share", "-", 3}, {"frequency", "Hz", 3}, {"residual", "-", 1, true}});
-    for (std::size_t j = 0; j < modes.labels.size(); ++j)
-      table.add_row({modes.labels[j], modes.identities[j].share, hertz(std::sqrt(modes.real.eigenvalues[j])), modes.real.residuals[j]});
-    return table;
+    return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
+                              {"share", "-", [&](const int j) { return modes.identities[j].share; }, 3},
+                              {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
+                              {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
+                 boost::irange<int>(0, modes.labels.size()));
   }
+
+  namespace
+  {
+    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
+    Column<int> column_of(const FrictionModes &friction,
+                          const std::string   &name,
+                          const std::string   &unit,
+                          double ModalQuantities::*quantity,
+                          const int                digits)
+    {
+      const double factor = unit == "%" ? 100. : 1.;
+      return {name, unit,
+              [&friction, quantity, factor](const int j) { return factor * (modal_quantities(friction.modes.lambda[j]).*quantity); },
+              digits};
+    }
+  } // namespace
 
   Table complex_table(const FrictionModes &friction)
   {
-    const ComplexModes &modes         = friction.modes;
-    std::vector<Column> columns       = {{"label", ""},
-                                         {"share", "-", 3},
-                                         {"frequency", "Hz", 3},
-                                         {"growth rate", "1/s", 4},
-                                         {"divergence rate", "%", 4},
-                                         {"effective damping ratio -2R/omega", "%", 4},
-                                         {"residual", "-", 1, true},
-                                         {"eps_res", "-", 1, true},
-                                         {"unstable", "-"}};
-    const bool          has_estimates = !modes.estimated_errors.empty();
-    if (has_estimates)
-      columns.push_back({"estimated error of lambda", "-", 1, true});
-    Table table(columns);
-    for (std::size_t j = 0; j < friction.labels.size(); ++j)
-      {
-        const ModalQuantities mode  = modal_quantities(modes.lambda[j]);
-        std::vector<Cell>     cells = {friction.labels[j], friction.identities[j].share, mode.frequency,
-                                       mode.growth_rate,   100. * mode.divergence_rate,  100. * mode.damping_ratio,
-                                       modes.residuals[j], modes.energy_residuals[j],    static_cast<long>(friction.unstable[j])};
-        if (has_estimates)
-          cells.emplace_back(modes.estimated_errors[j]);
-        table.add_row(std::move(cells));
-      }
-    return table;
+    const ComplexModes &modes   = friction.modes;
+    Columns<int>        columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
+                                   {"share", "-", [&](const int j) { return friction.identities[j].share; }, 3},
+                                   column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
+                                   column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
+                                   column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                                   column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
+                                   {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
+                                   {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
+                                   {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }}};
+    if (!modes.estimated_errors.empty())
+      columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
+    return Table(columns, boost::irange<int>(0, friction.labels.size()));
   }
 
   Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
   {
-    struct Growing
-    {
-      std::size_t     mode;
-      ModalQuantities quantities;
-    };
-    std::vector<Growing> growing;
+    std::vector<int> growing;
     for (std::size_t j = 0; j < friction.unstable.size(); ++j)
       if (friction.unstable[j])
-        growing.push_back({j, modal_quantities(friction.modes.lambda[j])});
-    std::stable_sort(growing.begin(), growing.end(),
-                     [](const Growing &a, const Growing &b) { return a.quantities.divergence_rate > b.quantities.divergence_rate; });
+        growing.push_back(static_cast<int>(j));
+    const auto rate = [&](const int j) { return modal_quantities(friction.modes.lambda[j]).divergence_rate; };
+    std::stable_sort(growing.begin(), growing.end(), [&](const int a, const int b) { return rate(a) > rate(b); });
     growing.resize(std::min(growing.size(), n_largest));
-
-    Table table({{"unstable mode", ""}, {"frequency", "Hz", 1}, {"growth rate", "1/s", 2}, {"divergence rate", "%", 4}, {"share", "-", 3}});
-    for (const Growing &mode : growing)
-      table.add_row({friction.labels[mode.mode], mode.quantities.frequency, mode.quantities.growth_rate,
-                     100. * mode.quantities.divergence_rate, friction.identities[mode.mode].share});
-    return table;
+    return Table(Columns<int>{{"unstable mode", "", [&](const int j) { return friction.labels[j]; }},
+                              column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
+                              column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
+                              column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                              {"share", "-", [&](const int j) { return friction.identities[j].share; }, 3}},
+                 growing);
   }
 
-  Table real_eigenvalue_table(const std::vector<double> &values)
+  Table real_eigenvalue_table(std::vector<double> values)
   {
-    Table table({{"growth rate", "1/s", 4}, {"kind", ""}});
-    for (auto value = values.rbegin(); value != values.rend(); ++value)
-      table.add_row({*value, std::string(*value > 0. ? "static divergence" : "decay")});
-    return table;
+    std::reverse(values.begin(), values.end());
+    return Table(Columns<double>{{"growth rate", "1/s", [](const double value) { return value; }, 4},
+                                 {"kind", "", [](const double value) { return value > 0. ? "static divergence" : "decay"; }}},
+                 values);
   }
 
   Table pin_table(const std::vector<PinContact> &pins)
   {
-    Table table({{"pin", ""},
-                 {"side", "-"},
-                 {"load", "N", 3},
-                 {"open nodes", "-"},
-                 {"nodes", "-"},
-                 {"pressure offset along t", "m", 2, true},
-                 {"pressure offset outwards", "m", 2, true},
-                 {"largest pressure", "Pa", 2, true},
-                 {"w_0", "m/s", 4},
-                 {"c_b", "N s/m", 3},
-                 {"c_t", "N s/m", 3},
-                 {"travel of backplate", "m", 4, true},
-                 {"largest gap", "m", 2, true}});
-    for (const PinContact &pin : pins)
-      table.add_row({pin.pin, static_cast<long>(pin.side), pin.load, static_cast<long>(pin.n_open), static_cast<long>(pin.n_nodes),
-                     pin.sliding_offset, pin.radial_offset, pin.largest_pressure, pin.sliding_speed, pin.radial_damping,
-                     pin.sliding_damping, pin.approach, pin.largest_gap});
-    return table;
+    return Table(Columns<PinContact>{{"pin", "", &PinContact::pin},
+                                     {"side", "-", &PinContact::side},
+                                     {"load", "N", &PinContact::load, 3},
+                                     {"open nodes", "-", &PinContact::n_open},
+                                     {"nodes", "-", &PinContact::n_nodes},
+                                     {"pressure offset along t", "m", &PinContact::sliding_offset, 2, true},
+                                     {"pressure offset outwards", "m", &PinContact::radial_offset, 2, true},
+                                     {"largest pressure", "Pa", &PinContact::largest_pressure, 2, true},
+                                     {"w_0", "m/s", &PinContact::sliding_speed, 4},
+                                     {"c_b", "N s/m", &PinContact::radial_damping, 3},
+                                     {"c_t", "N s/m", &PinContact::sliding_damping, 3},
+                                     {"travel of backplate", "m", &PinContact::approach, 4, true},
+                                     {"largest gap", "m", &PinContact::largest_gap, 2, true}},
+                 pins);
   }
 
   Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
   {
-    Table                 table({{"quantity", ""}, {"value", "", 3, true}});
-    std::map<int, double> loads;
+    std::vector<std::pair<std::string, Cell>> rows;
+    std::map<int, double>                     loads;
     for (const PinContact &pin : pins)
       loads[pin.side] += pin.load;
     for (const auto &[side, load] : loads)
-      table.add_row({std::string("normal load of the ") + (side > 0 ? "upper" : "lower") + " side [N]", load});
+      rows.emplace_back(std::string("normal load of the ") + (side > 0 ? "upper" : "lower") + " side [N]", load);
     const SlidingCertificate &c = state.certificate;
-    table.add_row({std::string("residual of the full system [-]"), c.residual});
-    table.add_row({std::string("error of the prescribed loads [-]"), c.load});
-    table.add_row({std::string("largest tension over load [-]"), c.tension});
-    table.add_row({std::string("largest overlap over travel [-]"), c.overlap});
-    table.add_row({std::string("complementarity |r_n g| over load and travel [-]"), c.complementarity});
-    table.add_row({std::string("force balance with the supports [-]"), c.force_balance});
-    table.add_row({std::string("moment balance with the supports [-]"), c.moment_balance});
-    table.add_row({std::string("changes of the contact set [-]"), static_cast<long>(state.n_steps)});
+    rows.emplace_back("residual of the full system [-]", c.residual);
+    rows.emplace_back("error of the prescribed loads [-]", c.load);
+    rows.emplace_back("largest tension over load [-]", c.tension);
+    rows.emplace_back("largest overlap over travel [-]", c.overlap);
+    rows.emplace_back("complementarity |r_n g| over load and travel [-]", c.complementarity);
+    rows.emplace_back("force balance with the supports [-]", c.force_balance);
+    rows.emplace_back("moment balance with the supports [-]", c.moment_balance);
+    rows.emplace_back("changes of the contact set [-]", state.n_steps);
     if (std::isfinite(state.uniqueness.unique_below))
-      table.add_row({std::string("friction coefficient below which the state is unique [-]"), state.uniqueness.unique_below});
-    return table;
+      rows.emplace_back("friction coefficient below which the state is unique [-]", state.uniqueness.unique_below);
+    using Row = std::pair<std::string, Cell>;
+    return Table(Columns<Row>{{"quantity", "", &Row::first}, {"value", "", &Row::second, 3, true}}, rows);
   }
 } // namespace Squeal

@@ -153,9 +153,36 @@ namespace Squeal
       return std::tie(o.friction_coefficient, o.rotation_speed, o.load_per_side, o.friction_slope);
     }
 
-    Cell to_cell(const Value value)
+    /// A quantity of a mode in the paper and in the run.
+    struct Pair
     {
-      return value ? Cell(*value) : Cell();
+      Value paper, found = {};
+
+      /// Relative difference [%].
+      Value difference() const
+      {
+        return paper && found ? Value(100. * (*found / *paper - 1.)) : none;
+      }
+    };
+
+    /// A row of the paper beside the mode of the run.
+    struct Comparison
+    {
+      const char *name;
+      Pair        component, coupled, complex, divergence;
+    };
+
+    /// Root mean square of the differences of frequencies [-]; counts them.
+    double agreement_of(const std::vector<Comparison> &rows, Pair Comparison::*frequency, unsigned int &n)
+    {
+      double sum = 0.;
+      for (const Comparison &row : rows)
+        if (const Value difference = (row.*frequency).difference())
+          {
+            sum += *difference * *difference / 1e4;
+            ++n;
+          }
+      return n > 0 ? std::sqrt(sum / n) : 0.;
     }
   } // namespace
 
@@ -190,19 +217,7 @@ namespace Squeal
 
   Table table_one(const TableOneResults &results, const RadialDissipation dissipation, Agreement &agreement)
   {
-    const bool damped = dissipation != RadialDissipation::none;
-    Table      table({{"label", ""},
-                      {"component paper", "Hz", 0},
-                      {"component", "Hz", 1},
-                      {"difference", "%", 2},
-                      {"coupled paper", "Hz", 0},
-                      {"coupled", "Hz", 1},
-                      {"difference", "%", 2},
-                      {"complex paper", "Hz", 0},
-                      {"complex", "Hz", 1},
-                      {"divergence paper", "%", 3},
-                      {"divergence", "%", 3}});
-
+    const bool          damped = dissipation != RadialDissipation::none;
     std::vector<double> frequencies, growth_rates;
     for (const auto &lambda : results.lambda)
       {
@@ -211,46 +226,46 @@ namespace Squeal
         growth_rates.push_back(mode.growth_rate);
       }
 
-    double sum_component = 0., sum_coupled = 0.;
+    std::vector<Comparison> comparisons;
     for (const Row &row : rows())
       {
-        std::vector<Cell> cells         = {std::string(row.name)};
-        const auto        add_frequency = [&](const Row &match, const Value paper, const auto &labels, const auto &values, double &sum,
-                                       unsigned int &n) {
-          std::optional<std::size_t> mode;
-          if (paper)
-            mode = find(match, labels, values, {}, paper);
-          cells.push_back(to_cell(paper));
-          cells.push_back(mode ? Cell(values[*mode]) : Cell());
-          if (mode)
-            {
-              const double difference = values[*mode] / *paper - 1.;
-              cells.emplace_back(100. * difference);
-              sum += difference * difference;
-              ++n;
-            }
-          else
-            cells.emplace_back();
+        Comparison comparison     = {row.name,
+                                     {row.component},
+                                     {row.coupled},
+                                     {damped ? row.complex_damped : row.complex_undamped},
+                                     {damped ? row.divergence_damped : row.divergence_undamped}};
+        const auto find_frequency = [](const Row &match, Pair &pair, const auto &labels, const auto &values) {
+          if (const auto mode = pair.paper ? find(match, labels, values, {}, pair.paper) : std::nullopt)
+            pair.found = values[*mode];
         };
         // Component modes are beyond doubt.
         Row component_row = row;
         if (row.match == Match::frequency)
           component_row.match = Match::label;
-        add_frequency(component_row, row.component, results.component_labels, results.component_frequencies, sum_component,
-                      agreement.n_component);
-        add_frequency(row, row.coupled, results.coupled_labels, results.coupled_frequencies, sum_coupled, agreement.n_coupled);
-
-        const Value paper_frequency  = damped ? row.complex_damped : row.complex_undamped;
-        const Value paper_divergence = damped ? row.divergence_damped : row.divergence_undamped;
-        const auto  mode             = find(row, results.complex_labels, frequencies, growth_rates, paper_frequency);
-        cells.push_back(to_cell(paper_frequency));
-        cells.push_back(mode ? Cell(frequencies[*mode]) : Cell());
-        cells.push_back(to_cell(paper_divergence));
-        cells.push_back(mode ? Cell(100. * modal_quantities(results.lambda[*mode]).divergence_rate) : Cell());
-        table.add_row(std::move(cells));
+        find_frequency(component_row, comparison.component, results.component_labels, results.component_frequencies);
+        find_frequency(row, comparison.coupled, results.coupled_labels, results.coupled_frequencies);
+        if (const auto mode = find(row, results.complex_labels, frequencies, growth_rates, comparison.complex.paper))
+          {
+            comparison.complex.found    = frequencies[*mode];
+            comparison.divergence.found = 100. * modal_quantities(results.lambda[*mode]).divergence_rate;
+          }
+        comparisons.push_back(comparison);
       }
-    agreement.component = agreement.n_component > 0 ? std::sqrt(sum_component / agreement.n_component) : 0.;
-    agreement.coupled   = agreement.n_coupled > 0 ? std::sqrt(sum_coupled / agreement.n_coupled) : 0.;
-    return table;
+    agreement.component = agreement_of(comparisons, &Comparison::component, agreement.n_component);
+    agreement.coupled   = agreement_of(comparisons, &Comparison::coupled, agreement.n_coupled);
+
+    using C = Comparison;
+    return Table(Columns<C>{{"label", "", &C::name},
+                            {"component paper", "Hz", [](const C &c) { return c.component.paper; }, 0},
+                            {"component", "Hz", [](const C &c) { return c.component.found; }, 1},
+                            {"difference", "%", [](const C &c) { return c.component.difference(); }, 2},
+                            {"coupled paper", "Hz", [](const C &c) { return c.coupled.paper; }, 0},
+                            {"coupled", "Hz", [](const C &c) { return c.coupled.found; }, 1},
+                            {"difference", "%", [](const C &c) { return c.coupled.difference(); }, 2},
+                            {"complex paper", "Hz", [](const C &c) { return c.complex.paper; }, 0},
+                            {"complex", "Hz", [](const C &c) { return c.complex.found; }, 1},
+                            {"divergence paper", "%", [](const C &c) { return c.divergence.paper; }, 3},
+                            {"divergence", "%", [](const C &c) { return c.divergence.found; }, 3}},
+                 comparisons);
   }
 } // namespace Squeal

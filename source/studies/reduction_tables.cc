@@ -13,163 +13,153 @@ namespace Squeal
 
     /// Relative differences of λ below this are rounding errors of the reference and say nothing about an estimate.
     constexpr double reference_accuracy = 1e-11;
+
+    /// A condition number; nothing where the matrix is singular to rounding.
+    Cell condition_cell(const double condition)
+    {
+      return std::isfinite(condition) ? Cell(condition) : Cell();
+    }
   } // namespace
 
   Table reduction_error_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups)
   {
-    Table table({{"basis", ""},
-                 {"n_r0", "-"},
-                 {"n_r", "-"},
-                 {"group", ""},
-                 {"res", "-", 1, true},
-                 {"mac", "-", 1, true},
-                 {"frq", "-", 1, true},
-                 {"div", "-", 1, true},
-                 {"div estimated", "-", 1, true},
-                 {"div corrected", "-", 1, true},
-                 {"build time", "s", 2},
-                 {"solve time", "s", 3},
-                 {"subspace", "-", 1, true},
-                 {"lambda", "-", 1, true},
-                 {"component modes", ""}});
+    struct Row : GroupError
+    {
+      const Candidate &candidate;
+    };
+    std::vector<Row> rows;
     for (const Candidate &candidate : candidates)
-      for (const GroupError &m : largest_errors(candidate.errors, groups))
-        table.add_row({candidate.name, static_cast<long>(candidate.basis.n_r0), static_cast<long>(candidate.n_r), m.group, m.residual,
-                       m.shape, m.frequency, m.divergence, m.estimated_divergence, m.corrected_divergence, candidate.build_seconds,
-                       candidate.solve_seconds, m.subspace, m.eigenvalue, candidate.truncation});
-    return table;
+      for (const GroupError &largest : largest_errors(candidate.errors, groups))
+        rows.push_back({largest, candidate});
+    return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                              {"n_r0", "-", [](const Row &row) { return row.candidate.basis.n_r0; }},
+                              {"n_r", "-", [](const Row &row) { return row.candidate.n_r; }},
+                              {"group", "", &Row::group},
+                              {"res", "-", &Row::residual, 1, true},
+                              {"mac", "-", &Row::shape, 1, true},
+                              {"frq", "-", &Row::frequency, 1, true},
+                              {"div", "-", &Row::divergence, 1, true},
+                              {"div estimated", "-", &Row::estimated_divergence, 1, true},
+                              {"div corrected", "-", &Row::corrected_divergence, 1, true},
+                              {"build time", "s", [](const Row &row) { return row.candidate.build_seconds; }, 2},
+                              {"solve time", "s", [](const Row &row) { return row.candidate.solve_seconds; }, 3},
+                              {"subspace", "-", &Row::subspace, 1, true},
+                              {"lambda", "-", &Row::eigenvalue, 1, true},
+                              {"component modes", "", [](const Row &row) { return row.candidate.truncation; }}},
+                 rows);
   }
 
   Table reduction_basis_table(const std::vector<Candidate> &candidates, const int n, const double full_seconds)
   {
-    Table table({{"basis", ""},
-                 {"columns", ""},
-                 {"component modes", ""},
-                 {"n_r0", "-"},
-                 {"n_r by formula", "-"},
-                 {"n_r", "-"},
-                 {"dropped", "-"},
-                 {"rank tolerance", "-", 0, true},
-                 {"condition", "-", 1, true},
-                 {"orthonormality", "-", 1, true},
-                 {"rank of P_n T_r0", "-"},
-                 {"smallest kept", "-", 1, true},
-                 {"largest dropped", "-", 1, true},
-                 {"G_n", "-", 1},
-                 {"build time", "s", 2},
-                 {"solve time", "s", 3},
-                 {"G_t", "-", 2}});
-    for (const Candidate &candidate : candidates)
-      {
-        const ReducedBasis &b = candidate.basis;
-        // A Gram matrix can be singular to rounding: its condition is then not a number to be printed.
-        table.add_row({candidate.name, candidate.recipe->columns(), candidate.truncation, static_cast<long>(b.n_r0),
-                       static_cast<long>(b.n_nominal), static_cast<long>(candidate.n_r), static_cast<long>(b.n_dropped), b.tolerance,
-                       std::isfinite(b.condition) ? Cell(b.condition) : Cell(), b.orthonormality, static_cast<long>(b.connection.rank),
-                       b.connection.smallest_kept, b.connection.largest_dropped, static_cast<double>(n) / candidate.n_r,
-                       candidate.build_seconds, candidate.solve_seconds,
-                       full_seconds / (candidate.build_seconds + candidate.solve_seconds)});
-      }
-    return table;
+    using Row = Candidate;
+    return Table(
+      Columns<Row>{{"basis", "", &Row::name},
+                   {"columns", "", [](const Row &row) { return row.recipe->columns(); }},
+                   {"component modes", "", &Row::truncation},
+                   {"n_r0", "-", [](const Row &row) { return row.basis.n_r0; }},
+                   {"n_r by formula", "-", [](const Row &row) { return row.basis.n_nominal; }},
+                   {"n_r", "-", &Row::n_r},
+                   {"dropped", "-", [](const Row &row) { return row.basis.n_dropped; }},
+                   {"rank tolerance", "-", [](const Row &row) { return row.basis.tolerance; }, 0, true},
+                   {"condition", "-", [](const Row &row) { return condition_cell(row.basis.condition); }, 1, true},
+                   {"orthonormality", "-", [](const Row &row) { return row.basis.orthonormality; }, 1, true},
+                   {"rank of P_n T_r0", "-", [](const Row &row) { return row.basis.connection.rank; }},
+                   {"smallest kept", "-", [](const Row &row) { return row.basis.connection.smallest_kept; }, 1, true},
+                   {"largest dropped", "-", [](const Row &row) { return row.basis.connection.largest_dropped; }, 1, true},
+                   {"G_n", "-", [n](const Row &row) { return static_cast<double>(n) / row.n_r; }, 1},
+                   {"build time", "s", &Row::build_seconds, 2},
+                   {"solve time", "s", &Row::solve_seconds, 3},
+                   {"G_t", "-", [full_seconds](const Row &row) { return full_seconds / (row.build_seconds + row.solve_seconds); }, 2}},
+      candidates);
   }
 
   Table reduction_mode_table(const std::vector<Candidate>   &candidates,
                              const std::vector<std::string> &labels,
                              const std::vector<std::string> &groups)
   {
-    Table table({{"basis", ""},
-                 {"component modes", ""},
-                 {"label", ""},
-                 {"group", ""},
-                 {"frequency", "Hz", 3},
-                 {"divergence rate", "%", 4},
-                 {"error bar of frequency", "Hz", 1, true},
-                 {"error bar of divergence rate", "%", 1, true},
-                 {"verdict", ""},
-                 {"reference frequency", "Hz", 3},
-                 {"reference divergence rate", "%", 4},
-                 {"eps_res", "-", 1, true},
-                 {"eps_mac", "-", 1, true},
-                 {"eps_frq", "-", 1, true},
-                 {"eps_div", "-", 1, true},
-                 {"error of lambda", "-", 1, true},
-                 {"estimated error of lambda", "-", 1, true},
-                 {"error of corrected lambda", "-", 1, true},
-                 {"condition", "-", 1, true},
-                 {"estimate claimed", ""},
-                 {"cluster", "-"},
-                 {"subspace", "-", 1, true}});
+    struct Row : ModeError
+    {
+      const Candidate &candidate;
+      std::string      label, group;
+      ModalQuantities  mode, exact, better;
+    };
+    std::vector<Row> rows;
     for (const Candidate &candidate : candidates)
       for (std::size_t j = 0; j < labels.size(); ++j)
         {
-          const ModeError      &e    = candidate.errors[j];
-          const ModalQuantities mode = modal_quantities(e.reduced), reference = modal_quantities(e.reference),
-                                better = modal_quantities(e.corrected);
-          table.add_row({candidate.name,
-                         candidate.truncation,
-                         labels[j],
-                         groups[j],
-                         mode.frequency,
-                         100. * mode.divergence_rate,
-                         std::abs(better.frequency - mode.frequency),
-                         100. * std::abs(better.divergence_rate - mode.divergence_rate),
-                         to_string(e.verdict),
-                         reference.frequency,
-                         100. * reference.divergence_rate,
-                         e.residual,
-                         e.shape,
-                         e.frequency,
-                         e.divergence,
-                         e.eigenvalue,
-                         e.estimated_error,
-                         e.corrected_error,
-                         std::isfinite(e.condition) ? Cell(e.condition) : Cell(),
-                         std::string(e.claimed ? "yes" : "no"),
-                         static_cast<long>(e.cluster_size),
-                         e.subspace});
+          const ModeError &e = candidate.errors[j];
+          rows.push_back({e, candidate, labels[j], groups[j], modal_quantities(e.reduced), modal_quantities(e.reference),
+                          modal_quantities(e.corrected)});
         }
-    return table;
+    const auto frequency_bar  = [](const Row &row) { return std::abs(row.better.frequency - row.mode.frequency); };
+    const auto divergence_bar = [](const Row &row) { return 100. * std::abs(row.better.divergence_rate - row.mode.divergence_rate); };
+    return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                              {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
+                              {"label", "", &Row::label},
+                              {"group", "", &Row::group},
+                              {"frequency", "Hz", [](const Row &row) { return row.mode.frequency; }, 3},
+                              {"divergence rate", "%", [](const Row &row) { return 100. * row.mode.divergence_rate; }, 4},
+                              {"error bar of frequency", "Hz", frequency_bar, 1, true},
+                              {"error bar of divergence rate", "%", divergence_bar, 1, true},
+                              {"verdict", "", &Row::verdict},
+                              {"reference frequency", "Hz", [](const Row &row) { return row.exact.frequency; }, 3},
+                              {"reference divergence rate", "%", [](const Row &row) { return 100. * row.exact.divergence_rate; }, 4},
+                              {"eps_res", "-", &Row::residual, 1, true},
+                              {"eps_mac", "-", &Row::shape, 1, true},
+                              {"eps_frq", "-", &Row::frequency, 1, true},
+                              {"eps_div", "-", &Row::divergence, 1, true},
+                              {"error of lambda", "-", &Row::eigenvalue, 1, true},
+                              {"estimated error of lambda", "-", &Row::estimated_error, 1, true},
+                              {"error of corrected lambda", "-", &Row::corrected_error, 1, true},
+                              {"condition", "-", [](const Row &row) { return condition_cell(row.condition); }, 1, true},
+                              {"estimate claimed", "", [](const Row &row) { return row.claimed ? "yes" : "no"; }},
+                              {"cluster", "-", &Row::cluster_size},
+                              {"subspace", "-", &Row::subspace, 1, true}},
+                 rows);
   }
 
   Table reduction_estimate_table(const std::vector<Candidate> &candidates, const std::vector<bool> &unstable)
   {
-    Table table({{"basis", ""},
-                 {"component modes", ""},
-                 {"modes", "-"},
-                 {"claimed", "-"},
-                 {"judged", "-"},
-                 {"median ratio to the true error", "-", 2},
-                 {"within a factor of 3", "%", 0},
-                 {"median gain of the correction", "-", 1},
-                 {"undecided", "-"},
-                 {"wrong verdicts", "-"}});
+    struct Row
+    {
+      const Candidate    &candidate;
+      int                 n_claimed = 0, n_good = 0, n_undecided = 0, n_wrong = 0;
+      std::vector<double> ratios = {}, gains = {};
+    };
+    std::vector<Row> rows;
     for (const Candidate &candidate : candidates)
       {
-        std::vector<double> ratios, gains;
-        long                n_claimed = 0, n_good = 0, n_undecided = 0, n_wrong = 0;
+        rows.push_back({candidate});
+        Row &row = rows.back();
         for (std::size_t j = 0; j < candidate.errors.size(); ++j)
           {
             const ModeError &e = candidate.errors[j];
-            n_undecided += e.verdict == Verdict::undecided;
-            n_wrong += e.verdict == (unstable[j] ? Verdict::stable : Verdict::unstable);
-            n_claimed += e.claimed;
+            row.n_undecided += e.verdict == Verdict::undecided;
+            row.n_wrong += e.verdict == (unstable[j] ? Verdict::stable : Verdict::unstable);
+            row.n_claimed += e.claimed;
             if (!e.claimed || !(e.eigenvalue > reference_accuracy))
               continue;
-            ratios.push_back(e.estimate_ratio);
-            n_good += e.estimate_ratio > 1. / good_factor && e.estimate_ratio < good_factor;
+            row.ratios.push_back(e.estimate_ratio);
+            row.n_good += e.estimate_ratio > 1. / good_factor && e.estimate_ratio < good_factor;
             if (e.corrected_error > 0.)
-              gains.push_back(e.eigenvalue / e.corrected_error);
+              row.gains.push_back(e.eigenvalue / e.corrected_error);
           }
-        const auto median = [](std::vector<double> values) {
-          if (values.empty())
-            return Cell();
-          std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-          return Cell(values[values.size() / 2]);
-        };
-        table.add_row({candidate.name, candidate.truncation, static_cast<long>(candidate.errors.size()), n_claimed,
-                       static_cast<long>(ratios.size()), median(ratios), ratios.empty() ? Cell() : Cell(100. * n_good / ratios.size()),
-                       median(gains), n_undecided, n_wrong});
       }
-    return table;
+    const auto median = [](std::vector<double> values) {
+      std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+      return values.empty() ? Cell() : Cell(values[values.size() / 2]);
+    };
+    const auto good_share = [](const Row &row) { return row.ratios.empty() ? Cell() : Cell(100. * row.n_good / row.ratios.size()); };
+    return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                              {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
+                              {"modes", "-", [](const Row &row) { return row.candidate.errors.size(); }},
+                              {"claimed", "-", &Row::n_claimed},
+                              {"judged", "-", [](const Row &row) { return row.ratios.size(); }},
+                              {"median ratio to the true error", "-", [&](const Row &row) { return median(row.ratios); }, 2},
+                              {"within a factor of 3", "%", good_share, 0},
+                              {"median gain of the correction", "-", [&](const Row &row) { return median(row.gains); }, 1},
+                              {"undecided", "-", &Row::n_undecided},
+                              {"wrong verdicts", "-", &Row::n_wrong}},
+                 rows);
   }
 } // namespace Squeal

@@ -644,57 +644,62 @@ namespace Squeal
 
     Table map_table(const SweepResults &results, const MapParameter parameter)
     {
+      using Row          = MapCell;
       const bool is_load = parameter == MapParameter::load;
-      Table      table({{"mu", "-", 4},
-                        {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", 3},
-                        {"unstable modes", "-"},
-                        {"undecided modes", "-"},
-                        {"label", ""},
-                        {"frequency", "Hz", 2},
-                        {"growth rate", "1/s", 4},
-                        {"divergence rate", "%", 4},
-                        {"estimated error of lambda", "-", 1, true},
-                        {"open contact nodes", "-"}});
+      const auto known   = [](const auto &value) {
+        return [value](const Row &row) { return row.is_known ? Cell(std::invoke(value, row)) : Cell(); };
+      };
+      std::vector<Row> rows;
       for (const auto &[place, cell] : results.map)
-        {
-          const bool is_known = cell.is_known;
-          const auto known    = [is_known](const Cell &value) { return is_known ? value : Cell(); };
-          table.add_row({cell.friction_coefficient, cell.value, known(static_cast<long>(cell.n_unstable)),
-                         known(static_cast<long>(cell.n_undecided)), known(cell.leader), known(cell.frequency), known(cell.growth_rate),
-                         known(100. * cell.divergence_rate), known(cell.error), static_cast<long>(cell.n_open)});
-        }
-      return table;
+        rows.push_back(cell);
+      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                                {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", &Row::value, 3},
+                                {"unstable modes", "-", known(&Row::n_unstable)},
+                                {"undecided modes", "-", known(&Row::n_undecided)},
+                                {"label", "", known(&Row::leader)},
+                                {"frequency", "Hz", known(&Row::frequency), 2},
+                                {"growth rate", "1/s", known(&Row::growth_rate), 4},
+                                {"divergence rate", "%", known([](const Row &row) { return 100. * row.divergence_rate; }), 4},
+                                {"estimated error of lambda", "-", known(&Row::error), 1, true},
+                                {"open contact nodes", "-", &Row::n_open}},
+                   rows);
     }
 
     Table argument_table(const std::vector<CountAt> &counts)
     {
-      Table table({{"mu", "-", 4},
-                   {"modes of the sweep", "-"},
-                   {"modes counted", "-"},
-                   {"real modes by inertia", "-"},
-                   {"contour points", "-"},
-                   {"largest phase step", "rad", 3},
-                   {"truncation bound", "-", 1, true}});
-      for (const CountAt &count : counts)
-        table.add_row({count.friction_coefficient, static_cast<long>(count.n_found), static_cast<long>(count.count.n_modes),
-                       static_cast<long>(count.count.n_frictionless), static_cast<long>(count.count.n_points),
-                       count.count.largest_phase_step, count.count.truncation_bound});
-      return table;
+      using Row = CountAt;
+      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                                {"modes of the sweep", "-", &Row::n_found},
+                                {"modes counted", "-", [](const Row &row) { return row.count.n_modes; }},
+                                {"real modes by inertia", "-", [](const Row &row) { return row.count.n_frictionless; }},
+                                {"contour points", "-", [](const Row &row) { return row.count.n_points; }},
+                                {"largest phase step", "rad", [](const Row &row) { return row.count.largest_phase_step; }, 3},
+                                {"truncation bound", "-", [](const Row &row) { return row.count.truncation_bound; }, 1, true}},
+                   counts);
     }
 
     /// Contact sets along a line: where they change.
     Table contact_table(const std::vector<Line> &lines, const std::vector<ContactRegime> &regimes, const std::size_t n_pairs)
     {
-      Table table(
-        {{"mu", "-", 4}, {"load per side", "N", 3}, {"rotation speed", "rad/s", 3}, {"contact set", "-"}, {"open contact nodes", "-"}});
+      struct Row
+      {
+        double      friction_coefficient, load, speed;
+        std::size_t contact_set, n_open;
+      };
+      std::vector<Row> rows;
       for (std::size_t l = 0; l < lines.size(); ++l)
         for (const double mu : lines[l].friction_coefficients)
           for (std::size_t r = 0; r < regimes.size(); ++r)
             for (const int i : regimes[r].on_line(static_cast<int>(l)))
               if (regimes[r].points[i].friction_coefficient == mu && lines[l].kind != Line::Kind::without_dissipation)
-                table.add_row({mu, lines[l].operation.load_per_side, lines[l].operation.rotation_speed, static_cast<long>(r + 1),
-                               static_cast<long>(n_pairs - regimes[r].closed.size())});
-      return table;
+                rows.push_back(
+                  {mu, lines[l].operation.load_per_side, lines[l].operation.rotation_speed, r + 1, n_pairs - regimes[r].closed.size()});
+      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                                {"load per side", "N", &Row::load, 3},
+                                {"rotation speed", "rad/s", &Row::speed, 3},
+                                {"contact set", "-", &Row::contact_set},
+                                {"open contact nodes", "-", &Row::n_open}},
+                   rows);
     }
 
     // ------------------------------------------------------------------ in words

@@ -102,7 +102,7 @@ namespace
 
   void expect_counts(const StabilityChart &chart)
   {
-    for (const ModeCount &count : chart.counts)
+    for (const ChartCount &count : chart.counts)
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
   }
 

@@ -1,40 +1,74 @@
 #pragma once
 
+#include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
 namespace Squeal
 {
-  /// A column of a table: its name, unit and how many digits the screen shows.
-  struct Column
+  /// Nothing, a text, a count, or a number.
+  struct Cell : std::variant<std::monostate, std::string, long, double>
   {
-    std::string name;
-    std::string unit;           ///< "-" for none; "" for text
-    int         digits     = 3; ///< on the screen: after the point, or significant if scientific
-    bool        scientific = false;
+    Cell() = default;
 
-    /// "name [unit]", as the header has it.
-    std::string header() const;
+    /// A value of any type: what is neither number nor text is named by its to_string().
+    template <typename Value>
+    Cell(const Value &value)
+    {
+      if constexpr (std::is_floating_point_v<Value>)
+        emplace<double>(value);
+      else if constexpr (std::is_integral_v<Value>)
+        emplace<long>(value);
+      else if constexpr (std::is_convertible_v<Value, std::string>)
+        emplace<std::string>(value);
+      else
+        emplace<std::string>(to_string(value));
+    }
+
+    template <typename Value>
+    Cell(const std::optional<Value> &value)
+    {
+      if (value)
+        *this = Cell(*value);
+    }
   };
 
-  /// Nothing, a text, a count, or a number.
-  using Cell = std::variant<std::monostate, std::string, long, double>;
+  /// What a column shows of a row: a member of it, or a function.
+  template <typename Row>
+  struct Column
+  {
+    std::string                      name;
+    std::string                      unit; ///< "-" for none; "" for text
+    std::function<Cell(const Row &)> value;
+    int                              digits     = 3; ///< on the screen: after the point, or significant if scientific
+    bool                             scientific = false;
+  };
+
+  template <typename Row>
+  using Columns = std::vector<Column<Row>>;
 
   /**
-   * A table of results with typed columns: comma-separated with 12 significant
-   * digits on disk, aligned on the screen.
+   * A table of results: comma-separated with 12 significant digits and a header "name [unit]" on disk, aligned on the screen.
    */
   class Table
   {
   public:
-    explicit Table(std::vector<Column> columns);
-
-    /// Appends a row; throws Error if a number is not finite, naming its column.
-    void add_row(std::vector<Cell> cells);
-
-    unsigned int n_rows() const;
+    /// Shows @p columns of @p rows, a range of Row; throws Error if a number is not finite, naming its column.
+    template <typename Row, typename Rows>
+    Table(const Columns<Row> &columns, const Rows &rows)
+    {
+      for (const Column<Row> &column : columns)
+        {
+          heads.push_back({column.unit.empty() ? column.name : column.name + " [" + column.unit + "]", column.digits, column.scientific});
+          cells.emplace_back();
+          for (const Row &row : rows)
+            cells.back().push_back(checked(column.value(row)));
+        }
+    }
 
     /// Comma-separated values with a header line.
     void write_csv(std::ostream &stream) const;
@@ -43,7 +77,18 @@ namespace Squeal
     void print(std::ostream &stream) const;
 
   private:
-    std::vector<Column>            columns;
-    std::vector<std::vector<Cell>> rows;
+    /// What a column shows but its cells.
+    struct Head
+    {
+      std::string name;
+      int         digits;
+      bool        scientific;
+    };
+
+    /// @p cell, of the last column.
+    Cell checked(const Cell &cell) const;
+
+    std::vector<Head>              heads;
+    std::vector<std::vector<Cell>> cells; ///< by column
   };
 } // namespace Squeal

@@ -97,7 +97,7 @@ namespace Squeal
   };
 
   /// Modes at a point and what crossings let expect.
-  struct ModeCount
+  struct ChartCount
   {
     double friction_coefficient = 0.;
     int    n_modes              = 0; ///< oscillating modes in the band
@@ -113,7 +113,7 @@ namespace Squeal
     std::vector<Branch>       branches;             ///< in the order in which they begin; modes beyond the band, too
     std::vector<Threshold>    thresholds;           ///< ascending
     std::vector<BandCrossing> crossings;            ///< ascending
-    std::vector<ModeCount>    counts;               ///< one for each point
+    std::vector<ChartCount>   counts;               ///< one for each point
     int                       n_doubtful_steps = 0; ///< in which modes could not be told apart but by closeness of λ
   };
 

@@ -31,7 +31,7 @@ namespace Squeal
   Table unstable_table(const FrictionModes &friction, std::size_t n_largest);
 
   /// Real eigenvalues, fastest growth first: growth rate, kind.
-  Table real_eigenvalue_table(const std::vector<double> &values);
+  Table real_eigenvalue_table(std::vector<double> values);
 
   /// The state of contact, one row for each pin.
   Table pin_table(const std::vector<PinContact> &pins);
