@@ -12,8 +12,8 @@ namespace Squeal
 {
   namespace
   {
-    /// A mode that has less than this of the component modes it would be named after bears no name [-].
-    constexpr double smallest_share = 0.1;
+    /// A mode in which the component modes that it would be named after participate less bears no name [-].
+    constexpr double smallest_participation = 0.1;
   } // namespace
 
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
@@ -58,14 +58,14 @@ namespace Squeal
     const DenseMatrix values = replicate(*result.vectors);
     result.labels = component == Component::disc ? disc_labels(model, masses, values) : pin_labels(model, interface, masses, values);
     for (int j = 0; j < modes.n_rigid_body; ++j)
-      result.labels[j] = "RB";
+      result.labels[j] = {ModeFamily::rigid_body};
     return result;
   }
 
-  std::vector<ModeIdentity> identify(const std::vector<const ComponentModes *> &references,
-                                     const SparseMatrix                        &mass,
-                                     const MultiVector                         &real_part,
-                                     const MultiVector                         *imaginary_part)
+  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references,
+                                  const SparseMatrix                        &mass,
+                                  const MultiVector                         &real_part,
+                                  const MultiVector                         *imaginary_part)
   {
     const int         n_modes = real_part.NumVectors();
     const MultiVector M_re    = mass * real_part;
@@ -76,33 +76,33 @@ namespace Squeal
     if (imaginary_part)
       imaginary_part->Dot(M_im, norm_im.data());
 
-    std::vector<std::map<std::string, double>> shares(n_modes);
+    std::vector<std::map<decltype(ModeLabel().shape()), double>> shares(n_modes);
     for (const ComponentModes *reference : references)
       if (reference->vectors)
         {
           const DenseMatrix re = gram(*reference->vectors, M_re), im = gram(*reference->vectors, M_im);
           for (int j = 0; j < n_modes; ++j)
             for (int i = 0; i < re.n_rows(); ++i)
-              shares[j][reference->labels[i]] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
+              shares[j][reference->labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
         }
 
     // A label is given to no more modes than there are component modes of it
-    std::vector<std::string> names;
+    std::vector<ModeLabel> names;
     for (const ComponentModes *reference : references)
       names.insert(names.end(), reference->labels.begin(), reference->labels.end());
-    const std::size_t n_names = names.size();
-    names.resize(std::max<std::size_t>(n_names, n_modes), no_label);
+    names.resize(std::max<std::size_t>(names.size(), n_modes));
     const auto share = [&](const int mode, const int name) {
-      const auto it = shares[mode].find(names[name]);
+      const auto it = shares[mode].find(names[name].shape());
       return it != shares[mode].end() ? it->second : 0.;
     };
-    const std::vector<int>    assigned = best_assignment(n_modes, names.size(), share);
-    std::vector<ModeIdentity> identities;
+    const std::vector<int> assigned = best_assignment(n_modes, names.size(), share);
+    std::vector<ModeLabel> labels;
     for (int j = 0; j < n_modes; ++j)
       {
-        const double assigned_share = share(j, assigned[j]);
-        identities.push_back({assigned_share < smallest_share ? no_label : names[assigned[j]], assigned_share});
+        const double participation = share(j, assigned[j]);
+        labels.push_back(participation < smallest_participation ? ModeLabel() : names[assigned[j]]);
+        labels.back().participation = participation;
       }
-    return identities;
+    return labels;
   }
 } // namespace Squeal

@@ -236,10 +236,11 @@ namespace Squeal
     };
   } // namespace
 
-  std::vector<std::string> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
+  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
   {
-    const DiscHarmonics      disc(model, nodal_masses);
-    std::vector<std::string> labels;
+    constexpr std::array<ModeFamily, 3> families = {{ModeFamily::axial, ModeFamily::radial, ModeFamily::circumferential}};
+    const DiscHarmonics                 disc(model, nodal_masses);
+    std::vector<ModeLabel>              labels;
     for (int j = 0; j < modes.n_columns(); ++j)
       {
         const auto fields = disc.cylindrical(modes.column(j));
@@ -262,16 +263,15 @@ namespace Squeal
           }
 
         const unsigned int family = std::max_element(energies.begin(), energies.end()) - energies.begin();
-        labels.push_back(std::string(1, "ARC"[family]) + std::to_string(disc.nodal_circles(fields[family], n_best)) + "-" +
-                         std::to_string(n_best));
+        labels.push_back({families[family], disc.nodal_circles(fields[family], n_best), n_best});
       }
     return labels;
   }
 
-  std::vector<std::string> pin_labels(const Model               &model,
-                                      const ContactInterface    &interface,
-                                      const std::vector<double> &nodal_masses,
-                                      const DenseMatrix         &modes)
+  std::vector<ModeLabel> pin_labels(const Model               &model,
+                                    const ContactInterface    &interface,
+                                    const std::vector<double> &nodal_masses,
+                                    const DenseMatrix         &modes)
   {
     // Axis of each pin: centre and mean normal of its contact nodes
     struct Pin
@@ -369,37 +369,16 @@ namespace Squeal
       }
 
     // Numbers within each family, by the number of modes that every pin has of it
-    std::vector<std::string>         labels;
-    std::array<std::size_t, 3>       count{};
-    const std::array<std::size_t, 3> per_order = {{2 * pins.size(), pins.size(), pins.size()}};
+    constexpr std::array<ModeFamily, 3> families = {{ModeFamily::flexural, ModeFamily::torsional, ModeFamily::longitudinal}};
+    std::vector<ModeLabel>              labels;
+    std::array<int, 3>                  count{};
+    const int                           n_pins    = pins.size();
+    const std::array<int, 3>            per_order = {{2 * n_pins, n_pins, n_pins}};
     for (const auto &e : energies)
       {
         const unsigned int f = std::max_element(e.begin(), e.end()) - e.begin();
-        labels.push_back(std::string(1, "FTL"[f]) + std::to_string(count[f]++ / per_order[f] + 1));
+        labels.push_back({families[f], 0, 0, count[f]++ / per_order[f] + 1});
       }
     return labels;
-  }
-
-  std::string pin_family(const std::string &label)
-  {
-    // A pin's label is a letter and a number; those of the disc hold a hyphen inside.
-    const std::string name = label.substr(0, label.find(' '));
-    const bool        pin  = name.size() > 1 && std::string("FTL").find(name[0]) != std::string::npos &&
-                     std::all_of(name.begin() + 1, name.end(), [](const char c) { return c >= '0' && c <= '9'; });
-    return pin ? name : std::string();
-  }
-
-  void mark_doublets(std::vector<std::string> &labels, const std::vector<double> &growth_rates)
-  {
-    std::map<std::string, std::vector<std::size_t>> places;
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      places[labels[i]].push_back(i);
-    for (const auto &[label, where] : places)
-      if (where.size() == 2 && label != no_label)
-        {
-          const bool first_grows_more = !growth_rates.empty() && growth_rates[where[0]] > growth_rates[where[1]];
-          labels[where[first_grows_more ? 1 : 0]] += " -";
-          labels[where[first_grows_more ? 0 : 1]] += " +";
-        }
   }
 } // namespace Squeal

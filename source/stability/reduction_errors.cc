@@ -2,7 +2,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/mode_labels.h>
 #include <squeal/stability/reduction_errors.h>
 
 #include <algorithm>
@@ -122,9 +121,10 @@ namespace Squeal
       return cluster;
     }
 
-    std::string body(const std::string &label)
+    /// Group of a mode: the @p pins have one of their own.
+    std::string group(const ModeLabel &label, const std::string &pins)
     {
-      return label == no_label ? no_label : pin_family(label).empty() ? "disc" : "pins";
+      return label.is_of_pins() ? pins : label.family == ModeFamily::unnamed ? to_string(label.family) : "disc";
     }
   } // namespace
 
@@ -232,19 +232,19 @@ namespace Squeal
     return errors;
   }
 
-  std::vector<std::string> frictionless_groups(const std::vector<std::string> &labels)
+  std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels)
   {
     std::vector<std::string> groups;
-    for (const std::string &label : labels)
-      groups.push_back(body(label) == "pins" ? pin_family(label) : body(label));
+    for (const ModeLabel &label : labels)
+      groups.push_back(group(label, shape_text(label)));
     return groups;
   }
 
-  std::vector<std::string> friction_groups(const std::vector<std::string> &labels, const std::vector<bool> &unstable)
+  std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable)
   {
     std::vector<std::string> groups;
     for (std::size_t j = 0; j < labels.size(); ++j)
-      groups.push_back(body(labels[j]) == "pins" ? (unstable[j] ? "unstable pins" : "other pins") : body(labels[j]));
+      groups.push_back(group(labels[j], unstable[j] ? "unstable pins" : "other pins"));
     return groups;
   }
 

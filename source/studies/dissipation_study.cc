@@ -11,13 +11,15 @@ namespace Squeal
 {
   namespace
   {
+    using Shape = decltype(ModeLabel().shape());
+
     /// A reading of the radial dissipation with the modes that it gives.
     struct Reading
     {
-      std::string                                name;
-      ContactState                               state;
-      RadialDissipation                          dissipation;
-      std::map<std::string, std::vector<double>> rates; ///< divergence rates [%] of each family of modes, by frequency
+      std::string                          name;
+      ContactState                         state;
+      RadialDissipation                    dissipation;
+      std::map<Shape, std::vector<double>> rates; ///< divergence rates [%] of the modes of each shape, by frequency
     };
 
     std::vector<Reading> readings()
@@ -27,13 +29,6 @@ namespace Squeal
         for (const RadialDissipation dissipation : {RadialDissipation::consistent, RadialDissipation::published})
           result.push_back({to_string(state) + " " + to_string(dissipation), state, dissipation, {}});
       return result;
-    }
-
-    /// "A0-4 +" without its mark: marks tell the two of a doublet apart, which need not be two in every reading.
-    std::string family(const std::string &label)
-    {
-      const std::size_t n = label.size();
-      return n > 2 && label[n - 2] == ' ' ? label.substr(0, n - 2) : label;
     }
 
     /// A line of a table: what the paper prints, where it does, and the divergence rates [%] of all readings.
@@ -58,25 +53,28 @@ namespace Squeal
       return Table(columns, rows);
     }
 
-    /// Families in the order of their lowest frequencies; in those of pin modes the members by divergence rate.
-    Table mode_table(std::vector<Reading> all, const std::vector<std::string> &families, const bool beside_paper)
+    /**
+     * Shapes in the order of their lowest frequencies; those of pin modes by divergence rate. Signs tell the two of a doublet
+     * apart, which need not be two in every reading.
+     */
+    Table mode_table(std::vector<Reading> all, const std::vector<ModeLabel> &shapes, const bool beside_paper)
     {
       std::vector<Row> rows;
-      for (const std::string &name : families)
+      for (ModeLabel label : shapes)
         {
           std::size_t n = 0;
           for (Reading &reading : all)
-            n = std::max(n, reading.rates[name].size());
+            n = std::max(n, reading.rates[label.shape()].size());
           if (n > 2)
             for (Reading &reading : all)
-              std::sort(reading.rates[name].begin(), reading.rates[name].end());
+              std::sort(reading.rates[label.shape()].begin(), reading.rates[label.shape()].end());
           for (std::size_t member = 0; member < n; ++member)
             {
-              const std::string label = n == 2 ? name + (member == 0 ? " -" : " +") : name;
-              rows.push_back({label, paper_divergence_damped(label), {}});
+              label.sign = n != 2 ? DoubletSign::none : member == 0 ? DoubletSign::minus : DoubletSign::plus;
+              rows.push_back({to_string(label), paper_divergence_damped(label), {}});
               for (Reading &reading : all)
                 {
-                  const auto &rates = reading.rates[name];
+                  const auto &rates = reading.rates[label.shape()];
                   rows.back().rates.push_back(member < rates.size() ? std::make_optional(rates[member]) : std::nullopt);
                 }
             }
@@ -92,10 +90,10 @@ namespace Squeal
         for (const bool lowest : {true, false})
           {
             rows.push_back(
-              {std::string(range.label) + (lowest ? " most damped" : " least damped"), lowest ? range.lowest : range.highest, {}});
+              {to_string(range.label) + (lowest ? " most damped" : " least damped"), lowest ? range.lowest : range.highest, {}});
             for (Reading &reading : all)
               {
-                auto &rates = reading.rates[range.label];
+                auto &rates = reading.rates[range.label.shape()];
                 std::sort(rates.begin(), rates.end());
                 rows.back().rates.push_back(rates.empty() ? std::nullopt :
                                                             std::make_optional(rates[lowest ? 0 : (rates.size() - 1) / range.every]));
@@ -129,7 +127,7 @@ namespace Squeal
     std::optional<FrictionlessModes> frictionless;
     std::vector<unsigned int>        closed; // of these modes
     std::vector<Reading>             all = readings();
-    std::vector<std::string>         families;
+    std::vector<ModeLabel>           shapes;
     for (Reading &reading : all)
       {
         operation.radial_dissipation = reading.dissipation;
@@ -145,19 +143,19 @@ namespace Squeal
           friction_modes(scene, linearisation, *frictionless, operation.friction_coefficient, run, reading.name);
         for (std::size_t j = 0; j < friction.labels.size(); ++j)
           {
-            const std::string name = family(friction.labels[j]);
             // Of a doublet first the one marked `-`
-            std::vector<double> &rates    = reading.rates[name];
-            const bool           is_first = friction.labels[j] == name + " -";
-            rates.insert(is_first ? rates.begin() : rates.end(), 100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
-            if (std::find(families.begin(), families.end(), name) == families.end())
-              families.push_back(name);
+            const ModeLabel     &label = friction.labels[j];
+            std::vector<double> &rates = reading.rates[label.shape()];
+            rates.insert(label.sign == DoubletSign::minus ? rates.begin() : rates.end(),
+                         100. * modal_quantities(friction.modes.lambda[j]).divergence_rate);
+            if (std::none_of(shapes.begin(), shapes.end(), [&](const ModeLabel &shape) { return shape.shape() == label.shape(); }))
+              shapes.push_back(label);
           }
       }
 
     write_sliding_tables(scene, state, parameters.operation, run);
     const bool beside_paper = is_paper_scene(parameters) && is_paper_operation(parameters);
-    run.write_table("dissipation", mode_table(all, families, beside_paper));
+    run.write_table("dissipation", mode_table(all, shapes, beside_paper));
     run.write_table("dissipation_ranges", range_table(all, beside_paper));
     run.screen << '\n';
     run.finish();

@@ -90,9 +90,9 @@ namespace Squeal
     // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
     modes.n_rigid_body = real.n_rigid_body;
 
-    result.unstable   = unstable_modes(modes);
-    result.identities = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
-    result.labels     = labels_of(result.identities, 0, growth_rates(result));
+    result.unstable = unstable_modes(modes);
+    result.labels   = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
+    mark_doublets(result.labels, growth_rates(result));
     run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
                              modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
                              modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ",
@@ -123,7 +123,7 @@ namespace Squeal
       const std::size_t n      = friction.n_unstable();
       std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", exact_text(mu));
       if (leading < lambda.size())
-        result += text(", led by ", friction.labels[leading], " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
+        result += text(", led by ", to_string(friction.labels[leading]), " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
                        " Hz with a divergence rate of ", decimal_text(100. * highest), " %");
       if (n_weak > 0)
         result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");

@@ -35,18 +35,6 @@ namespace Squeal
     return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
-  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities,
-                                     const int                        n_rigid_body,
-                                     const std::vector<double>       &growth_rates)
-  {
-    std::vector<std::string> labels;
-    for (const ModeIdentity &identity : identities)
-      labels.push_back(identity.label);
-    std::fill(labels.begin(), labels.begin() + n_rigid_body, "RB");
-    mark_doublets(labels, growth_rates);
-    return labels;
-  }
-
   void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation)
   {
     if (parameters.damping.modal_ratios.empty())
@@ -60,11 +48,11 @@ namespace Squeal
                               ratios);
   }
 
-  std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
-                                             const Linearisation     &linearisation,
-                                             const FrictionlessModes &modes,
-                                             const MultiVector       &real_part,
-                                             const MultiVector       *imaginary_part)
+  std::vector<ModeLabel> identify_coupled(const Scene             &scene,
+                                          const Linearisation     &linearisation,
+                                          const FrictionlessModes &modes,
+                                          const MultiVector       &real_part,
+                                          const MultiVector       *imaginary_part)
   {
     const SparseMatrix &T_c  = *linearisation.coupled.kernel;
     const MultiVector   u_re = T_c * real_part;
@@ -134,8 +122,10 @@ namespace Squeal
                              n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                              result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
-    result.identities = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);
-    result.labels     = labels_of(result.identities, result.real.n_rigid_body);
+    result.labels = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);
+    for (int j = 0; j < result.real.n_rigid_body; ++j)
+      result.labels[j] = {ModeFamily::rigid_body, 0, 0, 0, DoubletSign::none, result.labels[j].participation};
+    mark_doublets(result.labels);
     return result;
   }
 } // namespace Squeal

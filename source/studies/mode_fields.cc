@@ -1,19 +1,10 @@
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/studies/mode_fields.h>
 
-#include <utility>
 #include <vector>
 
 namespace Squeal
 {
-  std::string file_label(std::string label)
-  {
-    for (const auto &[sign, word] : {std::make_pair(" -", "_minus"), std::make_pair(" +", "_plus")})
-      if (const auto place = label.find(sign); place != std::string::npos)
-        label.replace(place, 2, word);
-    return label;
-  }
-
   ModeField mode_field(const Scene                &scene,
                        const Linearisation        &linearisation,
                        const std::string          &name,

@@ -14,13 +14,13 @@ namespace Squeal
     struct Row
     {
       const char *component, *contact;
-      std::string label;
+      ModeLabel   label;
       double      frequency, residual;
     };
     std::vector<Row> rows;
     const auto       add = [&](const char *component, const char *contact, const ComponentModes &set) {
-      const std::size_t        n = n_in_band(set.eigenvalues, largest_eigenvalue);
-      std::vector<std::string> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
+      const std::size_t      n = n_in_band(set.eigenvalues, largest_eigenvalue);
+      std::vector<ModeLabel> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
       mark_doublets(labels);
       for (std::size_t j = 0; j < n; ++j)
         rows.push_back({component, contact, labels[j], hertz(std::sqrt(set.eigenvalues[j])), set.residuals[j]});
@@ -39,7 +39,7 @@ namespace Squeal
   Table real_table(const FrictionlessModes &modes)
   {
     return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
-                              {"share", "-", [&](const int j) { return modes.identities[j].share; }, 3},
+                              {"share", "-", [&](const int j) { return modes.labels[j].participation; }, 3},
                               {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
                               {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
                  boost::irange<int>(0, modes.labels.size()));
@@ -65,7 +65,7 @@ namespace Squeal
   {
     const ComplexModes &modes   = friction.modes;
     Columns<int>        columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
-                                   {"share", "-", [&](const int j) { return friction.identities[j].share; }, 3},
+                                   {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
                                    column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
                                    column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
                                    column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
@@ -91,7 +91,7 @@ namespace Squeal
                               column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
                               column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
                               column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                              {"share", "-", [&](const int j) { return friction.identities[j].share; }, 3}},
+                              {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3}},
                  growing);
   }
 

@@ -15,6 +15,16 @@ namespace Squeal
   {
     using Value = std::optional<double>;
 
+    constexpr auto minus = DoubletSign::minus, plus = DoubletSign::plus;
+
+    ModeLabel disc(const ModeFamily family, const int circles, const int diameters, const DoubletSign sign = DoubletSign::none)
+    {
+      return {family, circles, diameters, 0, sign};
+    }
+
+    constexpr auto  A = ModeFamily::axial, R = ModeFamily::radial, C = ModeFamily::circumferential;
+    const ModeLabel F1 = {ModeFamily::flexural, 0, 0, 1}, T1 = {ModeFamily::torsional, 0, 0, 1};
+
     /// How a row of the paper finds its mode in a run.
     enum class Match
     {
@@ -25,13 +35,27 @@ namespace Squeal
       second_unstable, ///< second largest
       frequency        ///< nearest frequency: the paper finds these coupled modes hard to name
     };
+  } // namespace
 
+  /// What the name of a row adds to its label.
+  template <>
+  struct EnumTable<Match>
+  {
+    static constexpr std::array<EnumName<Match>, 6> names = {{{Match::label, ""},
+                                                              {Match::lowest, " lowest"},
+                                                              {Match::highest, " highest"},
+                                                              {Match::most_unstable, " most unstable"},
+                                                              {Match::second_unstable, " second unstable"},
+                                                              {Match::frequency, ""}}};
+  };
+
+  namespace
+  {
     struct Row
     {
-      const char *name;
-      const char *label;
-      Match       match;
-      Value       component, coupled, complex_undamped, divergence_undamped, complex_damped, divergence_damped;
+      ModeLabel label;
+      Match     match;
+      Value     component, coupled, complex_undamped, divergence_undamped, complex_damped, divergence_damped;
     };
 
     constexpr auto none = std::nullopt;
@@ -42,58 +66,58 @@ namespace Squeal
     /// Frequencies in Hz, divergence rates in per cent; empty: not given or negligible.
     const std::vector<Row> &rows()
     {
-      static const std::vector<Row> table = {{"A0-1 -", "A0-1 -", Match::label, 251, 295, 295, none, 296, none},
-                                             {"A0-1 +", "A0-1 +", Match::frequency, 251, 312, 312, none, 313, none},
-                                             {"A0-0", "A0-0", Match::label, 352, none, none, none, none, none},
-                                             {"A0-2 -", "A0-2 -", Match::label, 569, 489, 489, none, 489, none},
-                                             {"A0-2 +", "A0-2 +", Match::label, 569, 697, 700, none, 700, none},
-                                             {"C0-0", "C0-0", Match::label, 644, 644, 645, none, 644, none},
-                                             {"R0-1 -", "R0-1 -", Match::label, 649, 643, 644, none, 644, none},
-                                             {"R0-1 +", "R0-1 +", Match::label, 649, 647, 648, none, 648, -0.093},
-                                             {"unnamed", "", Match::frequency, none, 1057, 1061, none, 1061, none},
-                                             {"A0-3 -", "A0-3 -", Match::label, 1267, 1374, 1379, none, 1379, none},
-                                             {"A0-3 +", "A0-3 +", Match::label, 1267, 1567, 1576, none, 1576, none},
-                                             {"A1-0", "A1-0", Match::label, 1404, 1449, 1450, none, 1450, none},
-                                             {"R0-2 -", "R0-2 -", Match::label, 1822, 1823, 1823, none, 1823, none},
-                                             {"R0-2 +", "R0-2 +", Match::label, 1822, 1825, 1826, none, 1826, none},
-                                             {"A1-1 -", "A1-1 -", Match::label, 2082, 2087, 2087, none, 2087, none},
-                                             {"A1-1 +", "A1-1 +", Match::label, 2082, 2150, 2153, none, 2153, none},
-                                             {"A0-4 -", "A0-4 -", Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
-                                             {"A0-4 +", "A0-4 +", Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
-                                             {"A0-5 -", "A0-5 -", Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
-                                             {"A0-5 +", "A0-5 +", Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
-                                             {"A1-2 -", "A1-2 -", Match::label, 3365, 3350, 3352, none, 3352, none},
-                                             {"A1-2 +", "A1-2 +", Match::label, 3365, 3371, 3386, none, 3387, -0.078},
-                                             {"F1 lowest", "F1", Match::lowest, 3553, 3551, 3516, none, 3521, none},
-                                             {"F1 highest", "F1", Match::highest, 3553, 3562, 3564, none, 3563, none},
-                                             {"F1 most unstable", "F1", Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
-                                             {"F1 second unstable", "F1", Match::second_unstable, none, none, 3550, 0.10, none, none},
-                                             {"R0-0", "R0-0", Match::label, 3704, 3704, 3704, none, 3704, none},
-                                             {"T1 lowest", "T1", Match::lowest, 3934, 3934, 3934, none, 3933, none},
-                                             {"T1 highest", "T1", Match::highest, 3934, 3934, 3934, none, 3933, none},
-                                             {"R0-3 -", "R0-3 -", Match::label, 3990, 3989, 3989, none, 3989, none},
-                                             {"R0-3 +", "R0-3 +", Match::label, 3990, 3991, 3989, none, 3990, none},
-                                             {"C0-1 -", "C0-1 -", Match::label, 4500, 4499, 4499, none, 4499, none},
-                                             {"C0-1 +", "C0-1 +", Match::label, 4500, 4500, 4500, none, 4500, none},
-                                             {"A0-6 -", "A0-6 -", Match::label, 4659, 4641, 4641, none, 4641, none},
-                                             {"A0-6 +", "A0-6 +", Match::label, 4659, 4653, 4652, none, 4652, none},
-                                             {"A1-3 -", "A1-3 -", Match::label, 4794, 4800, 4799, none, 4800, none},
-                                             {"A1-3 +", "A1-3 +", Match::label, 4794, 4815, 4814, none, 4815, none}};
+      static const std::vector<Row> table = {{disc(A, 0, 1, minus), Match::label, 251, 295, 295, none, 296, none},
+                                             {disc(A, 0, 1, plus), Match::frequency, 251, 312, 312, none, 313, none},
+                                             {disc(A, 0, 0), Match::label, 352, none, none, none, none, none},
+                                             {disc(A, 0, 2, minus), Match::label, 569, 489, 489, none, 489, none},
+                                             {disc(A, 0, 2, plus), Match::label, 569, 697, 700, none, 700, none},
+                                             {disc(C, 0, 0), Match::label, 644, 644, 645, none, 644, none},
+                                             {disc(R, 0, 1, minus), Match::label, 649, 643, 644, none, 644, none},
+                                             {disc(R, 0, 1, plus), Match::label, 649, 647, 648, none, 648, -0.093},
+                                             {{}, Match::frequency, none, 1057, 1061, none, 1061, none},
+                                             {disc(A, 0, 3, minus), Match::label, 1267, 1374, 1379, none, 1379, none},
+                                             {disc(A, 0, 3, plus), Match::label, 1267, 1567, 1576, none, 1576, none},
+                                             {disc(A, 1, 0), Match::label, 1404, 1449, 1450, none, 1450, none},
+                                             {disc(R, 0, 2, minus), Match::label, 1822, 1823, 1823, none, 1823, none},
+                                             {disc(R, 0, 2, plus), Match::label, 1822, 1825, 1826, none, 1826, none},
+                                             {disc(A, 1, 1, minus), Match::label, 2082, 2087, 2087, none, 2087, none},
+                                             {disc(A, 1, 1, plus), Match::label, 2082, 2150, 2153, none, 2153, none},
+                                             {disc(A, 0, 4, minus), Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
+                                             {disc(A, 0, 4, plus), Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
+                                             {disc(A, 0, 5, minus), Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
+                                             {disc(A, 0, 5, plus), Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
+                                             {disc(A, 1, 2, minus), Match::label, 3365, 3350, 3352, none, 3352, none},
+                                             {disc(A, 1, 2, plus), Match::label, 3365, 3371, 3386, none, 3387, -0.078},
+                                             {F1, Match::lowest, 3553, 3551, 3516, none, 3521, none},
+                                             {F1, Match::highest, 3553, 3562, 3564, none, 3563, none},
+                                             {F1, Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
+                                             {F1, Match::second_unstable, none, none, 3550, 0.10, none, none},
+                                             {disc(R, 0, 0), Match::label, 3704, 3704, 3704, none, 3704, none},
+                                             {T1, Match::lowest, 3934, 3934, 3934, none, 3933, none},
+                                             {T1, Match::highest, 3934, 3934, 3934, none, 3933, none},
+                                             {disc(R, 0, 3, minus), Match::label, 3990, 3989, 3989, none, 3989, none},
+                                             {disc(R, 0, 3, plus), Match::label, 3990, 3991, 3989, none, 3990, none},
+                                             {disc(C, 0, 1, minus), Match::label, 4500, 4499, 4499, none, 4499, none},
+                                             {disc(C, 0, 1, plus), Match::label, 4500, 4500, 4500, none, 4500, none},
+                                             {disc(A, 0, 6, minus), Match::label, 4659, 4641, 4641, none, 4641, none},
+                                             {disc(A, 0, 6, plus), Match::label, 4659, 4653, 4652, none, 4652, none},
+                                             {disc(A, 1, 3, minus), Match::label, 4794, 4800, 4799, none, 4800, none},
+                                             {disc(A, 1, 3, plus), Match::label, 4794, 4815, 4814, none, 4815, none}};
       return table;
     }
 
     /// The mode that a row asks for; nothing if the run has none.
-    std::optional<std::size_t> find(const Row                      &row,
-                                    const std::vector<std::string> &labels,
-                                    const std::vector<double>      &frequencies,
-                                    const std::vector<double>      &growth_rates,
-                                    const Value                     paper_frequency)
+    std::optional<std::size_t> find(const Row                    &row,
+                                    const std::vector<ModeLabel> &labels,
+                                    const std::vector<double>    &frequencies,
+                                    const std::vector<double>    &growth_rates,
+                                    const Value                   paper_frequency)
     {
-      // Modes that carry the label, with or without the mark of a doublet
+      // Modes that carry the label; where there are several, with or without the sign of a doublet
       std::vector<std::size_t> candidates;
       for (std::size_t i = 0; i < labels.size(); ++i)
         if (row.match == Match::frequency || labels[i] == row.label ||
-            (row.match != Match::label && labels[i].rfind(std::string(row.label) + " ", 0) == 0))
+            (row.match != Match::label && labels[i].shape() == row.label.shape()))
           candidates.push_back(i);
       if (candidates.empty())
         return {};
@@ -168,7 +192,7 @@ namespace Squeal
     /// A row of the paper beside the mode of the run.
     struct Comparison
     {
-      const char *name;
+      std::string name;
       Pair        component, coupled, complex, divergence;
     };
 
@@ -205,9 +229,9 @@ namespace Squeal
     return values(parameters.operation) == values(Parameters().operation) && parameters.damping.modal_ratios.empty();
   }
 
-  const std::array<PaperRange, 2> paper_ranges_damped = {{{"F1", -1.76, -1.07, 2}, {"T1", -2.34, -1.41, 1}}};
+  const std::array<PaperRange, 2> paper_ranges_damped = {{{F1, -1.76, -1.07, 2}, {T1, -2.34, -1.41, 1}}};
 
-  std::optional<double> paper_divergence_damped(const std::string &label)
+  std::optional<double> paper_divergence_damped(const ModeLabel &label)
   {
     for (const Row &row : rows())
       if (row.match == Match::label && row.label == label)
@@ -229,7 +253,7 @@ namespace Squeal
     std::vector<Comparison> comparisons;
     for (const Row &row : rows())
       {
-        Comparison comparison     = {row.name,
+        Comparison comparison     = {to_string(row.label) + to_string(row.match),
                                      {row.component},
                                      {row.coupled},
                                      {damped ? row.complex_damped : row.complex_undamped},

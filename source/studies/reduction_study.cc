@@ -20,7 +20,8 @@ namespace Squeal
     struct Reference
     {
       ComplexModes             modes;
-      std::vector<std::string> labels, groups; ///< of the modes
+      std::vector<ModeLabel>   labels; ///< of the modes
+      std::vector<std::string> groups;
       std::vector<bool>        unstable;
       double                   seconds; ///< of the processor for the solution, its factorisation included
     };
@@ -41,7 +42,7 @@ namespace Squeal
         }
       else
         {
-          const std::vector<std::string> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
+          const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
           reference = {undamped_modes(frictionless.real), labels, frictionless_groups(labels), std::vector<bool>(labels.size(), false),
                        factorisation + step_seconds(run, "Real modes")};
         }

@@ -74,13 +74,14 @@ namespace Squeal
   }
 
   Table reduction_mode_table(const std::vector<Candidate>   &candidates,
-                             const std::vector<std::string> &labels,
+                             const std::vector<ModeLabel>   &labels,
                              const std::vector<std::string> &groups)
   {
     struct Row : ModeError
     {
       const Candidate &candidate;
-      std::string      label, group;
+      ModeLabel        label;
+      std::string      group;
       ModalQuantities  mode, exact, better;
     };
     std::vector<Row> rows;

@@ -24,10 +24,10 @@ namespace Squeal
     // ------------------------------------------------------------------ fields
 
     /// File name of a mode: its place in the table and its label.
-    std::string file_name(const std::size_t number, const std::string &label)
+    std::string file_name(const std::size_t number, const ModeLabel &label)
     {
       std::ostringstream name;
-      name << "complex_" << std::setw(3) << std::setfill('0') << number + 1 << "_" << file_label(label);
+      name << "complex_" << std::setw(3) << std::setfill('0') << number + 1 << "_" << file_text(label);
       return name.str();
     }
 
@@ -45,8 +45,8 @@ namespace Squeal
         {
           if (parameters.output.fields != FieldSelection::all && !friction.unstable[j])
             continue;
-          const std::string &label = friction.labels[j];
-          run.progress.update(text(label, ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
+          const ModeLabel &label = friction.labels[j];
+          run.progress.update(text(to_string(label), ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
           const int       column = static_cast<int>(j);
           const ModeField field  = mode_field(scene, linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
                                               view(*modes.imaginary_part, column, 1));
@@ -131,7 +131,7 @@ namespace Squeal
         }
       for (const ComponentModes *set : {&frictionless.disc, &frictionless.pins_sliding})
         {
-          std::vector<std::string> labels = set->labels;
+          std::vector<ModeLabel> labels = set->labels;
           mark_doublets(labels);
           for (std::size_t j = 0; j < labels.size(); ++j)
             {

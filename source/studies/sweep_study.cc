@@ -130,24 +130,24 @@ namespace Squeal
     /// Modes over the friction coefficient at one load and speed, with the names of the branches.
     struct ChartLine
     {
-      StabilityChart           chart;
-      std::vector<std::string> labels; ///< one for each branch: "A0-4 -", "F1", ...
+      StabilityChart         chart;
+      std::vector<ModeLabel> labels; ///< one for each branch
     };
 
     /// What is known about stability at one friction coefficient and one load or speed.
     struct MapCell
     {
-      double      friction_coefficient = 0.; ///< [-]
-      double      value                = 0.; ///< load [N] or speed [rad/s]
-      double      growth_rate          = 0.; ///< of the most unstable mode [1/s]
-      double      divergence_rate      = 0.; ///< of the most unstable mode [-]
-      double      frequency            = 0.; ///< of the most unstable mode [Hz]
-      int         n_unstable           = 0;
-      int         n_undecided          = 0; ///< modes whose growth is undecided
-      int         n_open               = 0; ///< contact nodes that are lifted
-      std::string leader;                   ///< label of the most unstable mode
-      bool        is_known = false;         ///< whether it was computed
-      double      error    = 0.;            ///< largest estimated |δλ| / |λ| [-]
+      double    friction_coefficient = 0.; ///< [-]
+      double    value                = 0.; ///< load [N] or speed [rad/s]
+      double    growth_rate          = 0.; ///< of the most unstable mode [1/s]
+      double    divergence_rate      = 0.; ///< of the most unstable mode [-]
+      double    frequency            = 0.; ///< of the most unstable mode [Hz]
+      int       n_unstable           = 0;
+      int       n_undecided          = 0; ///< modes whose growth is undecided
+      int       n_open               = 0; ///< contact nodes that are lifted
+      ModeLabel leader;                   ///< label of the most unstable mode
+      bool      is_known = false;         ///< whether it was computed
+      double    error    = 0.;            ///< largest estimated |δλ| / |λ| [-]
     };
 
     struct SweepResults
@@ -456,16 +456,17 @@ namespace Squeal
       }
 
       /// Names of branches after the modes with which they begin; of a doublet the one that grows most over the chart is `+`.
-      std::vector<std::string> labels(const StabilityChart &chart) const
+      std::vector<ModeLabel> labels(const StabilityChart &chart) const
       {
         const std::vector<double> growth = largest_growth_rates(chart);
-        std::vector<std::string>  result(chart.branches.size());
+        std::vector<bool>         is_named(chart.branches.size(), false);
+        std::vector<ModeLabel>    result(chart.branches.size());
         for (std::size_t i = 0; i < chart.points.size(); ++i)
           {
             std::vector<int>    modes, branches;
             std::vector<double> growth_here;
             for (std::size_t b = 0; b < chart.branches.size(); ++b)
-              if (const int j = chart.branches[b].modes[i]; j >= 0 && result[b].empty())
+              if (const int j = chart.branches[b].modes[i]; j >= 0 && !is_named[b])
                 {
                   modes.push_back(j);
                   branches.push_back(static_cast<int>(b));
@@ -474,21 +475,25 @@ namespace Squeal
             if (modes.empty())
               continue;
             const auto [re, im] = shapes(chart.points[i], modes);
-            const auto names    = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im), 0, growth_here);
+            auto names          = identify_coupled(scene, linearisation, frictionless, re, &im);
+            mark_doublets(names, growth_here);
             for (std::size_t k = 0; k < modes.size(); ++k)
-              result[branches[k]] = names[k];
+              {
+                result[branches[k]]   = names[k];
+                is_named[branches[k]] = true;
+              }
           }
         return result;
       }
 
       /// Label of the branch of the first chart that a mode resembles most, at the point of the chart nearest to its own.
-      std::string nearest_label(const SweepResults &results, const ChartPoint &point, const int mode) const
+      ModeLabel nearest_label(const SweepResults &results, const ChartPoint &point, const int mode) const
       {
-        std::string label;
-        double      largest = 0.;
-        const auto  main    = results.charts.find(0);
+        ModeLabel  label;
+        double     largest = 0.;
+        const auto main    = results.charts.find(0);
         if (main == results.charts.end())
-          return no_label;
+          return label;
         const auto &line     = main->second.back();
         const auto &points   = line.chart.points;
         const auto  distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
@@ -611,12 +616,12 @@ namespace Squeal
                   run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
                   continue;
                 }
-              const auto [re, im]     = shapes(point, {mode});
-              const std::string label = labels_of(identify_coupled(scene, linearisation, frictionless, re, &im)).front();
-              Linearisation     here  = linearisation;
+              const auto [re, im]   = shapes(point, {mode});
+              const ModeLabel label = identify_coupled(scene, linearisation, frictionless, re, &im).front();
+              Linearisation   here  = linearisation;
               here.coupled =
                 with_values(linearisation.coupled, selected(states.at(operation_at(lines[0], mu)).damping, regime.closed).values());
-              const ModeField field = mode_field(scene, here, text("mu_", mu, "_", file_label(label)), point.lambda[mode], re, im);
+              const ModeField field = mode_field(scene, here, text("mu_", mu, "_", file_text(label)), point.lambda[mode], re, im);
               writer.write_mode(field);
               if (run.parameters.output.animation_frames > 0)
                 writer.write_animation(field, run.parameters.output.animation_frames);
@@ -710,7 +715,7 @@ namespace Squeal
     std::string verdict(const std::vector<ChartLine> &stretches, const std::size_t n_asked, const double largest_circular_frequency)
     {
       double      first = -1., strong = -1., largest = 0., worst = 0., frequency = 0.;
-      std::string first_label, strong_label, label;
+      ModeLabel   first_label, strong_label, label;
       std::size_t n_known = 0; // of the values asked for
       for (const ChartLine &line : stretches)
         n_known += std::count(line.chart.is_refinement.begin(), line.chart.is_refinement.end(), false);
@@ -745,9 +750,10 @@ namespace Squeal
         return n_known == n_asked ?
                  "  stable: no mode of the band grows at any friction coefficient of the sweep" :
                  text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
-      return text("  squeal from mu = ", first, " on (", first_label, ")",
-                  strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", strong_label, ")") : "",
-                  "; most at mu = ", worst, ": ", label, " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");
+      return text(
+        "  squeal from mu = ", first, " on (", to_string(first_label), ")",
+        strong >= 0. ? text(", beyond ", 100. * weak_divergence, " % from mu = ", strong, " on (", to_string(strong_label), ")") : "",
+        "; most at mu = ", worst, ": ", to_string(label), " at ", decimal_text(frequency), " Hz with ", decimal_text(100. * largest), " %");
     }
 
     // ------------------------------------------------------------ the study

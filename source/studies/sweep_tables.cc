@@ -5,14 +5,14 @@
 
 namespace Squeal
 {
-  Table branch_table(const StabilityChart &chart, const std::vector<std::string> &labels, const double largest_circular_frequency)
+  Table branch_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels, const double largest_circular_frequency)
   {
     struct Row : ModalQuantities
     {
       const ChartPoint &point;
       int               mode; ///< of the point
       int               branch;
-      std::string       label;
+      ModeLabel         label;
       bool              is_refinement;
     };
     std::vector<Row> rows;
@@ -39,7 +39,7 @@ namespace Squeal
                  rows);
   }
 
-  Table threshold_table(const StabilityChart &chart, const std::vector<std::string> &labels)
+  Table threshold_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels)
   {
     using Row                = Threshold;
     const auto partner       = [](const Row &row) { return row.partner >= 0 ? Cell(row.partner + 1) : Cell(); };
@@ -56,7 +56,7 @@ namespace Squeal
                  chart.thresholds);
   }
 
-  Table crossing_table(const StabilityChart &chart, const std::vector<std::string> &labels)
+  Table crossing_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels)
   {
     using Row = BandCrossing;
     return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},

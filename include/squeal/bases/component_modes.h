@@ -10,7 +10,7 @@ namespace Squeal
   /// Normal modes of the disc, or of the whole set of pins, on the uncoupled dofs.
   struct ComponentModes
   {
-    std::vector<std::string>     labels;      ///< A m-n, R m-n, C m-n; F1, T1, L1, ...; RB: rigid body
+    std::vector<ModeLabel>       labels;
     std::vector<double>          eigenvalues; ///< ω² [rad²/s²], ascending
     std::vector<double>          residuals;   ///< as in SymmetricModes [-]
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
@@ -43,29 +43,22 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
-  /// Which component mode a coupled mode resembles, and how much.
-  struct ModeIdentity
-  {
-    std::string label; ///< of the component modes it is assigned to
-    double      share; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of that label [-]
-  };
-
   /**
    * Identities of real or complex coupled modes by their M-inner products with
-   * component modes; members of one label (a doublet, the F1 modes of all
+   * component modes; those of one shape (a doublet, the F1 modes of all
    * pins) count together. Where each mode is dominated by another component
    * mode it gets that one's label; where several compete (an A0-5 mode that
    * shakes the pins more than itself), the labels are distributed so that the
-   * sum of all shares is largest and none is given more often than there are
-   * component modes of it. A share below a tenth gives no name.
+   * sum of all participations is largest and none is given more often than there are
+   * component modes of it. A participation below a tenth gives no name.
    *
    * @param references  disc modes with contact free, pin modes with contact sliding
    * @param mass        M of the uncoupled bodies
    * @param real_part   n_free × k
    * @param imaginary_part n_free × k; null for real modes
    */
-  std::vector<ModeIdentity> identify(const std::vector<const ComponentModes *> &references,
-                                     const SparseMatrix                        &mass,
-                                     const MultiVector                         &real_part,
-                                     const MultiVector                         *imaginary_part);
+  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references,
+                                  const SparseMatrix                        &mass,
+                                  const MultiVector                         &real_part,
+                                  const MultiVector                         *imaginary_part);
 } // namespace Squeal

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <squeal/bases/mode_label.h>
 #include <squeal/contact/contact_interface.h>
 #include <squeal/linear_algebra/dense_matrix.h>
 #include <squeal/model/model.h>
 
-#include <string>
 #include <vector>
 
 namespace Squeal
@@ -21,7 +21,7 @@ namespace Squeal
    * @param modes        n_free × k displacements
    * @param nodal_masses n_nodes, lumped [kg]
    */
-  std::vector<std::string> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes);
+  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes);
 
   /**
    * Names of pin modes: F flexural, T torsional, L longitudinal about the axis
@@ -29,24 +29,8 @@ namespace Squeal
    * larger energy, numbered in ascending order of frequency: the first two F
    * modes of every pin are F1. Modes must come in that order.
    */
-  std::vector<std::string> pin_labels(const Model               &model,
-                                      const ContactInterface    &interface,
-                                      const std::vector<double> &nodal_masses,
-                                      const DenseMatrix         &modes);
-
-  /// Label of a mode that resembles none of the component modes left for it.
-  inline constexpr const char *no_label = "unnamed";
-
-  /// Family and order of a pin mode's label, without the sign of a doublet: `F1`; empty for any other label.
-  std::string pin_family(const std::string &label);
-
-  /**
-   * Suffixes ` -` and ` +` to labels that occur exactly twice; none to no_label.
-   * ` +` gets the mode that grows, or grows more; where neither grows, the one of
-   * the higher frequency. That is the rule for every table of every study.
-   *
-   * @param labels       of modes in the order of their frequencies
-   * @param growth_rates of each mode, zero for one that does not grow [any unit]; empty: none grows
-   */
-  void mark_doublets(std::vector<std::string> &labels, const std::vector<double> &growth_rates = {});
+  std::vector<ModeLabel> pin_labels(const Model               &model,
+                                    const ContactInterface    &interface,
+                                    const std::vector<double> &nodal_masses,
+                                    const DenseMatrix         &modes);
 } // namespace Squeal

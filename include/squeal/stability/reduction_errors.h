@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/bases/mode_label.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/stability/reduced_modes.h>
 
@@ -69,11 +70,11 @@ namespace Squeal
                                           const ComplexModes   &reference,
                                           const ErrorOptions   &options = {});
 
-  /// Groups of the frictionless problem by label: `disc`, or the family of the pin mode (`F1`, `T1`); `unnamed`.
-  std::vector<std::string> frictionless_groups(const std::vector<std::string> &labels);
+  /// Groups of the frictionless problem: `disc`, or family and rank of the pin mode (`F1`, `T1`); `unnamed`.
+  std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels);
 
   /// Groups with friction: `disc`, `unstable pins`, `other pins`; `unnamed`.
-  std::vector<std::string> friction_groups(const std::vector<std::string> &labels, const std::vector<bool> &unstable);
+  std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable);
 
   /// Largest errors of a group of modes.
   struct GroupError

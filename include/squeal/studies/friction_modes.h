@@ -11,10 +11,9 @@ namespace Squeal
   /// Complex modes at one friction coefficient with their names and which of them grow.
   struct FrictionModes
   {
-    ComplexModes              modes;
-    std::vector<ModeIdentity> identities;
-    std::vector<std::string>  labels;
-    std::vector<bool>         unstable; ///< beyond what their accuracy leaves open
+    ComplexModes           modes;
+    std::vector<ModeLabel> labels;
+    std::vector<bool>      unstable; ///< beyond what their accuracy leaves open
 
     std::size_t n_unstable() const;
 

@@ -6,7 +6,6 @@
 #include <squeal/studies/scene.h>
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace Squeal
@@ -17,9 +16,8 @@ namespace Squeal
     ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
     double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
     std::unique_ptr<UpdatedInverse> inverse;
-    SymmetricModes                  real;       ///< coupled, in the band and its margin
-    std::vector<ModeIdentity>       identities; ///< of the coupled modes
-    std::vector<std::string>        labels;
+    SymmetricModes                  real;   ///< coupled, in the band and its margin
+    std::vector<ModeLabel>          labels; ///< of the coupled modes
   };
 
   /**
@@ -32,17 +30,12 @@ namespace Squeal
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
   void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation);
 
-  /// Names of coupled modes after the component modes that they resemble; @p imaginary_part may be null.
-  std::vector<ModeIdentity> identify_coupled(const Scene             &scene,
-                                             const Linearisation     &linearisation,
-                                             const FrictionlessModes &modes,
-                                             const MultiVector       &real_part,
-                                             const MultiVector       *imaginary_part);
-
-  /// Labels with the marks of doublets, see mark_doublets(); the first @p n_rigid_body are `RB`.
-  std::vector<std::string> labels_of(const std::vector<ModeIdentity> &identities,
-                                     int                              n_rigid_body = 0,
-                                     const std::vector<double>       &growth_rates = {});
+  /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
+  std::vector<ModeLabel> identify_coupled(const Scene             &scene,
+                                          const Linearisation     &linearisation,
+                                          const FrictionlessModes &modes,
+                                          const MultiVector       &real_part,
+                                          const MultiVector       *imaginary_part);
 
   /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);

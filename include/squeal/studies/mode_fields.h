@@ -8,9 +8,6 @@
 
 namespace Squeal
 {
-  /// A label as part of a file name, without blanks and signs: `A0-4_minus`.
-  std::string file_label(std::string label);
-
   /**
    * Field of a complex mode, coupled displacements n × 1, on the uncoupled
    * bodies, with the normal reactions at all pairs of contact nodes. All

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/bases/mode_label.h>
 #include <squeal/output/table.h>
 #include <squeal/parameters/parameters.h>
 
@@ -14,11 +15,11 @@ namespace Squeal
   /// Labelled frequencies and eigenvalues of a run, as they are set beside the paper's.
   struct TableOneResults
   {
-    std::vector<std::string>          component_labels;      ///< with the marks of doublets
+    std::vector<ModeLabel>            component_labels;      ///< with the signs of doublets
     std::vector<double>               component_frequencies; ///< [Hz]
-    std::vector<std::string>          coupled_labels;
+    std::vector<ModeLabel>            coupled_labels;
     std::vector<double>               coupled_frequencies; ///< [Hz]
-    std::vector<std::string>          complex_labels;
+    std::vector<ModeLabel>            complex_labels;
     std::vector<std::complex<double>> lambda; ///< [rad/s]
   };
 
@@ -39,14 +40,14 @@ namespace Squeal
   };
 
   /// Divergence rate in Table 1 of a mode with radial dissipation [%]; nothing where none is printed for the label.
-  std::optional<double> paper_divergence_damped(const std::string &label);
+  std::optional<double> paper_divergence_damped(const ModeLabel &label);
 
   /// Range of divergence rates that Table 1 prints for a family of pin modes with radial dissipation.
   struct PaperRange
   {
-    const char *label;
-    double      lowest, highest; ///< [%]
-    int         every;           ///< one mode of so many is damped: of F1 those that bend radially
+    ModeLabel label;
+    double    lowest, highest; ///< [%]
+    int       every;           ///< one mode of so many is damped: of F1 those that bend radially
   };
   extern const std::array<PaperRange, 2> paper_ranges_damped;
 

@@ -34,7 +34,7 @@ namespace Squeal
 
   /// Every mode of every basis beside the reference.
   Table reduction_mode_table(const std::vector<Candidate>   &candidates,
-                             const std::vector<std::string> &labels,
+                             const std::vector<ModeLabel>   &labels,
                              const std::vector<std::string> &groups);
 
   /// How far the estimates are to be trusted: they know nothing of the reference, by which modes are @p unstable.
