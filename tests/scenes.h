@@ -51,17 +51,14 @@ namespace Squeal::Testing
           const int    k     = std::min(j, n_sectors - j);
           const double r     = inner + (outer - inner) * i / n_rings;
           const double angle = 2. * M_PI * k / n_sectors;
-          plan.points.push_back({{r * std::cos(angle), (j == k ? r : -r) * std::sin(angle)}});
+          plan.points.push_back({r * std::cos(angle), (j == k ? r : -r) * std::sin(angle)});
         }
     for (int i = 0; i < n_rings; ++i)
       for (int j = 0; j < n_sectors; ++j)
         plan.faces.push_back({{point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)}});
     for (const PolarPin &pin : pins)
       {
-        Plan::Pin part{(pin.side == Plan::Side::top ? "pin_top_" : "pin_bottom_") + std::to_string(plan.pins.size() + 1),
-                       pin.side,
-                       {},
-                       {{0., 0.}}};
+        Plan::Pin part{(pin.side == Plan::Side::top ? "pin_top_" : "pin_bottom_") + std::to_string(plan.pins.size() + 1), pin.side, {}, {}};
         for (int i = pin.ring; i < pin.ring + pin.n_rings; ++i)
           for (int j = pin.sector; j < pin.sector + pin.n_sectors; ++j)
             part.faces.push_back(face(i, j));
@@ -87,13 +84,13 @@ namespace Squeal::Testing
     for (int j = 0; j < 6 * k; ++j)
       {
         const double angle = M_PI * j / (3 * k);
-        plan.points.push_back({{distance + radius * std::cos(angle), radius * std::sin(angle)}});
+        plan.points.push_back({distance + radius * std::cos(angle), radius * std::sin(angle)});
         loop.push_back(j);
         rim.edges.push_back({{static_cast<unsigned int>(j), static_cast<unsigned int>((j + 1) % (6 * k))}});
       }
     plan.faces  = fill_with_o_grid(loop, plan.points);
     plan.curves = {rim};
-    Plan::Pin pin{"pin_top_1", Plan::Side::top, {}, {{0., 0.}}};
+    Plan::Pin pin{"pin_top_1", Plan::Side::top, {}, {}};
     for (unsigned int face = 0; face < plan.faces.size(); ++face)
       pin.faces.push_back(face);
     plan.pins = {pin};
@@ -106,7 +103,10 @@ namespace Squeal::Testing
   inline HexMesh mapped(HexMesh mesh, const std::function<Point3(const Point3 &)> &map)
   {
     for (auto &point : mesh.points)
-      point = map(point);
+      {
+        const Point3 moved = map({{point[0], point[1], point[2]}});
+        point              = {moved[0], moved[1], moved[2]};
+      }
     return mesh;
   }
 

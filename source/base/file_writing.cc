@@ -54,19 +54,4 @@ namespace Squeal
     write_to_disk(temporary, O_TRUNC, {text});
     std::filesystem::rename(temporary, file);
   }
-
-  bool file_ends_with(const std::filesystem::path &file, const std::string_view words)
-  {
-    constexpr std::size_t room_for_space = 64;
-    std::ifstream         stream(file, std::ios::binary | std::ios::ate);
-    const auto            size = static_cast<std::streamoff>(stream.tellg());
-    const auto            n    = std::min<std::streamoff>(size, words.size() + room_for_space);
-    if (!stream || n < 0)
-      return false;
-    std::string end(n, '\0');
-    if (!stream.seekg(size - n) || !stream.read(end.data(), n))
-      return false;
-    end.erase(end.find_last_not_of(" \r\n") + 1);
-    return end.size() >= words.size() && end.compare(end.size() - words.size(), words.size(), words) == 0;
-  }
 } // namespace Squeal

@@ -1,11 +1,11 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_count_estimate.h>
+#include <squeal/geometry/faces.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <sstream>
 #include <string>
 
@@ -13,8 +13,6 @@ namespace Squeal
 {
   namespace
   {
-    using Point = HexMesh::Point;
-
     /// Orders along the height that are summed one by one; of more, samples.
     constexpr double most_orders = 1000.;
     /// Edge term of a wave in a region with free edges, and of a thin plate in bending [-].
@@ -30,74 +28,39 @@ namespace Squeal
       double height, area, outline; ///< h [m], S [m²], L [m]
     };
 
-    Point difference(const Point &a, const Point &b)
+    Prism prism(const HexMesh &mesh, const std::vector<HexFace> &outer_faces, const unsigned int volume)
     {
-      return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
-    }
-
-    Point cross(const Point &a, const Point &b)
-    {
-      return {{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}};
-    }
-
-    /// Corners of the faces of a hexahedron, outwards.
-    constexpr unsigned int face_corners[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-
-    /// Faces on the outside, by their sorted nodes: the others belong to two elements.
-    using Faces = std::map<std::array<unsigned int, 4>, std::array<unsigned int, 4>>;
-
-    Prism prism(const HexMesh &mesh, const unsigned int volume)
-    {
-      Faces  outside;
       double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
       for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
         if (hexahedron.volume == volume)
-          {
-            for (const auto &corners : face_corners)
-              {
-                std::array<unsigned int, 4> nodes;
-                std::transform(corners, corners + 4, nodes.begin(), [&](const unsigned int c) { return hexahedron.nodes[c]; });
-                auto key = nodes;
-                std::sort(key.begin(), key.end());
-                if (outside.erase(key) == 0)
-                  outside.emplace(key, nodes);
-              }
-            for (const unsigned int node : hexahedron.nodes)
-              {
-                lowest  = std::min(lowest, mesh.points[node][2]);
-                highest = std::max(highest, mesh.points[node][2]);
-              }
-          }
+          for (const unsigned int node : hexahedron.nodes)
+            {
+              lowest  = std::min(lowest, mesh.points[node][2]);
+              highest = std::max(highest, mesh.points[node][2]);
+            }
 
       // Gauss' theorem: V = ∮ z n_z dS; faces that stand upright make up the outline.
       double content = 0., lateral = 0.;
-      for (const auto &[key, nodes] : outside)
-        {
-          const auto  &p      = mesh.points;
-          const Point  normal = cross(difference(p[nodes[2]], p[nodes[0]]), difference(p[nodes[3]], p[nodes[1]]));
-          const double area   = 0.5 * std::hypot(normal[0], normal[1], normal[2]);
-          const double middle = 0.25 * (p[nodes[0]][2] + p[nodes[1]][2] + p[nodes[2]][2] + p[nodes[3]][2]);
-          content += 0.5 * normal[2] * (middle - lowest);
-          if (0.5 * std::abs(normal[2]) < 0.5 * area)
-            lateral += area;
-        }
+      for (const HexFace &face : outer_faces)
+        if (face.volume == volume)
+          {
+            const auto [centre, normal] = face_geometry(mesh, face.nodes);
+            content += normal[2] * (centre[2] - lowest);
+            if (std::abs(normal[2]) < 0.5 * normal.norm())
+              lateral += normal.norm();
+          }
       const double height = highest - lowest;
       return {height, content / height, lateral / height};
     }
 
     /// Of the edges of the elements of a body [m].
-    double longest_edge(const HexMesh &mesh, const unsigned int volume)
+    double longest_edge(const HexMesh &mesh, const std::vector<HexFace> &faces, const unsigned int volume)
     {
       double longest = 0.;
-      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-        if (hexahedron.volume == volume)
-          for (const auto &corners : face_corners)
-            for (unsigned int i = 0; i < 4; ++i)
-              {
-                const Point edge =
-                  difference(mesh.points[hexahedron.nodes[corners[i]]], mesh.points[hexahedron.nodes[corners[(i + 1) % 4]]]);
-                longest = std::max(longest, std::hypot(edge[0], edge[1], edge[2]));
-              }
+      for (const HexFace &face : faces)
+        if (face.volume == volume)
+          for (unsigned int i = 0; i < 4; ++i)
+            longest = std::max(longest, mesh.points[face.nodes[i]].distance(mesh.points[face.nodes[(i + 1) % 4]]));
       return longest;
     }
 
@@ -180,10 +143,11 @@ namespace Squeal
                                              const MaterialParameters &materials,
                                              const double              largest_circular_frequency)
   {
-    ModeCountEstimate estimate;
+    const std::vector<HexFace> faces = outer_faces(mesh);
+    ModeCountEstimate          estimate;
     for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
       {
-        const Prism body = prism(mesh, volume);
+        const Prism body = prism(mesh, faces, volume);
         if (mesh.volume_names[volume] == PhysicalNames::disc)
           estimate.disc = disc_modes(body, WaveSpeeds(materials.disc), largest_circular_frequency);
         else
@@ -197,13 +161,14 @@ namespace Squeal
                              const unsigned int        degree,
                              const double              largest_circular_frequency)
   {
+    const std::vector<HexFace> faces = all_faces(mesh);
     for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
       {
         const std::string &name      = mesh.volume_names[volume];
         const bool         is_disc   = name == PhysicalNames::disc;
         const double       frequency = hertz(largest_circular_frequency);
         const double       wave      = WaveSpeeds(is_disc ? materials.disc : materials.pin).shear / frequency;
-        const double       edge      = longest_edge(mesh, volume);
+        const double       edge      = longest_edge(mesh, faces, volume);
         if (wave * degree >= edge)
           continue;
         std::ostringstream what, change;

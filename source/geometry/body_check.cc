@@ -1,51 +1,26 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/mesh_check.h>
 
+#include <boost/pending/disjoint_sets.hpp>
+
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace Squeal
 {
   namespace
   {
-    /// Disjoint sets of nodes.
-    class Sets
-    {
-    public:
-      explicit Sets(const std::size_t size)
-        : parent(size)
-      {
-        std::iota(parent.begin(), parent.end(), 0u);
-      }
-
-      unsigned int root(unsigned int node)
-      {
-        while (parent[node] != node)
-          node = parent[node] = parent[parent[node]];
-        return node;
-      }
-
-      void join(const unsigned int a, const unsigned int b)
-      {
-        parent[root(a)] = root(b);
-      }
-
-    private:
-      std::vector<unsigned int> parent;
-    };
-
     void check_connected(const HexMesh &mesh, const std::string &where)
     {
-      Sets sets(mesh.points.size());
+      boost::disjoint_sets_with_storage<> sets(mesh.points.size());
       for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
         for (const unsigned int node : hexahedron.nodes)
-          sets.join(node, hexahedron.nodes[0]);
-      std::vector<std::map<unsigned int, std::size_t>> pieces(mesh.volume_names.size()); // elements, by root
+          sets.union_set(node, hexahedron.nodes[0]);
+      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.volume_names.size()); // elements, by root
       for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-        ++pieces[hexahedron.volume][sets.root(hexahedron.nodes[0])];
+        ++pieces[hexahedron.volume][sets.find_set(hexahedron.nodes[0])];
       for (std::size_t volume = 0; volume < pieces.size(); ++volume)
         if (pieces[volume].size() > 1)
           {
@@ -76,8 +51,7 @@ namespace Squeal
       double nearest = std::numeric_limits<double>::infinity();
       for (const unsigned int a : some)
         for (const unsigned int b : others)
-          nearest = std::min(nearest, std::hypot(mesh.points[a][0] - mesh.points[b][0], mesh.points[a][1] - mesh.points[b][1],
-                                                 mesh.points[a][2] - mesh.points[b][2]));
+          nearest = std::min(nearest, mesh.points[a].distance(mesh.points[b]));
       return nearest;
     }
   } // namespace
@@ -86,14 +60,11 @@ namespace Squeal
   {
     check_connected(mesh, where);
 
-    std::vector<unsigned int> volume_of_node(mesh.points.size(), 0);
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      for (const unsigned int node : hexahedron.nodes)
-        volume_of_node[node] = hexahedron.volume;
-    const std::set<unsigned int> disc     = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
-    const auto                   contacts = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
-    const auto                   clamps   = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
-    std::vector<bool>            is_held(mesh.volume_names.size(), false);
+    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
+    const std::set<unsigned int>    disc           = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
+    const auto                      contacts       = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
+    const auto                      clamps         = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
+    std::vector<bool>               is_held(mesh.volume_names.size(), false);
     for (const std::string &surface : mounted_surfaces)
       {
         const auto mounted = nodes_by_volume(mesh, volume_of_node, surface);

@@ -1,6 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/disc_axis.h>
-#include <squeal/geometry/outer_faces.h>
+#include <squeal/geometry/faces.h>
 
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/tensor.h>
@@ -62,25 +62,19 @@ namespace Squeal
       Surface                   surface;
       std::vector<FaceGeometry> geometry;
       double                    area = 0.;
-      for (const OuterFace &face : outer_faces(mesh))
+      for (const HexFace &face : outer_faces(mesh))
         if (mesh.volume_names[face.volume] == PhysicalNames::disc)
           {
             geometry.push_back(face_geometry(mesh, face.nodes));
-            const FaceGeometry &last = geometry.back();
-            const double        size = std::hypot(last.area_normal[0], last.area_normal[1], last.area_normal[2]);
-            for (unsigned int d = 0; d < 3; ++d)
-              surface.centre[d] += size * last.centre[d];
+            const double size = geometry.back().area_normal.norm();
+            surface.centre += size * geometry.back().centre;
             area += size;
           }
       surface.centre /= area;
       surface.radius = std::sqrt(area / (2. * pi));
-      for (const FaceGeometry &face : geometry)
-        {
-          const Vector normal({face.area_normal[0], face.area_normal[1], face.area_normal[2]});
-          const Vector place({face.centre[0], face.centre[1], face.centre[2]});
-          if (normal.norm() > 0.)
-            surface.faces.push_back({(place - surface.centre) / surface.radius, normal / normal.norm(), normal.norm() / area});
-        }
+      for (const auto &[place, normal] : geometry)
+        if (normal.norm() > 0.)
+          surface.faces.push_back({(place - surface.centre) / surface.radius, normal / normal.norm(), normal.norm() / area});
       return surface;
     }
 
@@ -126,7 +120,7 @@ namespace Squeal
       return least;
     }
 
-    std::string print(const std::array<double, 3> &vector, const double negligible)
+    std::string print(const Vector &vector, const double negligible)
     {
       std::ostringstream text;
       text.precision(4);
@@ -167,11 +161,8 @@ namespace Squeal
 
     const Vector z({0., 0., 1.});
     DiscAxis     axis;
-    for (unsigned int d = 0; d < 3; ++d)
-      {
-        axis.direction[d] = sense * motion.a[d];
-        axis.centre[d]    = centre[d];
-      }
+    axis.direction     = sense * motion.a;
+    axis.centre        = HexMesh::Point(centre);
     axis.angle         = std::atan2(cross_product_3d(z, motion.a).norm(), std::abs(z * motion.a));
     axis.offset        = std::hypot(centre[0], centre[1]);
     axis.round         = fitting_share(surface, motion);

@@ -10,8 +10,11 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/serialization/utility.hpp>
+
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 #include <iomanip>
 #include <limits>
@@ -97,27 +100,25 @@ namespace Squeal
     /// The same on every process of the communicator: one runs Gmsh, and all get its mesh or its error.
     GmshMesh run_gmsh_once(const GeometryParameters &parameters, const std::string &geometry, MPI_Comm communicator)
     {
-      GmshMesh    mesh;
-      std::string bytes, message;
+      std::pair<std::string, GmshMesh> outcome; // what went wrong; the mesh
+      std::exception_ptr               error;
       if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
         try
           {
-            mesh = run_gmsh(parameters, geometry);
-            if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
-              return mesh;
-            bytes = to_bytes(mesh);
+            outcome.second = run_gmsh(parameters, geometry);
           }
-        catch (const std::exception &error)
+        catch (const std::exception &exception)
           {
-            message = error.what();
-            if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
-              dealii::Utilities::MPI::broadcast(communicator, message);
-            throw;
+            outcome.first = exception.what();
+            error         = std::current_exception();
           }
-      message = dealii::Utilities::MPI::broadcast(communicator, message);
-      if (!message.empty())
-        throw std::runtime_error(message);
-      return from_bytes(dealii::Utilities::MPI::broadcast(communicator, bytes));
+      if (dealii::Utilities::MPI::n_mpi_processes(communicator) > 1)
+        outcome = dealii::Utilities::MPI::broadcast(communicator, outcome);
+      if (error)
+        std::rethrow_exception(error);
+      if (!outcome.first.empty())
+        throw std::runtime_error(outcome.first);
+      return outcome.second;
     }
 
     // ---------------------------------------------------------- unit of length
@@ -195,8 +196,7 @@ namespace Squeal
       }
     if (exponent != 0)
       for (HexMesh::Point &point : mesh.points)
-        for (double &coordinate : point)
-          coordinate *= std::pow(10., exponent);
+        point *= std::pow(10., exponent);
     check_mesh(mesh);
     return mesh;
   }

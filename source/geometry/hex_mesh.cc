@@ -10,8 +10,17 @@ namespace Squeal
     constexpr double nanometre = 1e-9;
     std::string      places;
     for (const HexMesh::Point &point : mesh.points)
-      for (const double coordinate : point)
-        places += std::to_string(std::llround(coordinate / nanometre)) + ' ';
+      for (unsigned int d = 0; d < 3; ++d)
+        places += std::to_string(std::llround(point[d] / nanometre)) + ' ';
     return checksum(std::string_view(places));
+  }
+
+  std::vector<unsigned int> volume_of_nodes(const HexMesh &mesh)
+  {
+    std::vector<unsigned int> volumes(mesh.points.size(), 0);
+    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const unsigned int node : hexahedron.nodes)
+        volumes[node] = hexahedron.volume;
+    return volumes;
   }
 } // namespace Squeal

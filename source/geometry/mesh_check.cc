@@ -1,43 +1,25 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/geometry/faces.h>
 #include <squeal/geometry/mesh_check.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 namespace Squeal
 {
   namespace
   {
-    using Point = HexMesh::Point;
-
-    Point operator-(const Point &a, const Point &b)
-    {
-      return {{a[0] - b[0], a[1] - b[1], a[2] - b[2]}};
-    }
-
-    double norm(const Point &a)
-    {
-      return std::sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2]);
-    }
-
-    double triple_product(const Point &a, const Point &b, const Point &c)
-    {
-      return a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-    }
-
     /// For each corner, the corners at the ends of its edges, as a right-handed triple.
     constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
-
-    constexpr unsigned int face_corners[6][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
 
     std::string describe(const HexMesh &mesh, const unsigned int element)
     {
       const HexMesh::Hexahedron &hexahedron = mesh.hexahedra[element];
-      Point                      centre     = {{0., 0., 0.}};
+      HexMesh::Point             centre;
       for (const unsigned int node : hexahedron.nodes)
-        for (unsigned int d = 0; d < 3; ++d)
-          centre[d] += mesh.points[node][d] / 8.;
+        centre += mesh.points[node] / 8.;
       std::ostringstream text;
       text << "element " << element << " of volume '" << mesh.volume_names[hexahedron.volume] << "', near (" << centre[0] << ", "
            << centre[1] << ", " << centre[2] << ") m";
@@ -46,10 +28,7 @@ namespace Squeal
 
     std::string list(const std::vector<std::string> &names)
     {
-      std::string text;
-      for (const std::string &name : names)
-        text += (text.empty() ? "" : ", ") + name;
-      return text.empty() ? "(none)" : text;
+      return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
   } // namespace
 
@@ -65,17 +44,17 @@ namespace Squeal
         double      shortest = 1e300, longest = 0., scaled_jacobian = 1.;
         for (unsigned int corner = 0; corner < 8; ++corner)
           {
-            Point  edges[3];
-            double lengths = 1.;
+            dealii::Tensor<2, 3> edges;
+            double               lengths = 1.;
             for (unsigned int e = 0; e < 3; ++e)
               {
                 edges[e]            = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
-                const double length = norm(edges[e]);
+                const double length = edges[e].norm();
                 shortest            = std::min(shortest, length);
                 longest             = std::max(longest, length);
                 lengths *= length;
               }
-            const double jacobian = lengths > 0. ? triple_product(edges[0], edges[1], edges[2]) / lengths : 0.;
+            const double jacobian = lengths > 0. ? determinant(edges) / lengths : 0.;
             scaled_jacobian       = std::min(scaled_jacobian, jacobian);
           }
         if (scaled_jacobian < quality.worst_scaled_jacobian)
@@ -151,34 +130,15 @@ namespace Squeal
         }
 
     // Named faces are outer faces of volumes of their kind
-    struct Owner
-    {
-      std::array<unsigned int, 4> nodes;
-      unsigned int                volume;
-      bool                        operator<(const Owner &other) const
-      {
-        return nodes < other.nodes;
-      }
-    };
-    std::vector<Owner> faces;
-    faces.reserve(6 * mesh.hexahedra.size());
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      for (const auto &corners : face_corners)
-        {
-          Owner face;
-          for (unsigned int v = 0; v < 4; ++v)
-            face.nodes[v] = hexahedron.nodes[corners[v]];
-          std::sort(face.nodes.begin(), face.nodes.end());
-          face.volume = hexahedron.volume;
-          faces.push_back(face);
-        }
-    std::sort(faces.begin(), faces.end());
+    const std::vector<HexFace> faces = all_faces(mesh);
     for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
       {
         const std::string &name = mesh.surface_names[quadrilateral.surface];
-        Owner              wanted{quadrilateral.nodes, 0};
-        std::sort(wanted.nodes.begin(), wanted.nodes.end());
-        const auto [first, last] = std::equal_range(faces.begin(), faces.end(), wanted);
+        auto               key  = quadrilateral.nodes;
+        std::sort(key.begin(), key.end());
+        const auto first =
+          std::lower_bound(faces.begin(), faces.end(), key, [](const HexFace &face, const auto &nodes) { return face.key < nodes; });
+        const auto last = std::find_if(first, faces.end(), [&](const HexFace &face) { return face.key != key; });
         if (last - first != 1)
           throw MeshError("Surface '" + name + "' has a face that is " +
                             (first == last ? "not a face of any hexahedron" : "inside a volume"),

@@ -1,13 +1,16 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/base/file_writing.h>
-#include <squeal/geometry/gmsh_session.h>
 #include <squeal/geometry/mesh_file.h>
 
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <deal.II/base/bounding_box.h>
 
-#include <unistd.h>
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/predicate.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <ostream>
+#include <sstream>
 
 namespace Squeal
 {
@@ -15,171 +18,167 @@ namespace Squeal
   {
     constexpr unsigned int no_node = static_cast<unsigned int>(-1);
 
-    const std::vector<std::string> known_surfaces = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
-                                                     PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
+    /// Elements of the groups of one dimension by their tags, which write_msh() gives in the order of the mesh: nodes and index of the group.
+    template <std::size_t n_nodes>
+    using TaggedElements = std::multimap<std::size_t, std::pair<std::array<unsigned int, n_nodes>, unsigned int>>;
 
-    void check_type(const GmshMesh::Group &group, const std::string &wanted, const std::string &where)
+    /// Adds the elements of a group, which all have to be of one type.
+    template <std::size_t n_nodes>
+    void add_group(TaggedElements<n_nodes>  &all,
+                   const GmshMesh::Group    &group,
+                   std::vector<std::string> &names,
+                   const std::string        &wanted,
+                   const std::string        &where)
     {
-      for (const GmshMesh::Block &block : group.blocks)
-        if (block.type != wanted)
-          throw MeshError("'" + group.name + "' has " + std::to_string(block.tags.size()) + " elements of type '" + block.type + "'", where,
-                          "mesh it with elements of type '" + wanted + "' only");
+      for (const auto &[type, elements] : group.elements)
+        {
+          if (type != wanted)
+            throw MeshError("'" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + type + "'", where,
+                            "mesh it with elements of type '" + wanted + "' only");
+          for (const GmshMesh::Element &element : elements)
+            {
+              const auto added = all.emplace(element.tag, std::make_pair(std::array<unsigned int, n_nodes>(), names.size()));
+              std::copy_n(element.nodes.begin(), n_nodes, added->second.first.begin());
+            }
+        }
+      names.push_back(group.name);
+    }
+
+    /// Groups of volumes, the disc first.
+    std::vector<const GmshMesh::Group *> volumes(const GmshMesh &mesh, const std::string &where)
+    {
+      std::vector<const GmshMesh::Group *> result;
+      for (const GmshMesh::Group &group : mesh.groups)
+        if (group.dimension == 3)
+          {
+            const bool is_disc = group.name == PhysicalNames::disc;
+            if (!is_disc && !boost::starts_with(group.name, PhysicalNames::pin_prefix))
+              throw MeshError("There is a physical volume '" + group.name + "'", where, "known names of volumes: disc, pin_...");
+            result.insert(is_disc ? result.begin() : result.end(), &group);
+          }
+      return result;
     }
   } // namespace
 
   HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
-    HexMesh result;
-
-    // Volumes, the disc first
     if (mesh.n_unnamed_volume_elements > 0)
       throw MeshError(std::to_string(mesh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
                       "name every volume that is meshed 'disc' or 'pin_...'");
-    std::vector<const GmshMesh::Group *> volumes, surfaces;
-    for (const GmshMesh::Group &group : mesh.groups)
-      if (group.dimension == 3)
-        {
-          const bool is_disc = group.name == PhysicalNames::disc;
-          if (!is_disc && group.name.rfind(PhysicalNames::pin_prefix, 0) != 0)
-            throw MeshError("There is a physical volume '" + group.name + "'", where, "known names of volumes: disc, pin_...");
-          check_type(group, "Hexahedron 8", where);
-          volumes.insert(is_disc ? volumes.begin() : volumes.end(), &group);
-        }
+    HexMesh           result;
+    TaggedElements<8> hexahedra;
+    for (const GmshMesh::Group *group : volumes(mesh, where))
+      add_group(hexahedra, *group, result.volume_names, "Hexahedron 8", where);
 
-    // Surfaces
+    std::vector<std::string> known = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
+                                      PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
+    known.insert(known.end(), additional_surfaces.begin(), additional_surfaces.end());
+    TaggedElements<4> quadrilaterals;
     for (const GmshMesh::Group &group : mesh.groups)
       if (group.dimension == 2)
         {
-          if (std::find(known_surfaces.begin(), known_surfaces.end(), group.name) == known_surfaces.end() &&
-              std::find(additional_surfaces.begin(), additional_surfaces.end(), group.name) == additional_surfaces.end())
-            {
-              std::string known;
-              for (const std::vector<std::string> &names : {known_surfaces, additional_surfaces})
-                for (const std::string &name : names)
-                  known += (known.empty() ? "" : ", ") + name;
-              throw MeshError("There is a physical surface '" + group.name + "' that nothing uses", where,
-                              "known names of surfaces: " + known);
-            }
-          check_type(group, "Quadrilateral 4", where);
-          surfaces.push_back(&group);
+          if (std::find(known.begin(), known.end(), group.name) == known.end())
+            throw MeshError("There is a physical surface '" + group.name + "' that nothing uses", where,
+                            "known names of surfaces: " + boost::algorithm::join(known, ", "));
+          add_group(quadrilaterals, group, result.surface_names, "Quadrilateral 4", where);
         }
 
-    // Hexahedra
-    std::vector<bool>                                        used(mesh.points.size(), false);
-    std::vector<std::pair<std::size_t, HexMesh::Hexahedron>> tagged_hexahedra;
-    for (const GmshMesh::Group *group : volumes)
-      {
-        for (const GmshMesh::Block &block : group->blocks)
-          for (std::size_t i = 0; i < block.tags.size(); ++i)
-            {
-              HexMesh::Hexahedron hexahedron;
-              std::copy_n(block.nodes.begin() + 8 * i, 8, hexahedron.nodes.begin());
-              hexahedron.volume = result.volume_names.size();
-              for (const unsigned int node : hexahedron.nodes)
-                used[node] = true;
-              tagged_hexahedra.emplace_back(block.tags[i], hexahedron);
-            }
-        result.volume_names.push_back(group->name);
-      }
-    // A stable order by tag restores the order in which write_msh() wrote them.
-    const auto by_tag = [](const auto &a, const auto &b) { return a.first < b.first; };
-    std::stable_sort(tagged_hexahedra.begin(), tagged_hexahedra.end(), by_tag);
-    for (std::size_t i = 0; i < tagged_hexahedra.size(); ++i)
-      {
-        if (i > 0 && tagged_hexahedra[i].first == tagged_hexahedra[i - 1].first)
-          throw MeshError("A hexahedron belongs to '" + result.volume_names[tagged_hexahedra[i - 1].second.volume] + "' and to '" +
-                            result.volume_names[tagged_hexahedra[i].second.volume] + "'",
-                          where, "put every volume into one physical group");
-        result.hexahedra.push_back(tagged_hexahedra[i].second);
-      }
-
-    // Their nodes
+    // Nodes of the hexahedra in the order of Gmsh's
     std::vector<unsigned int> new_index(mesh.points.size(), no_node);
-    for (std::size_t node = 0; node < used.size(); ++node)
-      if (used[node])
+    for (const auto &[tag, hexahedron] : hexahedra)
+      for (const unsigned int node : hexahedron.first)
+        new_index[node] = 0;
+    for (std::size_t node = 0; node < new_index.size(); ++node)
+      if (new_index[node] != no_node)
         {
           new_index[node] = result.points.size();
-          result.points.push_back(mesh.points[node]);
+          result.points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
         }
-    for (HexMesh::Hexahedron &hexahedron : result.hexahedra)
-      for (unsigned int &node : hexahedron.nodes)
-        node = new_index[node];
 
-    // Named faces
-    std::vector<std::pair<std::size_t, HexMesh::Quadrilateral>> tagged_quadrilaterals;
-    for (const GmshMesh::Group *group : surfaces)
+    for (auto &[tag, hexahedron] : hexahedra)
       {
-        for (const GmshMesh::Block &block : group->blocks)
-          for (std::size_t i = 0; i < block.tags.size(); ++i)
-            {
-              HexMesh::Quadrilateral quadrilateral;
-              for (unsigned int v = 0; v < 4; ++v)
-                {
-                  quadrilateral.nodes[v] = new_index[block.nodes[4 * i + v]];
-                  if (quadrilateral.nodes[v] == no_node)
-                    throw MeshError("Surface '" + group->name + "' has a face that is not a face of any hexahedron", where,
-                                    "name only outer faces of the disc and the pins");
-                }
-              quadrilateral.surface = result.surface_names.size();
-              tagged_quadrilaterals.emplace_back(block.tags[i], quadrilateral);
-            }
-        result.surface_names.push_back(group->name);
+        auto &[nodes, volume] = hexahedron;
+        if (const auto first = hexahedra.lower_bound(tag)->second.second; first != volume)
+          throw MeshError("A hexahedron belongs to '" + result.volume_names[first] + "' and to '" + result.volume_names[volume] + "'",
+                          where, "put every volume into one physical group");
+        for (unsigned int &node : nodes)
+          node = new_index[node];
+        result.hexahedra.push_back({nodes, volume});
       }
-    std::stable_sort(tagged_quadrilaterals.begin(), tagged_quadrilaterals.end(), by_tag);
-    for (const auto &[tag, quadrilateral] : tagged_quadrilaterals)
-      result.quadrilaterals.push_back(quadrilateral);
+    for (auto &[tag, quadrilateral] : quadrilaterals)
+      {
+        auto &[nodes, surface] = quadrilateral;
+        for (unsigned int &node : nodes)
+          if ((node = new_index[node]) == no_node)
+            throw MeshError("Surface '" + result.surface_names[surface] + "' has a face that is not a face of any hexahedron", where,
+                            "name only outer faces of the disc and the pins");
+        result.quadrilaterals.push_back({nodes, surface});
+      }
     return result;
   }
 
-  void write_msh(const HexMesh &mesh, const std::string &file)
+  void write_msh(const HexMesh &mesh, std::ostream &stream)
   {
-    // One group for each name; elements carry their index, so that their order is kept
-    GmshMesh gmsh_mesh;
-    gmsh_mesh.points                    = mesh.points;
-    gmsh_mesh.n_unnamed_volume_elements = 0;
-    for (const std::string &name : mesh.surface_names)
-      gmsh_mesh.groups.push_back({2, name, {{"Quadrilateral 4", 4, {}, {}}}});
-    for (const std::string &name : mesh.volume_names)
-      gmsh_mesh.groups.push_back({3, name, {{"Hexahedron 8", 8, {}, {}}}});
+    const std::size_t n_surfaces = mesh.surface_names.size(), n_volumes = mesh.volume_names.size();
+    const std::size_t n_nodes = mesh.points.size(), n_hexahedra = mesh.hexahedra.size(),
+                      n_elements = n_hexahedra + mesh.quadrilaterals.size();
+    stream.precision(std::numeric_limits<double>::max_digits10);
 
-    std::size_t tag = 0;
-    const auto  add = [&tag](GmshMesh::Group &group, const auto &nodes) {
-      group.blocks[0].tags.push_back(++tag);
-      group.blocks[0].nodes.insert(group.blocks[0].nodes.end(), nodes.begin(), nodes.end());
+    // One entity for each name, with the same number
+    std::ostringstream names, entities;
+    entities.precision(stream.precision());
+    const auto box      = dealii::BoundingBox<3>(mesh.points).get_boundary_points();
+    const auto add_part = [&](const int dimension, const std::size_t tag, const std::string &name) {
+      names << dimension << ' ' << tag << " \"" << name << "\"\n";
+      entities << tag << ' ' << box.first << ' ' << box.second << " 1 " << tag << " 0\n";
     };
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      add(gmsh_mesh.groups[mesh.surface_names.size() + hexahedron.volume], hexahedron.nodes);
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      add(gmsh_mesh.groups[quadrilateral.surface], quadrilateral.nodes);
+    for (std::size_t s = 0; s < n_surfaces; ++s)
+      add_part(2, s + 1, mesh.surface_names[s]);
+    for (std::size_t v = 0; v < n_volumes; ++v)
+      add_part(3, v + 1, mesh.volume_names[v]);
+    stream << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    stream << "$PhysicalNames\n" << n_surfaces + n_volumes << '\n' << names.str() << "$EndPhysicalNames\n";
+    stream << "$Entities\n0 0 " << n_surfaces << ' ' << n_volumes << '\n' << entities.str() << "$EndEntities\n";
 
-    // Gmsh chooses the format by the name, so the temporary name ends in .msh
-    const std::string temporary = file + "." + std::to_string(::getpid()) + ".part.msh";
-    std::error_code   failure;
-    if (!std::ofstream(temporary))
-      throw FileError("The mesh could not be written", file, "check that the directory exists and is writable");
-    try
+    const std::vector<unsigned int> volumes = volume_of_nodes(mesh);
+    stream << "$Nodes\n" << n_volumes << ' ' << n_nodes << " 1 " << n_nodes << '\n';
+    for (std::size_t v = 0; v < n_volumes; ++v)
       {
-        GmshSession session;
-        session.load(gmsh_mesh);
-        session.write(temporary);
+        stream << "3 " << v + 1 << " 0 " << std::count(volumes.begin(), volumes.end(), v) << '\n';
+        for (std::size_t node = 0; node < n_nodes; ++node)
+          if (volumes[node] == v)
+            stream << node + 1 << '\n';
+        for (std::size_t node = 0; node < n_nodes; ++node)
+          if (volumes[node] == v)
+            stream << mesh.points[node] << '\n';
       }
-    catch (const GmshError &error)
-      {
-        std::filesystem::remove(temporary, failure);
-        throw FileError(error.what(), file, "check free space");
-      }
-    // Gmsh does not tell whether there was room for the file.
-    if (!file_ends_with(temporary, "$EndElements"))
-      {
-        std::filesystem::remove(temporary, failure);
-        throw FileError("The mesh could not be written to its end", file, "check free space");
-      }
-    std::filesystem::rename(temporary, file, failure);
-    if (failure)
-      {
-        const std::string reason = failure.message();
-        std::filesystem::remove(temporary, failure);
-        throw FileError("The mesh could not be moved to its place: " + reason, file, "check that nothing else has this name");
-      }
+    stream << "$EndNodes\n";
+
+    // Elements carry their index, so that their order is kept
+    const auto write_blocks = [&stream](const int dimension, const int type, const std::size_t n_blocks, const auto &elements,
+                                        const std::size_t first_tag) {
+      for (std::size_t block = 0; block < n_blocks; ++block)
+        {
+          std::size_t        n = 0, tag = first_tag;
+          std::ostringstream lines;
+          for (const auto &[nodes, part] : elements)
+            {
+              if (part == block)
+                {
+                  lines << tag;
+                  for (const unsigned int node : nodes)
+                    lines << ' ' << node + 1;
+                  lines << '\n';
+                  ++n;
+                }
+              ++tag;
+            }
+          stream << dimension << ' ' << block + 1 << ' ' << type << ' ' << n << '\n' << lines.str();
+        }
+    };
+    stream << "$Elements\n" << n_surfaces + n_volumes << ' ' << n_elements << " 1 " << n_elements << '\n';
+    write_blocks(2, 3, n_surfaces, mesh.quadrilaterals, n_hexahedra + 1);
+    write_blocks(3, 5, n_volumes, mesh.hexahedra, 1);
+    stream << "$EndElements\n";
   }
 } // namespace Squeal

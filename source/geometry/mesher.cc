@@ -251,7 +251,7 @@ namespace Squeal
       throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where, "remove Exit or Abort from the geometry");
     }
 
-    GmshMesh mesh_from(const std::string &reply, const MesherLimits &limits, const std::string &where)
+    GmshMesh mesh_from(const std::string &reply, const std::string &log, const MesherLimits &limits, const std::string &where)
     {
       const std::string content = reply.substr(1);
       switch (static_cast<MesherReply>(reply[0]))
@@ -259,7 +259,7 @@ namespace Squeal
           case MesherReply::mesh:
             return from_bytes(content);
           case MesherReply::failure:
-            throw MeshError(content, where, repair);
+            throw MeshError(content + ". " + quoted(log), where, repair);
           case MesherReply::out_of_memory:
             refuse_memory(limits, where);
           case MesherReply::starts_program:
@@ -294,7 +294,7 @@ namespace Squeal
       explain_end(status, mesher.log(), limits, where);
     try
       {
-        return mesh_from(*reply, limits, where);
+        return mesh_from(*reply, mesher.log(), limits, where);
       }
     catch (const std::length_error &)
       {

@@ -2,11 +2,12 @@
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/geometry/plan.h>
 
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 #include <tuple>
 
 namespace Squeal
@@ -15,24 +16,29 @@ namespace Squeal
   {
     constexpr unsigned int no_node = static_cast<unsigned int>(-1);
 
-    bool starts_with(const std::string &name, const std::string &prefix)
-    {
-      return name.rfind(prefix, 0) == 0;
-    }
+    using boost::starts_with;
 
     bool is_pin(const std::string &name)
     {
       return starts_with(name, "pin_top") || starts_with(name, "pin_bottom");
     }
 
-    Plan::Side side_of(const std::string &name)
-    {
-      return starts_with(name, "pin_top") ? Plan::Side::top : Plan::Side::bottom;
-    }
-
     Plan::Edge sorted(const Plan::Edge &edge)
     {
       return {{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])}};
+    }
+
+    Plan::Edge edge(const Plan::Face &face, const unsigned int v)
+    {
+      return {{face[v], face[(v + 1) % 4]}};
+    }
+
+    std::set<Plan::Edge> sorted_edges(const std::vector<Plan::Edge> &edges)
+    {
+      std::set<Plan::Edge> result;
+      for (const Plan::Edge &edge : edges)
+        result.insert(sorted(edge));
+      return result;
     }
 
     /// Twice the signed area, positive for a counter-clockwise polygon.
@@ -51,150 +57,20 @@ namespace Squeal
 
     Plan::Point mean(const std::vector<unsigned int> &nodes, const std::vector<Plan::Point> &points)
     {
-      Plan::Point sum = {{0., 0.}};
+      Plan::Point sum;
       for (const unsigned int node : nodes)
-        for (unsigned int d = 0; d < 2; ++d)
-          sum[d] += points[node][d];
-      return {{sum[0] / nodes.size(), sum[1] / nodes.size()}};
+        sum += points[node];
+      return sum / double(nodes.size());
     }
 
-    void check_joined(const Plan &plan, const std::string &where)
-    {
-      double smallest_edge = 1e300;
-      for (const Plan::Face &face : plan.faces)
-        for (unsigned int v = 0; v < 4; ++v)
-          {
-            const Plan::Point &a = plan.points[face[v]];
-            const Plan::Point &b = plan.points[face[(v + 1) % 4]];
-            smallest_edge        = std::min(smallest_edge, std::hypot(a[0] - b[0], a[1] - b[1]));
-          }
-
-      // Sorted by x, coincident nodes are close to each other in the list.
-      const double              tolerance = 1e-3 * smallest_edge;
-      std::vector<unsigned int> order(plan.points.size());
-      std::iota(order.begin(), order.end(), 0);
-      std::sort(order.begin(), order.end(), [&](unsigned int a, unsigned int b) { return plan.points[a] < plan.points[b]; });
-      for (std::size_t i = 0; i < order.size(); ++i)
-        for (std::size_t j = i + 1; j < order.size(); ++j)
-          {
-            const Plan::Point &a = plan.points[order[i]];
-            const Plan::Point &b = plan.points[order[j]];
-            if (b[0] - a[0] > tolerance)
-              break;
-            if (std::abs(b[1] - a[1]) <= tolerance)
-              throw MeshError("Two nodes of the plan coincide at (" + std::to_string(a[0]) + ", " + std::to_string(a[1]) +
-                                ") m: surfaces lie side by side without being joined",
-                              where, "let neighbouring surfaces use the same curves, or join them with Coherence");
-          }
-    }
-
-    void check_pins_apart(const Plan &plan, const std::string &where)
-    {
-      for (const Plan::Side side : {Plan::Side::top, Plan::Side::bottom})
-        {
-          std::vector<const Plan::Pin *> pin_at_node(plan.points.size(), nullptr);
-          for (const Plan::Pin &pin : plan.pins)
-            if (pin.side == side)
-              for (const unsigned int face : pin.faces)
-                for (const unsigned int node : plan.faces[face])
-                  {
-                    if (pin_at_node[node] != nullptr && pin_at_node[node] != &pin)
-                      throw MeshError("'" + pin_at_node[node]->name + "' and '" + pin.name +
-                                        "' touch each other: a node of the disc would be in contact with both",
-                                      where, "leave at least one element between pins of the same side");
-                    pin_at_node[node] = &pin;
-                  }
-        }
-    }
-  } // namespace
-
-  std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces)
-  {
-    std::map<Plan::Edge, unsigned int> count;
-    for (const Plan::Face &face : faces)
-      for (unsigned int v = 0; v < 4; ++v)
-        ++count[sorted({{face[v], face[(v + 1) % 4]}})];
-
-    std::vector<Plan::Edge> boundary;
-    for (const Plan::Face &face : faces)
-      for (unsigned int v = 0; v < 4; ++v)
-        if (count[sorted({{face[v], face[(v + 1) % 4]}})] == 1)
-          boundary.push_back({{face[v], face[(v + 1) % 4]}});
-    return boundary;
-  }
-
-  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points)
-  {
-    const unsigned int k = loop.size() / 6;
-
-    const auto add_point = [&](const Plan::Point &point) -> unsigned int {
-      points.push_back(point);
-      return points.size() - 1;
-    };
-    const auto at = [&](const unsigned int i) { return loop[i % loop.size()]; };
-
-    // Centre and spokes
-    const Plan::Point                        centre      = mean(loop, points);
-    const unsigned int                       centre_node = add_point(centre);
-    std::array<std::vector<unsigned int>, 3> spokes;
-    for (unsigned int s = 0; s < 3; ++s)
-      {
-        const unsigned int end = at(2 * k * s);
-        spokes[s].push_back(centre_node);
-        for (unsigned int i = 1; i < k; ++i)
-          {
-            const double t = double(i) / k;
-            spokes[s].push_back(add_point({{(1. - t) * centre[0] + t * points[end][0], (1. - t) * centre[1] + t * points[end][1]}}));
-          }
-        spokes[s].push_back(end);
-      }
-
-    // Blocks: i runs along one spoke, j along the next, the far sides are on the loop
-    std::vector<Plan::Face> faces;
-    for (unsigned int b = 0; b < 3; ++b)
-      {
-        std::vector<std::vector<unsigned int>> node(k + 1, std::vector<unsigned int>(k + 1, no_node));
-        for (unsigned int i = 0; i <= k; ++i)
-          {
-            node[i][0] = spokes[b][i];
-            node[0][i] = spokes[(b + 1) % 3][i];
-            node[k][i] = at(2 * k * b + i);
-            node[i][k] = at(2 * k * (b + 1) - i);
-          }
-
-        for (unsigned int i = 1; i < k; ++i)
-          for (unsigned int j = 1; j < k; ++j)
-            {
-              // Transfinite interpolation between the four sides
-              const double s = double(i) / k, t = double(j) / k;
-              Plan::Point  point;
-              for (unsigned int d = 0; d < 2; ++d)
-                point[d] = (1. - t) * points[node[i][0]][d] + t * points[node[i][k]][d] + (1. - s) * points[node[0][j]][d] +
-                           s * points[node[k][j]][d] - (1. - s) * (1. - t) * points[node[0][0]][d] - s * (1. - t) * points[node[k][0]][d] -
-                           (1. - s) * t * points[node[0][k]][d] - s * t * points[node[k][k]][d];
-              node[i][j] = add_point(point);
-            }
-
-        for (unsigned int i = 0; i < k; ++i)
-          for (unsigned int j = 0; j < k; ++j)
-            faces.push_back({{node[i][j], node[i + 1][j], node[i + 1][j + 1], node[i][j + 1]}});
-      }
-    return faces;
-  }
-
-  namespace
-  {
-    /// Puts the edges of a closed curve one behind the other, counter-clockwise.
-    std::vector<unsigned int> closed_loop(const std::vector<Plan::Edge>  &edges,
-                                          const std::vector<Plan::Point> &points,
-                                          const std::string              &name,
-                                          const std::string              &where)
+    /// Puts the edges of a closed curve around a pin one behind the other, counter-clockwise.
+    std::vector<unsigned int> closed_loop(const Plan::Curve &curve, const std::vector<Plan::Point> &points, const std::string &where)
     {
       std::map<unsigned int, std::vector<unsigned int>> neighbours;
-      for (const Plan::Edge &edge : edges)
+      for (const auto &[a, b] : curve.edges)
         {
-          neighbours[edge[0]].push_back(edge[1]);
-          neighbours[edge[1]].push_back(edge[0]);
+          neighbours[a].push_back(b);
+          neighbours[b].push_back(a);
         }
 
       std::vector<unsigned int> loop = {neighbours.begin()->first};
@@ -210,13 +86,13 @@ namespace Squeal
         }
       while (loop.back() != loop.front());
 
-      if (loop.size() != edges.size() + 1 || loop.back() != loop.front())
-        throw MeshError("Physical curve '" + name + "' is not one closed curve", where,
+      if (loop.size() != curve.edges.size() + 1 || loop.back() != loop.front())
+        throw MeshError("Physical curve '" + curve.name + "' is not one closed curve", where,
                         "give the curves around exactly one hole of the plan this name");
       loop.pop_back();
 
       if (loop.size() % 6 != 0)
-        throw MeshError("Physical curve '" + name + "' has " + std::to_string(loop.size()) +
+        throw MeshError("Physical curve '" + curve.name + "' has " + std::to_string(loop.size()) +
                           " nodes; a pin is filled by three blocks of equal size, which needs a multiple of 6",
                         where, "make it of three arcs with 'Transfinite Curve' of the same number of nodes");
       if (twice_area(loop, points) < 0.)
@@ -224,179 +100,309 @@ namespace Squeal
 
       // The first spoke points away from the axis of the disc.
       const Plan::Point centre = mean(loop, points);
-      const double      radius = std::hypot(centre[0], centre[1]);
-      if (radius > 0.)
+      if (const double radius = std::hypot(centre[0], centre[1]); radius > 0.)
         {
-          const auto outward = [&](const unsigned int node) {
-            return (points[node][0] * centre[0] + points[node][1] * centre[1]) / radius;
-          };
+          const auto outward = [&](const unsigned int node) { return (points[node] * centre) / radius; };
           std::rotate(loop.begin(),
                       std::max_element(loop.begin(), loop.end(), [&](unsigned int a, unsigned int b) { return outward(a) < outward(b); }),
                       loop.end());
         }
       return loop;
     }
+
+    // ------------------------------------------------------------------- checks
+
+    void check_joined(const Plan &plan, const std::string &where)
+    {
+      double smallest_edge = 1e300;
+      for (const Plan::Face &face : plan.faces)
+        for (unsigned int v = 0; v < 4; ++v)
+          smallest_edge = std::min(smallest_edge, plan.points[face[v]].distance(plan.points[face[(v + 1) % 4]]));
+
+      // Sorted by x, coincident nodes are close to each other in the list.
+      const double             tolerance = 1e-3 * smallest_edge;
+      std::vector<Plan::Point> points    = plan.points;
+      std::sort(points.begin(), points.end(), [](const Plan::Point &a, const Plan::Point &b) { return a[0] < b[0]; });
+      for (auto a = points.begin(); a != points.end(); ++a)
+        for (auto b = a + 1; b != points.end() && (*b)[0] - (*a)[0] <= tolerance; ++b)
+          if (std::abs((*b)[1] - (*a)[1]) <= tolerance)
+            throw MeshError("Two nodes of the plan coincide at (" + std::to_string((*a)[0]) + ", " + std::to_string((*a)[1]) +
+                              ") m: surfaces lie side by side without being joined",
+                            where, "let neighbouring surfaces use the same curves, or join them with Coherence");
+    }
+
+    void check_pins(const Plan &plan, const std::string &where)
+    {
+      if (plan.pins.empty())
+        throw MeshError("The plan has no pin, so there is no contact", where,
+                        "add a physical surface or curve 'pin_top_1' or 'pin_bottom_1'");
+      std::map<std::pair<Plan::Side, unsigned int>, const Plan::Pin *> pin_at_node;
+      for (const Plan::Pin &pin : plan.pins)
+        {
+          if (pin.faces.empty())
+            throw MeshError("'" + pin.name + "' has no faces", where, "check what bears this name");
+          for (const Plan::Pin &other : plan.pins)
+            if (&other != &pin && other.name == pin.name)
+              throw MeshError("'" + pin.name + "' names a surface and a curve", where, "keep one of them");
+          for (const unsigned int node : nodes_of(plan.faces_of(pin)))
+            if (const auto [entry, is_new] = pin_at_node.emplace(std::make_pair(pin.side, node), &pin); !is_new)
+              throw MeshError("'" + entry->second->name + "' and '" + pin.name +
+                                "' touch each other: a node of the disc would be in contact with both",
+                              where, "leave at least one element between pins of the same side");
+        }
+    }
+
+    // ------------------------------------------------------------------ reading
+
+    /// Takes the groups of Gmsh's mesh into a plan, those of the highest dimension first.
+    class PlanReader
+    {
+    public:
+      PlanReader(const GmshMesh &mesh, const std::string &where)
+        : mesh(mesh)
+        , where(where)
+        , plan_node(mesh.points.size(), no_node)
+      {}
+
+      void add_surface(const GmshMesh::Group &group)
+      {
+        if (group.name != PhysicalNames::disc && !is_pin(group.name))
+          throw MeshError("The plan has a physical surface '" + group.name + "'", where,
+                          "known names of surfaces in a plan: disc, pin_top..., pin_bottom...");
+        std::vector<unsigned int> faces;
+        for (const auto &[type, elements] : group.elements)
+          {
+            if (type != "Quadrilateral 4")
+              throw MeshError("Surface '" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + type + "'",
+                              where, "only four-node quadrilaterals can be extruded to hexahedra");
+            for (const GmshMesh::Element &element : elements)
+              faces.push_back(add_face(element));
+          }
+        std::sort(faces.begin(), faces.end());
+        if (group.name == PhysicalNames::disc)
+          has_disc = true;
+        else
+          add_pin(group.name, faces, {}, false);
+      }
+
+      void add_curve(const GmshMesh::Group &group)
+      {
+        Plan::Curve curve{group.name, {}};
+        for (const auto &[type, elements] : group.elements)
+          for (const GmshMesh::Element &element : elements)
+            {
+              const Plan::Edge edge = {{plan_node[element.nodes[0]], plan_node[element.nodes[1]]}};
+              if (edge[0] == no_node || edge[1] == no_node)
+                throw MeshError("Physical curve '" + group.name + "' is not on the surface 'disc'", where,
+                                "name only curves that bound the disc or a hole in it");
+              curve.edges.push_back(edge);
+            }
+        if (group.name.empty())
+          throw MeshError("The plan has a physical curve without a name", where, "write Physical Curve(\"name\") = {...}");
+        for (const char *reserved :
+             {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
+          if (group.name == reserved)
+            throw MeshError("The plan has a physical curve '" + group.name + "'", where,
+                            "choose another name; the extrusion gives this one to faces of its own");
+        (is_pin(group.name) ? pin_curves : plan.curves).push_back(curve);
+      }
+
+      void add_centre(const GmshMesh::Group &group)
+      {
+        if (group.elements.size() != 1 || group.elements.begin()->second.size() != 1)
+          throw MeshError("Physical point '" + group.name + "' is not one point", where,
+                          "name one point, the centre of the pin of this name");
+        const auto &point   = mesh.points[group.elements.begin()->second[0].nodes[0]];
+        centres[group.name] = {point[0], point[1]};
+      }
+
+      /// Fills the holes, each once for one or two pins.
+      void fill_holes()
+      {
+        const std::set<Plan::Edge>                                outline = sorted_edges(boundary_edges(plan.faces));
+        std::map<std::set<Plan::Edge>, std::vector<unsigned int>> filled;
+        for (const Plan::Curve &curve : pin_curves)
+          {
+            const std::set<Plan::Edge> edges = sorted_edges(curve.edges);
+            if (!std::includes(outline.begin(), outline.end(), edges.begin(), edges.end()))
+              throw MeshError("Physical curve '" + curve.name + "' does not surround a hole of the plan", where,
+                              "cut the hole out of the surface 'disc', or name the surface under the pin instead");
+            const std::vector<unsigned int> loop  = closed_loop(curve, plan.points, where);
+            std::vector<unsigned int>      &faces = filled[edges];
+            if (faces.empty())
+              for (const Plan::Face &face : fill_with_o_grid(loop, plan.points))
+                {
+                  faces.push_back(plan.faces.size());
+                  plan.faces.push_back(face);
+                }
+            Plan::Point displacement;
+            if (const auto place = centres.find(curve.name); place != centres.end())
+              {
+                displacement = Plan::Point(place->second - mean(loop, plan.points));
+                centres.erase(place);
+              }
+            add_pin(curve.name, faces, displacement, true);
+          }
+        if (!centres.empty())
+          throw MeshError("Physical point '" + centres.begin()->first + "' is not the centre of any pin", where,
+                          "give it the name of a physical curve around a pin, or remove its name");
+      }
+
+      bool has_disc = false;
+      Plan plan;
+
+    private:
+      void add_pin(const std::string &name, const std::vector<unsigned int> &faces, const Plan::Point &displacement, const bool is_round)
+      {
+        plan.pins.push_back({name, starts_with(name, "pin_top") ? Plan::Side::top : Plan::Side::bottom, faces, displacement, is_round});
+      }
+
+      /// Index of a node in the plan, which has those that are used by a surface and no others.
+      unsigned int node_index(const unsigned int node)
+      {
+        if (plan_node[node] == no_node)
+          {
+            const auto &[x, y, z] = mesh.points[node];
+            if (std::abs(z) > 1e-9 * (std::abs(x) + std::abs(y)))
+              throw MeshError("The plan has a node at z = " + std::to_string(z) + " m", where,
+                              "draw the plan in z = 0; a solid needs physical volumes");
+            plan_node[node] = plan.points.size();
+            plan.points.emplace_back(x, y);
+          }
+        return plan_node[node];
+      }
+
+      /// Index of a face, which may belong to several surfaces.
+      unsigned int add_face(const GmshMesh::Element &element)
+      {
+        Plan::Face face;
+        for (unsigned int v = 0; v < 4; ++v)
+          face[v] = node_index(element.nodes[v]);
+        if (twice_area(face, plan.points) < 0.)
+          std::reverse(face.begin(), face.end());
+        Plan::Face key = face;
+        std::sort(key.begin(), key.end());
+        const auto [entry, is_new] = face_index.emplace(key, plan.faces.size());
+        if (is_new)
+          plan.faces.push_back(face);
+        return entry->second;
+      }
+
+      const GmshMesh                    &mesh;
+      const std::string                 &where;
+      std::vector<unsigned int>          plan_node;
+      std::map<Plan::Face, unsigned int> face_index; ///< by ascending nodes
+      std::vector<Plan::Curve>           pin_curves;
+      std::map<std::string, Plan::Point> centres; ///< of pins
+    };
   } // namespace
+
+  std::vector<Plan::Face> Plan::faces_of(const Pin &pin) const
+  {
+    std::vector<Face> result;
+    for (const unsigned int face : pin.faces)
+      result.push_back(faces[face]);
+    return result;
+  }
+
+  std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces)
+  {
+    std::map<Plan::Edge, unsigned int> count;
+    for (const Plan::Face &face : faces)
+      for (unsigned int v = 0; v < 4; ++v)
+        ++count[sorted(edge(face, v))];
+
+    std::vector<Plan::Edge> boundary;
+    for (const Plan::Face &face : faces)
+      for (unsigned int v = 0; v < 4; ++v)
+        if (count[sorted(edge(face, v))] == 1)
+          boundary.push_back(edge(face, v));
+    return boundary;
+  }
+
+  Corner::Corner(const Plan::Face &face, const unsigned int v, const std::vector<Plan::Point> &points)
+    : a(points[face[(v + 1) % 4]] - points[face[v]])
+    , b(points[face[(v + 3) % 4]] - points[face[v]])
+    , cross(a[0] * b[1] - a[1] * b[0])
+  {}
+
+  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points)
+  {
+    const unsigned int k         = loop.size() / 6;
+    const auto         at        = [&](const unsigned int i) { return loop[i % loop.size()]; };
+    const auto         add_point = [&](const Plan::Point &point) -> unsigned int {
+      points.push_back(point);
+      return points.size() - 1;
+    };
+
+    // Centre and spokes
+    const Plan::Point                        centre      = mean(loop, points);
+    const unsigned int                       centre_node = add_point(centre);
+    std::array<std::vector<unsigned int>, 3> spokes;
+    for (unsigned int s = 0; s < 3; ++s)
+      {
+        const Plan::Point end = points[at(2 * k * s)];
+        spokes[s].push_back(centre_node);
+        for (unsigned int i = 1; i < k; ++i)
+          spokes[s].push_back(add_point((1. - double(i) / k) * centre + double(i) / k * end));
+        spokes[s].push_back(at(2 * k * s));
+      }
+
+    // Blocks: i runs along one spoke, j along the next, the far sides are on the loop
+    std::vector<Plan::Face> faces;
+    for (unsigned int b = 0; b < 3; ++b)
+      {
+        std::vector<std::vector<unsigned int>> node(k + 1, std::vector<unsigned int>(k + 1, no_node));
+        for (unsigned int i = 0; i <= k; ++i)
+          {
+            node[i][0] = spokes[b][i];
+            node[0][i] = spokes[(b + 1) % 3][i];
+            node[k][i] = at(2 * k * b + i);
+            node[i][k] = at(2 * k * (b + 1) - i);
+          }
+
+        // Transfinite interpolation between the four sides
+        const auto p = [&](const unsigned int i, const unsigned int j) { return points[node[i][j]]; };
+        for (unsigned int i = 1; i < k; ++i)
+          for (unsigned int j = 1; j < k; ++j)
+            {
+              const double s = double(i) / k, t = double(j) / k;
+              node[i][j] =
+                add_point(Plan::Point((1. - t) * p(i, 0) + t * p(i, k) + (1. - s) * p(0, j) + s * p(k, j) - (1. - s) * (1. - t) * p(0, 0) -
+                                      s * (1. - t) * p(k, 0) - (1. - s) * t * p(0, k) - s * t * p(k, k)));
+            }
+
+        for (unsigned int i = 0; i < k; ++i)
+          for (unsigned int j = 0; j < k; ++j)
+            faces.push_back({{node[i][j], node[i + 1][j], node[i + 1][j + 1], node[i][j + 1]}});
+      }
+    return faces;
+  }
 
   Plan make_plan(const GmshMesh &mesh, const std::string &where)
   {
-    Plan plan;
-
-    // Nodes that are used by a surface, and no others
-    std::vector<unsigned int> plan_node(mesh.points.size(), no_node);
-    const auto                node_index = [&](const unsigned int node) {
-      if (plan_node[node] == no_node)
-        {
-          const std::array<double, 3> &point = mesh.points[node];
-          if (std::abs(point[2]) > 1e-9 * (std::abs(point[0]) + std::abs(point[1])))
-            throw MeshError("The plan has a node at z = " + std::to_string(point[2]) + " m", where,
-                                           "draw the plan in z = 0; a solid needs physical volumes");
-          plan_node[node] = plan.points.size();
-          plan.points.push_back({{point[0], point[1]}});
-        }
-      return plan_node[node];
+    PlanReader reader(mesh, where);
+    const auto for_groups = [&](const int dimension, void (PlanReader::*add)(const GmshMesh::Group &)) {
+      for (const GmshMesh::Group &group : mesh.groups)
+        if (group.dimension == dimension)
+          (reader.*add)(group);
     };
-
-    // Surfaces: disc and pins
-    bool                               disc_found = false;
-    std::map<Plan::Face, unsigned int> face_index; // by ascending nodes
-    for (const GmshMesh::Group &group : mesh.groups)
-      if (group.dimension == 2)
-        {
-          const bool is_disc = group.name == PhysicalNames::disc;
-          if (!is_disc && !is_pin(group.name))
-            throw MeshError("The plan has a physical surface '" + group.name + "'", where,
-                            "known names of surfaces in a plan: disc, pin_top..., pin_bottom...");
-          disc_found = disc_found || is_disc;
-
-          std::vector<unsigned int> faces;
-          for (const GmshMesh::Block &block : group.blocks)
-            {
-              if (block.type != "Quadrilateral 4")
-                throw MeshError("Surface '" + group.name + "' has " + std::to_string(block.tags.size()) + " elements of type '" +
-                                  block.type + "'",
-                                where, "only four-node quadrilaterals can be extruded to hexahedra");
-              for (std::size_t i = 0; i < block.tags.size(); ++i)
-                {
-                  Plan::Face face;
-                  for (unsigned int v = 0; v < 4; ++v)
-                    face[v] = node_index(block.nodes[4 * i + v]);
-                  if (twice_area(face, plan.points) < 0.)
-                    std::reverse(face.begin(), face.end());
-                  Plan::Face key = face;
-                  std::sort(key.begin(), key.end());
-                  const auto [entry, is_new] = face_index.emplace(key, plan.faces.size());
-                  if (is_new)
-                    plan.faces.push_back(face);
-                  faces.push_back(entry->second);
-                }
-            }
-          std::sort(faces.begin(), faces.end());
-          if (!is_disc)
-            plan.pins.push_back({group.name, side_of(group.name), faces, {{0., 0.}}, false});
-        }
-    if (!disc_found)
+    for_groups(2, &PlanReader::add_surface);
+    if (!reader.has_disc)
       throw MeshError("The plan has no physical surface 'disc'", where, "give the surface of the disc that is not under a pin this name");
-
-    // Curves, as edges between nodes of the surfaces
-    std::vector<Plan::Curve> pin_curves;
-    for (const GmshMesh::Group &group : mesh.groups)
-      if (group.dimension == 1)
-        {
-          Plan::Curve curve{group.name, {}};
-          for (const GmshMesh::Block &block : group.blocks)
-            for (std::size_t i = 0; i < block.tags.size(); ++i)
-              {
-                Plan::Edge edge;
-                for (unsigned int v = 0; v < 2; ++v)
-                  edge[v] = plan_node[block.nodes[block.nodes_per_element * i + v]];
-                if (edge[0] == no_node || edge[1] == no_node)
-                  throw MeshError("Physical curve '" + group.name + "' is not on the surface 'disc'", where,
-                                  "name only curves that bound the disc or a hole in it");
-                curve.edges.push_back(edge);
-              }
-          if (group.name.empty())
-            throw MeshError("The plan has a physical curve without a name", where, "write Physical Curve(\"name\") = {...}");
-          for (const char *reserved :
-               {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
-            if (group.name == reserved)
-              throw MeshError("The plan has a physical curve '" + group.name + "'", where,
-                              "choose another name; the extrusion gives this one to faces of its own");
-          (is_pin(group.name) ? pin_curves : plan.curves).push_back(curve);
-        }
-
-    // Points: centres of pins
-    std::map<std::string, Plan::Point> centres;
-    for (const GmshMesh::Group &group : mesh.groups)
-      if (group.dimension == 0)
-        {
-          if (group.blocks.size() != 1 || group.blocks[0].tags.size() != 1)
-            throw MeshError("Physical point '" + group.name + "' is not one point", where,
-                            "name one point, the centre of the pin of this name");
-          const std::array<double, 3> &point = mesh.points[group.blocks[0].nodes[0]];
-          centres[group.name]                = {{point[0], point[1]}};
-        }
-
-    // Pins around holes: a hole is filled once, for one or two pins
-    std::set<Plan::Edge> outline;
-    for (const Plan::Edge &edge : boundary_edges(plan.faces))
-      outline.insert(sorted(edge));
-    std::map<std::set<Plan::Edge>, std::vector<unsigned int>> filled;
-    for (const Plan::Curve &curve : pin_curves)
-      {
-        std::set<Plan::Edge> edges;
-        for (const Plan::Edge &edge : curve.edges)
-          {
-            edges.insert(sorted(edge));
-            if (outline.count(sorted(edge)) == 0)
-              throw MeshError("Physical curve '" + curve.name + "' does not surround a hole of the plan", where,
-                              "cut the hole out of the surface 'disc', or name the surface under the pin instead");
-          }
-        std::vector<unsigned int> &faces = filled[edges];
-        if (faces.empty())
-          for (const Plan::Face &face : fill_with_o_grid(closed_loop(curve.edges, plan.points, curve.name, where), plan.points))
-            {
-              faces.push_back(plan.faces.size());
-              plan.faces.push_back(face);
-            }
-        const auto  place        = centres.find(curve.name);
-        Plan::Point displacement = {{0., 0.}};
-        if (place != centres.end())
-          {
-            const Plan::Point centre = mean(closed_loop(curve.edges, plan.points, curve.name, where), plan.points);
-            displacement             = {{place->second[0] - centre[0], place->second[1] - centre[1]}};
-            centres.erase(place);
-          }
-        plan.pins.push_back({curve.name, side_of(curve.name), faces, displacement, true});
-      }
-
-    if (!centres.empty())
-      throw MeshError("Physical point '" + centres.begin()->first + "' is not the centre of any pin", where,
-                      "give it the name of a physical curve around a pin, or remove its name");
+    for_groups(1, &PlanReader::add_curve);
+    for_groups(0, &PlanReader::add_centre);
+    reader.fill_holes();
+    Plan plan = std::move(reader.plan);
 
     // Top before bottom, pin_top_2 before pin_top_10
     std::sort(plan.pins.begin(), plan.pins.end(), [](const Plan::Pin &a, const Plan::Pin &b) {
       return std::make_tuple(a.side, a.name.size(), a.name) < std::make_tuple(b.side, b.name.size(), b.name);
     });
 
-    // Whether all of it fits together
-    if (plan.pins.empty())
-      throw MeshError("The plan has no pin, so there is no contact", where,
-                      "add a physical surface or curve 'pin_top_1' or 'pin_bottom_1'");
-    for (const Plan::Pin &pin : plan.pins)
-      {
-        if (pin.faces.empty())
-          throw MeshError("'" + pin.name + "' has no faces", where, "check what bears this name");
-        for (const Plan::Pin &other : plan.pins)
-          if (&other != &pin && other.name == pin.name)
-            throw MeshError("'" + pin.name + "' names a surface and a curve", where, "keep one of them");
-      }
     check_joined(plan, where);
-    check_pins_apart(plan, where);
-
-    outline.clear();
-    for (const Plan::Edge &edge : boundary_edges(plan.faces))
-      outline.insert(sorted(edge));
+    check_pins(plan, where);
+    const std::set<Plan::Edge> outline = sorted_edges(boundary_edges(plan.faces));
     for (const Plan::Curve &curve : plan.curves)
       for (const Plan::Edge &edge : curve.edges)
         if (outline.count(sorted(edge)) == 0)

@@ -23,20 +23,13 @@ namespace Squeal
       double worst = 1.;
       for (unsigned int v = 0; v < 4; ++v)
         {
-          const Plan::Point &corner = points[face[v]];
-          const Plan::Point &next   = points[face[(v + 1) % 4]];
-          const Plan::Point &last   = points[face[(v + 3) % 4]];
-          const double       ax = next[0] - corner[0], ay = next[1] - corner[1];
-          const double       bx = last[0] - corner[0], by = last[1] - corner[1];
-          const double       squares = ax * ax + ay * ay + bx * bx + by * by;
-          worst                      = std::min(worst, squares > 0. ? 2. * (ax * by - ay * bx) / squares : -1.);
+          const auto [a, b, cross] = Corner(face, v, points);
+          const double squares     = a[0] * a[0] + a[1] * a[1] + b[0] * b[0] + b[1] * b[1];
+          worst                    = std::min(worst, squares > 0. ? 2. * cross / squares : -1.);
         }
       return worst;
     }
-  } // namespace
 
-  namespace
-  {
     /// Marks the nodes on the outline of a set of faces.
     void fix_outline(const std::vector<Plan::Face> &faces, std::vector<bool> &fixed)
     {
@@ -44,26 +37,14 @@ namespace Squeal
         fixed[edge[0]] = fixed[edge[1]] = true;
     }
 
-    std::vector<Plan::Face> faces_of(const Plan::Pin &pin, const Plan &plan)
-    {
-      std::vector<Plan::Face> faces;
-      for (const unsigned int face : pin.faces)
-        faces.push_back(plan.faces[face]);
-      return faces;
-    }
-
     /// A pin with its nodes where they are now: it may turn about its centre.
     TurningPart turning_part(const Plan::Pin &pin, const Plan &plan, const std::vector<Plan::Point> &points)
     {
-      std::set<unsigned int> nodes, outline;
-      for (const Plan::Face &face : faces_of(pin, plan))
-        nodes.insert(face.begin(), face.end());
-      for (const Plan::Edge &edge : boundary_edges(faces_of(pin, plan)))
-        outline.insert(edge.begin(), edge.end());
-      TurningPart part{{nodes.begin(), nodes.end()}, {{0., 0.}}};
+      const std::vector<Plan::Face> faces = plan.faces_of(pin);
+      const std::set<unsigned int>  nodes = nodes_of(faces), outline = nodes_of(boundary_edges(faces));
+      TurningPart                   part{{nodes.begin(), nodes.end()}, {}};
       for (const unsigned int node : outline)
-        for (unsigned int d = 0; d < 2; ++d)
-          part.centre[d] += points[node][d] / outline.size();
+        part.centre += points[node] / double(outline.size());
       return part;
     }
 
@@ -81,9 +62,7 @@ namespace Squeal
       for (const Plan::Face &face : faces)
         for (unsigned int v = 0; v < 4; ++v)
           {
-            const Plan::Point &a      = points[face[v]];
-            const Plan::Point &b      = points[face[(v + 1) % 4]];
-            const double       length = std::hypot(a[0] - b[0], a[1] - b[1]);
+            const double length = points[face[v]].distance(points[face[(v + 1) % 4]]);
             for (const unsigned int node : {face[v], face[(v + 1) % 4]})
               longest_edge[node] = std::max(longest_edge[node], length);
           }
@@ -119,24 +98,23 @@ namespace Squeal
                   }
               };
 
-              Plan::Point  mean  = {{0., 0.}};
+              Plan::Point  sum;
               unsigned int count = 0;
               for (const unsigned int face : faces_at[node])
                 for (const unsigned int other : faces[face])
                   if (other != node)
                     {
-                      for (unsigned int d = 0; d < 2; ++d)
-                        mean[d] += points[other][d];
+                      sum += points[other];
                       ++count;
                     }
-              attempt({{mean[0] / count, mean[1] / count}});
+              attempt(sum / double(count));
               const double longest = 0.5 * longest_edge[node], shortest = 1e-3 * longest;
               for (double step = longest; step > shortest; step /= 2.)
                 {
                   const Plan::Point from = best_position;
                   for (int direction = 0; direction < 8; ++direction)
-                    attempt({{from[0] + step * std::cos(direction * std::acos(-1.) / 4.),
-                              from[1] + step * std::sin(direction * std::acos(-1.) / 4.)}});
+                    attempt(from +
+                            step * Plan::Point(std::cos(direction * std::acos(-1.) / 4.), std::sin(direction * std::acos(-1.) / 4.)));
                 }
 
               points[node] = best_position;
@@ -151,30 +129,29 @@ namespace Squeal
     std::vector<bool> fixed(plan.points.size(), false);
     fix_outline(plan.faces, fixed);
     for (const Plan::Pin &pin : plan.pins)
-      fix_outline(faces_of(pin, plan), fixed);
+      fix_outline(plan.faces_of(pin), fixed);
     smooth(plan.faces, fixed, plan.points);
   }
 
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side)
   {
     // Pins of this side and the boundary of the annulus have given displacements
-    std::vector<Plan::Point> displacements(plan.points.size(), {{0., 0.}});
+    std::vector<Plan::Point> displacements(plan.points.size());
     std::vector<bool>        outline(plan.points.size(), false), given(plan.points.size(), false);
     bool                     displaced = false;
     fix_outline(plan.faces, outline);
     given = outline;
     for (const Plan::Pin &pin : plan.pins)
       {
-        displaced = displaced || pin.displacement != Plan::Point{{0., 0.}};
+        displaced = displaced || pin.displacement != Plan::Point();
         if (pin.side != side)
           continue;
-        fix_outline(faces_of(pin, plan), outline);
-        for (const unsigned int face : pin.faces)
-          for (const unsigned int node : plan.faces[face])
-            {
-              given[node]         = true;
-              displacements[node] = pin.displacement;
-            }
+        fix_outline(plan.faces_of(pin), outline);
+        for (const unsigned int node : nodes_of(plan.faces_of(pin)))
+          {
+            given[node]         = true;
+            displacements[node] = pin.displacement;
+          }
       }
     if (!displaced)
       return plan.points;
@@ -190,21 +167,19 @@ namespace Squeal
     for (int sweep = 0; sweep < displacement_sweeps; ++sweep)
       for (std::size_t node = 0; node < given.size(); ++node)
         if (!given[node])
-          for (unsigned int d = 0; d < 2; ++d)
-            {
-              double sum = 0.;
-              for (const unsigned int neighbour : neighbours[node])
-                sum += displacements[neighbour][d];
-              displacements[node][d] = sum / neighbours[node].size();
-            }
+          {
+            Plan::Point sum;
+            for (const unsigned int neighbour : neighbours[node])
+              sum += displacements[neighbour];
+            displacements[node] = sum / double(neighbours[node].size());
+          }
 
     // In steps, smoothed each time: faces that turned over at once might not be turned back
     std::vector<Plan::Point> points = plan.points;
     for (int step = 0; step < displacement_steps; ++step)
       {
         for (std::size_t node = 0; node < points.size(); ++node)
-          for (unsigned int d = 0; d < 2; ++d)
-            points[node][d] += displacements[node][d] / displacement_steps;
+          points[node] += displacements[node] / displacement_steps;
         smooth(plan.faces, outline, points);
       }
 
@@ -224,8 +199,7 @@ namespace Squeal
   {
     std::vector<Plan::Point> points(lower.size());
     for (std::size_t node = 0; node < points.size(); ++node)
-      for (unsigned int d = 0; d < 2; ++d)
-        points[node][d] = (1. - t) * lower[node][d] + t * upper[node][d];
+      points[node] = (1. - t) * lower[node] + t * upper[node];
     if (t > 0. && t < 1. && lower != upper)
       {
         std::vector<bool> boundary(points.size(), false);

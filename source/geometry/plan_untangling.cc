@@ -21,30 +21,17 @@ namespace Squeal
     constexpr double smallest_step     = 1e-3; ///< of a node [mean edge], of a part [rad]
     constexpr int    n_step_directions = 8;
 
-    struct Corner
-    {
-      double cross, squares, lengths; ///< a × b, a² + b², |a| |b|
-    };
-
-    Corner corner(const Plan::Face &face, const unsigned int v, const std::vector<Plan::Point> &points)
-    {
-      const Plan::Point &at = points[face[v]], &next = points[face[(v + 1) % 4]], &last = points[face[(v + 3) % 4]];
-      const double       ax = next[0] - at[0], ay = next[1] - at[1], bx = last[0] - at[0], by = last[1] - at[1];
-      const double       a2 = ax * ax + ay * ay, b2 = bx * bx + by * by;
-      return {ax * by - ay * bx, a2 + b2, std::sqrt(a2 * b2)};
-    }
-
     bool is_bad(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
       for (unsigned int v = 0; v < 4; ++v)
-        if (const Corner c = corner(face, v, points); !(c.cross >= least_sine * c.lengths))
+        if (const Corner c(face, v, points); !(c.cross >= least_sine * std::sqrt(c.a.norm_square() * c.b.norm_square())))
           return true;
       return false;
     }
 
     double area(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
-      return (corner(face, 0, points).cross + corner(face, 2, points).cross) / 2.;
+      return (Corner(face, 0, points).cross + Corner(face, 2, points).cross) / 2.;
     }
 
     /// The faces around bad ones, with what of them may move.
@@ -137,9 +124,9 @@ namespace Squeal
         for (const unsigned int face : some)
           for (unsigned int v = 0; v < 4; ++v)
             {
-              const Corner c = corner(region[face], v, points);
+              const Corner c(region[face], v, points);
               const double D = c.cross / mean_area;
-              sum += 2. * (c.squares / mean_area) / (D + std::sqrt(epsilon * epsilon + D * D));
+              sum += 2. * ((c.a.norm_square() + c.b.norm_square()) / mean_area) / (D + std::sqrt(epsilon * epsilon + D * D));
             }
         return sum;
       }
@@ -156,7 +143,7 @@ namespace Squeal
             for (int direction = 0; direction < n_step_directions; ++direction)
               {
                 const double angle        = direction * 2. * std::acos(-1.) / n_step_directions;
-                points[node]              = {{from[0] + step * std::cos(angle), from[1] + step * std::sin(angle)}};
+                points[node]              = from + step * Plan::Point(std::cos(angle), std::sin(angle));
                 const double energy_there = energy(faces_at[node]);
                 if (energy_there < least)
                   {
@@ -174,8 +161,8 @@ namespace Squeal
         const double c = std::cos(angle), s = std::sin(angle);
         for (const unsigned int node : part.nodes)
           {
-            const double x = points[node][0] - part.centre[0], y = points[node][1] - part.centre[1];
-            points[node] = {{part.centre[0] + c * x - s * y, part.centre[1] + s * x + c * y}};
+            const dealii::Tensor<1, 2> r = points[node] - part.centre;
+            points[node]                 = {part.centre[0] + c * r[0] - s * r[1], part.centre[1] + s * r[0] + c * r[1]};
           }
       }
 

@@ -52,12 +52,10 @@ namespace Squeal
                      0.};
     for (const Plan::Pin &pin : plan.pins)
       {
-        std::set<unsigned int> nodes;
-        for (const unsigned int face : pin.faces)
-          nodes.insert(plan.faces[face].begin(), plan.faces[face].end());
+        const double n_nodes = nodes_of(plan.faces_of(pin)).size();
         size.hexahedra += double(pin.faces.size()) * parameters.pin_layers;
-        size.dofs += 3. * nodes_of_stack(nodes.size(), parameters.pin_layers);
-        size.contact_nodes += nodes.size();
+        size.dofs += 3. * nodes_of_stack(n_nodes, parameters.pin_layers);
+        size.contact_nodes += n_nodes;
       }
     return size;
   }

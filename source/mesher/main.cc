@@ -2,8 +2,8 @@
 // Started by run_mesher() (geometry/mesher.h); no program for users.
 
 #include "confinement.h"
+#include "meshing.h"
 
-#include <squeal/geometry/gmsh_session.h>
 #include <squeal/geometry/mesher_protocol.h>
 
 #include <csignal>
@@ -30,16 +30,6 @@ namespace
         sent += n;
       }
   }
-
-  GmshMesh mesh(GmshSession &gmsh, const std::string &file)
-  {
-    gmsh.open(file);
-    if (gmsh.dimension() == 3 && !gmsh.is_meshed(3))
-      gmsh.mesh_solid();
-    if (gmsh.dimension() == 2 && !gmsh.is_meshed(2))
-      gmsh.mesh_plan();
-    return gmsh.mesh();
-  }
 } // namespace
 
 /// Arguments: file, bytes of memory, seconds, whether confined, then pairs of names and values for DefineNumber.
@@ -52,9 +42,9 @@ int main(int argc, char **argv)
   limit_resources(std::atof(argv[2]), std::atof(argv[3]));
   try
     {
-      GmshSession gmsh(/* prints */ true);
+      start_gmsh();
       for (int i = 5; i + 1 < argc; i += 2)
-        gmsh.set_number(argv[i], std::atof(argv[i + 1]));
+        set_number(argv[i], std::atof(argv[i + 1]));
       if (argv[4] != std::string(mesher_free))
         try
           {
@@ -65,7 +55,7 @@ int main(int argc, char **argv)
             send(MesherReply::not_confined, error.what());
             _exit(0);
           }
-      send(MesherReply::mesh, to_bytes(mesh(gmsh, argv[1])));
+      send(MesherReply::mesh, to_bytes(mesh_geometry(argv[1])));
     }
   catch (const GmshError &error)
     {

@@ -41,9 +41,7 @@ namespace Squeal
 
   void Model::create_triangulation(const HexMesh &mesh)
   {
-    std::vector<Point<3>> vertices;
-    for (const auto &p : mesh.points)
-      vertices.emplace_back(p[0], p[1], p[2]);
+    std::vector<Point<3>> vertices = mesh.points;
 
     std::vector<CellData<3>> cells;
     for (const auto &hexahedron : mesh.hexahedra)

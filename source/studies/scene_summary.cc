@@ -2,7 +2,7 @@
 #include <squeal/base/memory_limit.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/geometry/disc_axis.h>
-#include <squeal/geometry/outer_faces.h>
+#include <squeal/geometry/faces.h>
 #include <squeal/geometry/problem_size.h>
 #include <squeal/studies/scene_summary.h>
 
@@ -66,10 +66,7 @@ namespace Squeal
         const Material &material = name == PhysicalNames::disc ? materials.disc : materials.pin;
         bodies.push_back({{name}, infinity, 0., 0., 0., 0., 0., std::sqrt(material.young_modulus / material.density)});
       }
-    std::vector<unsigned int> volume_of_node(mesh.points.size(), 0);
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      for (const unsigned int node : hexahedron.nodes)
-        volume_of_node[node] = hexahedron.volume;
+    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
     for (std::size_t node = 0; node < mesh.points.size(); ++node)
       {
         BodySummary &body   = bodies[volume_of_node[node]];
@@ -80,18 +77,14 @@ namespace Squeal
         extent.least        = std::min(extent.least, mesh.points[node][2]);
         extent.greatest     = std::max(extent.greatest, mesh.points[node][2]);
       }
-    for (const OuterFace &face : outer_faces(mesh))
+    for (const HexFace &face : outer_faces(mesh))
       {
-        const FaceGeometry geometry = face_geometry(mesh, face.nodes);
-        for (unsigned int d = 0; d < 3; ++d)
-          bodies[face.volume].volume += geometry.centre[d] * geometry.area_normal[d] / 3.; // divergence theorem
+        const auto [centre, area_normal] = face_geometry(mesh, face.nodes);
+        bodies[face.volume].volume += centre * area_normal / 3.; // divergence theorem
       }
     for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
       if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
-        {
-          const auto n = face_geometry(mesh, face.nodes).area_normal;
-          bodies[volume_of_node[face.nodes[0]]].contact_area += std::hypot(n[0], n[1], n[2]);
-        }
+        bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
 
     // Pins that are alike
     std::vector<BodySummary> result;

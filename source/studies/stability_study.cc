@@ -231,8 +231,7 @@ namespace Squeal
       }
     if (parameters.output.write_matrices)
       write_matrices(scene, linearisation, run);
-    if (run.is_root)
-      write_msh(scene.mesh, run.folder().path("mesh.msh"));
+    run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }
 

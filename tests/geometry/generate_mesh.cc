@@ -50,7 +50,7 @@ namespace
     ASSERT_EQ(a.quadrilaterals.size(), b.quadrilaterals.size());
     for (std::size_t i = 0; i < a.points.size(); ++i)
       for (unsigned int d = 0; d < 3; ++d)
-        EXPECT_NEAR(a.points[i][d], b.points[i][d], 1e-15);
+        EXPECT_EQ(a.points[i][d], b.points[i][d]);
     for (std::size_t i = 0; i < a.hexahedra.size(); ++i)
       {
         EXPECT_EQ(a.hexahedra[i].nodes, b.hexahedra[i].nodes);
@@ -189,19 +189,13 @@ TEST(GenerateMesh, WrittenMeshReadsBackUnchanged)
 {
   const HexMesh mesh = generate_mesh(one_pin());
   const File    file("mesh.msh");
-  write_msh(mesh, file.string());
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(file.directory), {}), 1);
+  std::ofstream stream(file.path);
+  write_msh(mesh, stream);
+  stream.close();
 
   GeometryParameters parameters = one_pin();
   parameters.file               = file.string();
   expect_same(mesh, generate_mesh(parameters));
-}
-
-TEST(GenerateMesh, MeshIsNotWrittenToAMissingDirectory)
-{
-  const HexMesh mesh = generate_mesh(one_pin());
-  const File    file("mesh.msh");
-  EXPECT_THROW(write_msh(mesh, (file.directory / "missing" / "mesh.msh").string()), FileError);
 }
 
 TEST(GenerateMesh, SolidGeometryIsTakenAsItIs)

@@ -77,7 +77,7 @@ TEST(Layouts, InvertedFacesAreTurnedOver)
     for (int i = 0; i <= 4; ++i)
       {
         const bool inside = i > 0 && i < 4 && j > 0 && j < 4;
-        points.push_back({{inside ? 4. - i : double(i), double(j)}});
+        points.push_back({inside ? 4. - i : double(i), double(j)});
         fixed.push_back(!inside);
       }
   std::vector<Plan::Face> faces;
@@ -93,7 +93,7 @@ TEST(Layouts, InvertedFacesAreTurnedOver)
       }
 
   // Faces that nothing can help, and faces that need no help, stay
-  std::vector<Plan::Point> flat   = {{{0., 0.}}, {{1., 0.}}, {{2., 0.}}, {{3., 0.}}};
+  std::vector<Plan::Point> flat   = {{0., 0.}, {1., 0.}, {2., 0.}, {3., 0.}};
   const auto               before = flat, good = points;
   untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);
   EXPECT_EQ(flat, before);

@@ -27,9 +27,10 @@ TEST(Mesher, HandsOverWhatGmshHolds)
   EXPECT_EQ(mesh.points.size(), 27u);
   ASSERT_EQ(mesh.groups.size(), 1u);
   EXPECT_EQ(mesh.groups[0].name, "disc");
-  ASSERT_EQ(mesh.groups[0].blocks.size(), 1u);
-  EXPECT_EQ(mesh.groups[0].blocks[0].type, "Hexahedron 8");
-  EXPECT_EQ(mesh.groups[0].blocks[0].nodes.size(), 64u);
+  ASSERT_EQ(mesh.groups[0].elements.size(), 1u);
+  EXPECT_EQ(mesh.groups[0].elements.begin()->first, "Hexahedron 8");
+  ASSERT_EQ(mesh.groups[0].elements.begin()->second.size(), 8u);
+  EXPECT_EQ(mesh.groups[0].elements.begin()->second[0].nodes.size(), 8u);
 
   // The same through bytes again, which must be complete
   const std::string bytes = to_bytes(mesh);

@@ -145,7 +145,7 @@ TEST(Refusals, BadElementsAreFound)
 {
   HexMesh mesh;
   mesh.volume_names = {"disc"};
-  mesh.points       = {{{0, 0, 0}}, {{1, 0, 0}}, {{1, 1, 0}}, {{0, 1, 0}}, {{0, 0, 1}}, {{1, 0, 1}}, {{1, 1, 1}}, {{0, 1, 1}}};
+  mesh.points       = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   mesh.hexahedra    = {{{{0, 1, 2, 3, 4, 5, 6, 7}}, 0}};
   EXPECT_DOUBLE_EQ(check_mesh(mesh).worst_scaled_jacobian, 1.);
   EXPECT_DOUBLE_EQ(check_mesh(mesh).worst_edge_ratio, 1.);
@@ -155,8 +155,8 @@ TEST(Refusals, BadElementsAreFound)
   expect_mentions(message<MeshError>([&] { check_mesh(inverted); }), {"inverted", "element 0", "'disc'", "-1"});
 
   HexMesh flat   = mesh;
-  flat.points[2] = {{0.5, 0.5, 0.}};
-  flat.points[6] = {{0.5, 0.5, 1.}};
+  flat.points[2] = {0.5, 0.5, 0.};
+  flat.points[6] = {0.5, 0.5, 1.};
   expect_mentions(message<MeshError>([&] { check_mesh(flat); }), {"degenerate"});
 
   HexMesh collapsed   = mesh;

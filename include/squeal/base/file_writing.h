@@ -26,7 +26,4 @@ namespace Squeal
    * std::filesystem::filesystem_error.
    */
   void replace_file(const std::filesystem::path &file, std::string_view text);
-
-  /// Whether a file is there and ends with these words, space apart: whether what a library has written there is complete.
-  bool file_ends_with(const std::filesystem::path &file, std::string_view words);
 } // namespace Squeal

@@ -2,7 +2,6 @@
 
 #include <squeal/geometry/hex_mesh.h>
 
-#include <array>
 #include <string>
 
 namespace Squeal
@@ -10,12 +9,12 @@ namespace Squeal
   /// The axis about which a disc is round, as far as it is, beside the z axis about which the program turns it.
   struct DiscAxis
   {
-    std::array<double, 3> direction;     ///< unit vector, its largest component positive
-    std::array<double, 3> centre;        ///< point of the axis nearest to the disc's centre [m]
-    double                angle;         ///< between the axis and z [rad]
-    double                offset;        ///< distance of the centre from the z axis [m]
-    double                round;         ///< share of the surface that is round about the axis [-]
-    double                round_about_z; ///< the same about z [-]
+    dealii::Tensor<1, 3> direction;     ///< unit vector, its largest component positive
+    HexMesh::Point       centre;        ///< point of the axis nearest to the disc's centre [m]
+    double               angle;         ///< between the axis and z [rad]
+    double               offset;        ///< distance of the centre from the z axis [m]
+    double               round;         ///< share of the surface that is round about the axis [-]
+    double               round_about_z; ///< the same about z [-]
 
     /// Whether the disc is round about this axis, and this axis is not z.
     bool is_misplaced(double disc_radius) const;

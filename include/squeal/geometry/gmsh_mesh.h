@@ -1,7 +1,13 @@
 #pragma once
 
+#include <boost/serialization/array.hpp>
+#include <boost/serialization/map.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/vector.hpp>
+
 #include <array>
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,28 +16,43 @@ namespace Squeal
   /// What Gmsh holds: nodes, and elements by physical group.
   struct GmshMesh
   {
-    /// Elements of one type on one physical group.
-    struct Block
+    struct Element
     {
-      std::string               type; ///< Gmsh's name, e.g. "Quadrilateral 4"
-      unsigned int              nodes_per_element;
-      std::vector<std::size_t>  tags;  ///< one per element, ascending
-      std::vector<unsigned int> nodes; ///< indices into points, element by element
+      std::size_t               tag;
+      std::vector<unsigned int> nodes; ///< indices into points
+
+      template <typename Archive>
+      void serialize(Archive &archive, unsigned int)
+      {
+        archive &tag &nodes;
+      }
     };
 
     struct Group
     {
-      int                dimension;
-      std::string        name; ///< empty where the group has only a number
-      std::vector<Block> blocks;
+      int                                         dimension;
+      std::string                                 name;     ///< empty where the group has only a number
+      std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type, e.g. "Quadrilateral 4"; ascending by tag
+
+      template <typename Archive>
+      void serialize(Archive &archive, unsigned int)
+      {
+        archive &dimension &name &elements;
+      }
     };
 
-    std::vector<std::array<double, 3>> points;                    ///< in the order of Gmsh's node tags [m]
-    std::vector<Group>                 groups;                    ///< by dimension, then in the order of their numbers
-    std::size_t                        n_unnamed_volume_elements; ///< 3-D elements in no physical group
+    std::vector<std::array<double, 3>> points;                        ///< in the order of Gmsh's node tags [m]
+    std::vector<Group>                 groups;                        ///< by dimension, then in the order of their numbers
+    std::size_t                        n_unnamed_volume_elements = 0; ///< 3-D elements in no physical group
 
     /// The highest dimension that has a physical group; 0 without any.
     int dimension() const;
+
+    template <typename Archive>
+    void serialize(Archive &archive, unsigned int)
+    {
+      archive &points &groups &n_unnamed_volume_elements;
+    }
   };
 
   /// A mesh as bytes, for another process on the same machine.

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <deal.II/base/point.h>
+
 #include <array>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace Squeal
    */
   struct HexMesh
   {
-    using Point = std::array<double, 3>;
+    using Point = dealii::Point<3>;
 
     struct Hexahedron
     {
@@ -39,6 +40,9 @@ namespace Squeal
 
   /// Of the places of the nodes, to the nanometre: tells two meshes with the same numbers of nodes apart.
   std::uint64_t checksum(const HexMesh &mesh);
+
+  /// Index of the volume that each node belongs to.
+  std::vector<unsigned int> volume_of_nodes(const HexMesh &mesh);
 
   /// Physical names that every geometry uses.
   namespace PhysicalNames

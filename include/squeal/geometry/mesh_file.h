@@ -3,6 +3,7 @@
 #include <squeal/geometry/gmsh_mesh.h>
 #include <squeal/geometry/hex_mesh.h>
 
+#include <iosfwd>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,6 @@ namespace Squeal
    */
   HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
-  /**
-   * Writes a mesh with its physical names as .msh (Gmsh 4.1, text), from where
-   * it reads back unchanged. An existing file is replaced only once the new one
-   * is complete. Throws FileError if the file cannot be written. Starts Gmsh, which must not be running.
-   */
-  void write_msh(const HexMesh &mesh, const std::string &file);
+  /// Writes a mesh with its physical names as .msh (Gmsh 4.1, text), from where it reads back unchanged.
+  void write_msh(const HexMesh &mesh, std::ostream &stream);
 } // namespace Squeal

@@ -2,7 +2,10 @@
 
 #include <squeal/geometry/gmsh_mesh.h>
 
+#include <deal.II/base/point.h>
+
 #include <array>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +19,7 @@ namespace Squeal
    */
   struct Plan
   {
-    using Point = std::array<double, 2>;
+    using Point = dealii::Point<2>;
     using Edge  = std::array<unsigned int, 2>;
     using Face  = std::array<unsigned int, 4>; ///< counter-clockwise
 
@@ -40,6 +43,8 @@ namespace Squeal
       std::string       name;
       std::vector<Edge> edges;
     };
+
+    std::vector<Face> faces_of(const Pin &pin) const;
 
     std::vector<Point> points; ///< [m]
     std::vector<Face>  faces;
@@ -75,4 +80,23 @@ namespace Squeal
 
   /// Edges that belong to one of the given faces only, in the sense of rotation of that face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);
+
+  /// Nodes of faces or edges.
+  template <typename Parts>
+  std::set<unsigned int> nodes_of(const Parts &parts)
+  {
+    std::set<unsigned int> nodes;
+    for (const auto &part : parts)
+      nodes.insert(part.begin(), part.end());
+    return nodes;
+  }
+
+  /// Edges from a corner of a face to the next corner and to the one before.
+  struct Corner
+  {
+    Corner(const Plan::Face &face, unsigned int v, const std::vector<Plan::Point> &points);
+
+    dealii::Tensor<1, 2> a, b;
+    double               cross; ///< a × b
+  };
 } // namespace Squeal
