@@ -10,7 +10,6 @@
 #include <squeal/studies/scene_summary.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace Squeal
 {
@@ -109,32 +108,40 @@ namespace Squeal
     return state;
   }
 
-  Linearisation linearise(const Scene &scene, const SlidingState *state, const OperationParameters &operation)
+  StateOfContact state_of_contact(const ContactInterface &interface, const SlidingState *state, const OperationParameters &operation)
   {
-    Linearisation result;
-    if (state)
-      {
-        result.sliding   = *state;
-        result.reactions = state->reactions;
-        for (unsigned int c = 0; c < scene.interface.size(); ++c)
-          if (state->closed[c])
-            result.closed.push_back(c);
-      }
-    else
-      {
-        result.reactions = equal_load_shares(scene.interface, operation.load_per_side);
-        result.closed.resize(scene.interface.size());
-        std::iota(result.closed.begin(), result.closed.end(), 0u);
-      }
-    std::vector<double> reactions;
-    for (const unsigned int c : result.closed)
-      {
-        result.interface.push_back(scene.interface[c]);
-        reactions.push_back(result.reactions[c]);
-      }
-    const bool all = result.closed.size() == scene.interface.size();
+    StateOfContact            result;
+    const std::vector<double> reactions = state ? state->reactions : equal_load_shares(interface, operation.load_per_side);
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      if (!state || state->closed[c])
+        result.closed.push_back(c);
+    result.damping = {radial_dissipation(interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    return result;
+  }
+
+  ContactDamping selected(const ContactDamping &damping, const std::vector<unsigned int> &chosen)
+  {
+    const auto select = [&](const std::vector<double> &values) {
+      std::vector<double> result;
+      for (const unsigned int c : chosen)
+        result.push_back(values[c]);
+      return result;
+    };
+    return {select(damping.radial), select(damping.sliding)};
+  }
+
+  Linearisation linearise(const Scene &scene, const SlidingState *sliding, const OperationParameters &operation)
+  {
+    const StateOfContact state = state_of_contact(scene.interface, sliding, operation);
+    Linearisation        result;
+    if (sliding)
+      result.sliding = *sliding;
+    result.closed = state.closed;
+    for (const unsigned int c : state.closed)
+      result.interface.push_back(scene.interface[c]);
+    const bool all = state.closed.size() == scene.interface.size();
     result.contact = all ? scene.contact : contact_operators(*scene.model, result.interface);
-    result.damping = {radial_dissipation(result.interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    result.damping = selected(state.damping, state.closed);
     result.coupled = couple(scene.bodies, result.contact, result.damping);
     return result;
   }

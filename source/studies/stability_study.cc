@@ -48,8 +48,8 @@ namespace Squeal
           const ModeLabel &label = friction.labels[j];
           run.progress.update(text(to_string(label), ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
           const int       column = static_cast<int>(j);
-          const ModeField field  = mode_field(scene, linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
-                                              view(*modes.imaginary_part, column, 1));
+          const ModeField field  = mode_field(scene, linearisation.coupled, linearisation.closed, file_name(j, label), modes.lambda[j],
+                                              view(*modes.real_part, column, 1), view(*modes.imaginary_part, column, 1));
           writer.write_mode(field);
           ++n_modes;
           if (friction.unstable[j] && parameters.output.animation_frames > 0)

@@ -2,10 +2,12 @@
 #include <squeal/studies/sweep_tables.h>
 
 #include <algorithm>
+#include <functional>
+#include <tuple>
 
 namespace Squeal
 {
-  Table branch_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels, const double largest_circular_frequency)
+  Table branch_table(const SweepChart &line, const double largest_circular_frequency)
   {
     struct Row : ModalQuantities
     {
@@ -15,14 +17,15 @@ namespace Squeal
       ModeLabel         label;
       bool              is_refinement;
     };
-    std::vector<Row> rows;
+    const StabilityChart &chart = line.chart;
+    std::vector<Row>      rows;
     for (std::size_t i = 0; i < chart.points.size(); ++i)
       for (std::size_t b = 0; b < chart.branches.size(); ++b)
         {
           const ChartPoint &point = chart.points[i];
           const int         j     = chart.branches[b].modes[i];
           if (j >= 0 && point.lambda[j].imag() <= largest_circular_frequency)
-            rows.push_back({modal_quantities(point.lambda[j]), point, j, static_cast<int>(b + 1), labels[b], chart.is_refinement[i]});
+            rows.push_back({modal_quantities(point.lambda[j]), point, j, static_cast<int>(b + 1), line.labels[b], chart.is_refinement[i]});
         }
     return Table(Columns<Row>{{"mu", "-", [](const Row &row) { return row.point.friction_coefficient; }, 6},
                               {"branch", "-", &Row::branch},
@@ -39,33 +42,33 @@ namespace Squeal
                  rows);
   }
 
-  Table threshold_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels)
+  Table threshold_table(const SweepChart &line)
   {
     using Row                = Threshold;
     const auto partner       = [](const Row &row) { return row.partner >= 0 ? Cell(row.partner + 1) : Cell(); };
-    const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Cell(labels[row.partner]) : Cell(); };
+    const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Cell(line.labels[row.partner]) : Cell(); };
     return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
                               {"uncertainty", "-", &Row::uncertainty, 1, true},
                               {"event", "", &Row::event},
                               {"mechanism", "", &Row::mechanism},
                               {"branch", "-", [](const Row &row) { return row.branch + 1; }},
-                              {"label", "", [&](const Row &row) { return labels[row.branch]; }},
+                              {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
                               {"partner", "-", partner},
                               {"label of partner", "", partner_label},
                               {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.lambda).frequency; }, 3}},
-                 chart.thresholds);
+                 line.chart.thresholds);
   }
 
-  Table crossing_table(const StabilityChart &chart, const std::vector<ModeLabel> &labels)
+  Table crossing_table(const SweepChart &line)
   {
     using Row = BandCrossing;
     return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
                               {"uncertainty", "-", &Row::uncertainty, 1, true},
                               {"branch", "-", [](const Row &row) { return row.branch + 1; }},
-                              {"label", "", [&](const Row &row) { return labels[row.branch]; }},
+                              {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
                               {"direction", "", [](const Row &row) { return row.enters ? "enters" : "leaves"; }},
                               {"edge", "", &Row::edge}},
-                 chart.crossings);
+                 line.chart.crossings);
   }
 
   Table count_table(const StabilityChart &chart)
@@ -78,9 +81,66 @@ namespace Squeal
                  chart.counts);
   }
 
-  std::size_t n_incomplete(const StabilityChart &chart)
+  Table map_table(std::vector<MapCell> cells, const MapParameter parameter)
   {
-    return std::count_if(chart.counts.begin(), chart.counts.end(),
-                         [](const ChartCount &count) { return count.n_modes != count.n_expected; });
+    using Row          = MapCell;
+    const bool is_load = parameter == MapParameter::load;
+    const auto known   = [](const auto &value) {
+      return [value](const Row &row) { return row.leading ? Cell(std::invoke(value, row)) : Cell(); };
+    };
+    const auto leading = [](double ModalQuantities::*quantity, const double factor = 1.) {
+      return [quantity, factor](const Row &row) { return row.leading ? Cell(factor * ((*row.leading).*quantity)) : Cell(); };
+    };
+    std::sort(cells.begin(), cells.end(), [](const Row &a, const Row &b) {
+      return std::tie(a.value, a.friction_coefficient) < std::tie(b.value, b.friction_coefficient);
+    });
+    return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                              {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", &Row::value, 3},
+                              {"unstable modes", "-", known(&Row::n_unstable)},
+                              {"undecided modes", "-", known(&Row::n_undecided)},
+                              {"label", "", known(&Row::label)},
+                              {"frequency", "Hz", leading(&ModalQuantities::frequency), 2},
+                              {"growth rate", "1/s", leading(&ModalQuantities::growth_rate), 4},
+                              {"divergence rate", "%", leading(&ModalQuantities::divergence_rate, 100.), 4},
+                              {"estimated error of lambda", "-", known(&Row::error), 1, true},
+                              {"open contact nodes", "-", &Row::n_open}},
+                 cells);
+  }
+
+  Table argument_table(const std::vector<CountAt> &counts)
+  {
+    using Row = CountAt;
+    return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                              {"modes of the sweep", "-", &Row::n_found},
+                              {"modes counted", "-", [](const Row &row) { return row.count.n_modes; }},
+                              {"real modes by inertia", "-", [](const Row &row) { return row.count.n_frictionless; }},
+                              {"contour points", "-", [](const Row &row) { return row.count.n_points; }},
+                              {"largest phase step", "rad", [](const Row &row) { return row.count.largest_phase_step; }, 3},
+                              {"truncation bound", "-", [](const Row &row) { return row.count.truncation_bound; }, 1, true}},
+                 counts);
+  }
+
+  Table contact_table(const SweepPlan &plan, const std::size_t n_pairs)
+  {
+    struct Row
+    {
+      double               friction_coefficient;
+      const SweepLine     &line;
+      const ContactRegime &regime;
+    };
+    std::vector<Row> rows;
+    for (std::size_t l = 0; l < plan.lines.size(); ++l)
+      if (plan.lines[l].kind != SweepLine::Kind::without_dissipation)
+        for (const double mu : plan.lines[l].friction_coefficients)
+          for (const ContactRegime &regime : plan.regimes)
+            for (const int i : regime.on_line(static_cast<int>(l)))
+              if (regime.points[i].friction_coefficient == mu)
+                rows.push_back({mu, plan.lines[l], regime});
+    return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                              {"load per side", "N", [](const Row &row) { return row.line.operation.load_per_side; }, 3},
+                              {"rotation speed", "rad/s", [](const Row &row) { return row.line.operation.rotation_speed; }, 3},
+                              {"contact set", "-", [](const Row &row) { return row.regime.number; }},
+                              {"open contact nodes", "-", [&](const Row &row) { return n_pairs - row.regime.closed.size(); }}},
+                 rows);
   }
 } // namespace Squeal

@@ -24,6 +24,19 @@ namespace Squeal
     unsigned int n_pins() const;
   };
 
+  /// Contact at one friction coefficient, load and speed.
+  struct StateOfContact
+  {
+    std::vector<unsigned int> closed;  ///< numbers of the closed pairs: S_0
+    ContactDamping            damping; ///< of all pairs; zeros at open ones
+  };
+
+  /// Equal shares of the load on closed nodes where @p state is null; else the state of steady sliding.
+  StateOfContact state_of_contact(const ContactInterface &interface, const SlidingState *state, const OperationParameters &operation);
+
+  /// Coefficients of all pairs @p chosen among them.
+  ContactDamping selected(const ContactDamping &damping, const std::vector<unsigned int> &chosen);
+
   /**
    * The state of contact about which a scene is linearised, and the system that
    * results: only closed contact nodes couple the bodies.
@@ -31,22 +44,11 @@ namespace Squeal
   struct Linearisation
   {
     std::optional<SlidingState> sliding;   ///< where the state is steady sliding
-    std::vector<double>         reactions; ///< R_n0 of all pairs [N]; zero at open ones
     std::vector<unsigned int>   closed;    ///< numbers of the closed pairs: S_0
     ContactInterface            interface; ///< S_0
     ContactOperators            contact;   ///< of S_0
     ContactDamping              damping;   ///< of S_0
     CoupledSystem               coupled;
-
-    /// Values of the closed pairs, set among those of all pairs; the others are zero.
-    template <typename Number>
-    std::vector<Number> on_all_pairs(const std::vector<Number> &values, const std::size_t n_pairs) const
-    {
-      std::vector<Number> result(n_pairs, Number());
-      for (std::size_t i = 0; i < closed.size(); ++i)
-        result[closed[i]] = values[i];
-      return result;
-    }
   };
 
   /// Meshes, checks and pairs; refuses parameters that do not fit the pins. The system is left empty.

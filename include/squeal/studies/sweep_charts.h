@@ -1,0 +1,31 @@
+#pragma once
+
+#include <squeal/output/chart_checkpoint.h>
+#include <squeal/stability/branches.h>
+#include <squeal/studies/sweep_model.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Modes over the friction coefficient at one load and speed, as far as the contact set is the same.
+  struct SweepChart
+  {
+    StabilityChart         chart;
+    std::vector<ModeLabel> labels; ///< one for each branch
+  };
+
+  /// Where the results of a phase of the work on a contact set are kept.
+  std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
+
+  /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
+  void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts);
+
+  /// Points at which the number of modes is not the expected one.
+  std::size_t n_incomplete(const StabilityChart &chart);
+
+  /// From which friction coefficient on there is squeal, and what grows most: of the stretches of the main line, of @p n_asked values.
+  std::string verdict(const std::vector<SweepChart> &charts, std::size_t n_asked, double largest_circular_frequency);
+} // namespace Squeal

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <squeal/stability/error_controlled_sweep.h>
+#include <squeal/studies/frictionless_modes.h>
+#include <squeal/studies/sweep_plan.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace Squeal
+{
+  /// The coupled system of a contact set with its basis, and what is known of its modes.
+  struct SweepModel
+  {
+    /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
+    SweepModel(const Scene &scene, const SweepPlan &plan, const ContactRegime &regime, Run &run);
+
+    /// Modes of a line, known ones or new ones, which @p store keeps unless it is null. All processes must call.
+    std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients, ChartStore *store = nullptr);
+
+    /// Right vectors of some modes of a point at full order, real and imaginary parts.
+    std::pair<MultiVector, MultiVector> shapes(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    /// Identities of some modes of a point, without the signs of doublets.
+    std::vector<ModeLabel> labels(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    /// The coupled system with the contact damping at a point of the main line.
+    CoupledSystem system_at(double friction_coefficient) const;
+
+    bool is_in_band(const std::complex<double> &lambda) const;
+
+    /// The mode of the band that grows most, or is damped least; -1: none.
+    int leading_mode(const ChartPoint &point) const;
+
+    const Scene                                 &scene;
+    const SweepPlan                             &plan;
+    const ContactRegime                         &regime;
+    Run                                         &run;
+    const double                                 largest_circular_frequency; ///< end of the band [rad/s]
+    Linearisation                                linearisation;
+    FrictionlessModes                            frictionless;
+    std::unique_ptr<ChartModel>                  reduced;
+    std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
+  };
+
+  /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run.
+  void evaluate_points(SweepModel &model, ChartStore &store);
+} // namespace Squeal

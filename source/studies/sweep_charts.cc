@@ -1,0 +1,220 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/text.h>
+#include <squeal/studies/sweep_charts.h>
+
+#include <algorithm>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Known friction coefficients of a line, in parts between which the contact set is another one.
+    std::vector<std::vector<double>> stretches(const SweepModel &model, const int line)
+    {
+      std::vector<std::vector<double>> result;
+      bool                             goes_on = false;
+      for (const double mu : model.plan.lines[line].friction_coefficients)
+        {
+          const bool is_known = model.known.count({line, mu}) > 0;
+          if (is_known && !goes_on)
+            result.emplace_back();
+          if (is_known)
+            result.back().push_back(mu);
+          goes_on = is_known;
+        }
+      return result;
+    }
+
+    /**
+     * Adds to the basis what the modes of all thresholds lack on both sides, and forgets the results
+     * there: they were found without it.
+     *
+     * @param chart without refinements
+     */
+    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid, ChartStore &store)
+    {
+      // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
+      std::map<int, std::set<int>> modes_at; // by point of the chart
+      for (const Threshold &threshold : chart.thresholds)
+        {
+          const int above = std::upper_bound(grid.begin(), grid.end(), threshold.friction_coefficient) - grid.begin();
+          for (const int i : {above - 1, above})
+            for (const int branch : {threshold.branch, threshold.partner})
+              if (i >= 0 && i < static_cast<int>(grid.size()) && branch >= 0 && chart.branches[branch].modes[i] >= 0)
+                modes_at[i].insert(chart.branches[branch].modes[i]);
+        }
+      std::vector<ChartModel::ModesAt> sets;
+      for (const auto &[i, modes] : modes_at)
+        sets.push_back({model.plan.point(line, grid[i], model.regime.closed), &chart.points[i], {modes.begin(), modes.end()}});
+      if (sets.empty())
+        return;
+      if (const auto earlier = store.basis(); !earlier.empty())
+        model.reduced->extend(earlier.front());
+      else
+        {
+          const auto vectors = model.reduced->new_vectors(sets);
+          if (!vectors || model.reduced->size() + vectors->NumVectors() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
+            return;
+          store.keep(*vectors);
+          model.reduced->extend(*vectors);
+        }
+      for (const ChartModel::ModesAt &set : sets)
+        model.known.erase({line, set.point.friction_coefficient});
+    }
+
+    /// Names branches after the modes with which they begin; of a doublet the one that grows most over the chart is plus.
+    std::vector<ModeLabel> branch_labels(const SweepModel &model, const StabilityChart &chart)
+    {
+      const int                               n_branches = chart.branches.size();
+      std::vector<ModeLabel>                  result(n_branches);
+      std::vector<double>                     growth(n_branches, 0.); // largest [1/s]; zero for a branch that never grows
+      std::map<std::size_t, std::vector<int>> branches_from;          // by the point at which they begin
+      for (int b = 0; b < n_branches; ++b)
+        {
+          const std::vector<int> &modes = chart.branches[b].modes;
+          branches_from[std::find_if(modes.begin(), modes.end(), [](const int j) { return j >= 0; }) - modes.begin()].push_back(b);
+          for (std::size_t i = 0; i < modes.size(); ++i)
+            if (modes[i] >= 0 && chart.points[i].verdicts[modes[i]] == Verdict::unstable)
+              growth[b] = std::max(growth[b], chart.points[i].lambda[modes[i]].real());
+        }
+      for (const auto &[i, branches] : branches_from)
+        {
+          std::vector<int>    modes;
+          std::vector<double> growth_here;
+          for (const int b : branches)
+            {
+              modes.push_back(chart.branches[b].modes[i]);
+              growth_here.push_back(growth[b]);
+            }
+          std::vector<ModeLabel> labels = model.labels(chart.points[i], modes);
+          mark_doublets(labels, growth_here);
+          for (std::size_t k = 0; k < branches.size(); ++k)
+            result[branches[k]] = labels[k];
+        }
+      return result;
+    }
+
+    SweepChart follow(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore &store)
+    {
+      Run        &run         = model.run;
+      std::size_t n_evaluated = 0;
+      const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
+        n_evaluated += friction_coefficients.size();
+        run.progress.update(text(n_evaluated, " points"));
+        return model.evaluate(line, friction_coefficients, &store);
+      };
+      run.progress.begin("Branches");
+      ChartOptions options;
+      options.largest_frequency   = model.largest_circular_frequency;
+      options.threshold_tolerance = run.parameters.sweep.threshold_tolerance;
+      // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
+      // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
+      ChartOptions coarse        = options;
+      coarse.maximum_refinements = 0;
+      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
+      SweepChart            result{stability_chart(grid, evaluate, options), {}};
+      const StabilityChart &chart = result.chart;
+      result.labels               = branch_labels(model, chart);
+      run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
+                               " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
+      if (chart.n_doubtful_steps > 0)
+        run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be told apart by their frequencies only"));
+      return result;
+    }
+
+    /// Without friction as many modes as inertia counts.
+    void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
+    {
+      Progress             &progress = model.run.progress;
+      const SymmetricModes &real     = model.frictionless.real;
+      const double          limit    = model.largest_circular_frequency * model.largest_circular_frequency;
+      const int             n_real   = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
+      const ChartCount     &first    = chart.counts.front();
+      if (first.friction_coefficient != 0.)
+        progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared among its values only");
+      else if (first.n_modes + first.n_overdamped != n_real)
+        progress.note(text("  note: ", first.n_modes, " modes lie in the band at mu = 0, where ", n_real,
+                           " real modes were counted: damping moved some across its end"));
+      if (const std::size_t n = n_incomplete(chart); n > 0)
+        progress.note(text("  note: at ", n, " points the number of modes is not the expected one, see counts.csv"));
+    }
+  } // namespace
+
+  std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
+  {
+    return checkpoint.part(text("contact set ", model.regime.number, " of ", model.regime.closed.size(), " nodes, ", phase),
+                           model.linearisation.coupled.map());
+  }
+
+  void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts)
+  {
+    for (std::size_t l = 0; l < charts.size(); ++l)
+      if (const auto kind = model.plan.lines[l].kind; kind != SweepLine::Kind::map)
+        for (const auto &stretch : stretches(model, static_cast<int>(l)))
+          {
+            const auto store = store_of(model, checkpoint, text("line ", l, " from ", exact_text(stretch.front())));
+            charts[l].push_back(follow(model, static_cast<int>(l), stretch, *store));
+            if (kind == SweepLine::Kind::main)
+              compare_with_inertia(model, charts[l].back().chart);
+          }
+  }
+
+  std::size_t n_incomplete(const StabilityChart &chart)
+  {
+    return std::count_if(chart.counts.begin(), chart.counts.end(),
+                         [](const ChartCount &count) { return count.n_modes != count.n_expected; });
+  }
+
+  namespace
+  {
+    /// Divergence rates that the least structural damping outweighs [-].
+    constexpr double weak_divergence = 1e-4;
+
+    /// A growing mode of a chart.
+    struct Growing
+    {
+      double          friction_coefficient;
+      ModalQuantities mode;
+      std::string     label;
+    };
+
+    /// All of them in the band, by friction coefficient.
+    std::vector<Growing> growing_modes(const SweepChart &line, const double largest_circular_frequency)
+    {
+      std::vector<Growing> result;
+      const auto          &points = line.chart.points;
+      for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
+          if (const int j = line.chart.branches[b].modes[i];
+              j >= 0 && points[i].lambda[j].imag() <= largest_circular_frequency && points[i].verdicts[j] == Verdict::unstable)
+            result.push_back({points[i].friction_coefficient, modal_quantities(points[i].lambda[j]), to_string(line.labels[b])});
+      return result;
+    }
+  } // namespace
+
+  std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
+  {
+    std::vector<Growing> growing;
+    std::size_t          n_known = 0; // of the values asked for
+    for (const SweepChart &line : charts)
+      {
+        n_known += std::count(line.chart.is_refinement.begin(), line.chart.is_refinement.end(), false);
+        for (Growing &mode : growing_modes(line, largest_circular_frequency))
+          growing.push_back(std::move(mode));
+      }
+    if (growing.empty())
+      return n_known == n_asked ?
+               "  stable: no mode of the band grows at any friction coefficient of the sweep" :
+               text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
+    const auto rate   = [](const Growing &mode) { return mode.mode.divergence_rate; };
+    const auto strong = std::find_if(growing.begin(), growing.end(), [&](const Growing &mode) { return rate(mode) > weak_divergence; });
+    const auto strongest =
+      *std::max_element(growing.begin(), growing.end(), [&](const Growing &a, const Growing &b) { return rate(a) < rate(b); });
+    const auto from = [](const Growing &mode) { return text("from mu = ", mode.friction_coefficient, " on (", mode.label, ")"); };
+    return text("  squeal ", from(growing.front()),
+                strong != growing.end() ? text(", beyond ", 100. * weak_divergence, " % ", from(*strong)) : "",
+                "; most at mu = ", strongest.friction_coefficient, ": ", strongest.label, " at ", decimal_text(strongest.mode.frequency),
+                " Hz with ", decimal_text(100. * rate(strongest)), " %");
+  }
+} // namespace Squeal

@@ -1,0 +1,148 @@
+#include <squeal/base/conventions.h>
+#include <squeal/stability/mode_links.h>
+#include <squeal/studies/sweep_model.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
+    constexpr double band_margin = 0.05;
+
+    /// Sum of all damping coefficients of the contact.
+    double damping_of(const OperatingPoint &point)
+    {
+      double sum = 0.;
+      for (const auto &[name, coefficients] : point.values)
+        for (const double c : coefficients)
+          sum += std::abs(c);
+      return sum;
+    }
+  } // namespace
+
+  SweepModel::SweepModel(const Scene &scene, const SweepPlan &plan, const ContactRegime &regime, Run &run)
+    : scene(scene)
+    , plan(plan)
+    , regime(regime)
+    , run(run)
+    , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
+  {
+    const OperatingPoint &most =
+      *std::max_element(regime.points.begin(), regime.points.end(),
+                        [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
+    const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
+    const auto                sliding   = plan.states.sliding(operation);
+    linearisation                       = linearise(scene, sliding ? &*sliding : nullptr, operation);
+
+    // Neither real modes nor the factor know of damping
+    Linearisation bare = linearisation;
+    bare.coupled       = undamped(linearisation.coupled);
+    frictionless       = frictionless_modes(scene, bare, run, band_margin);
+    add_modal_damping(frictionless, run.parameters, linearisation);
+
+    run.progress.begin("Reduced model");
+    reduced = std::make_unique<ChartModel>(linearisation.coupled, *frictionless.inverse, frictionless.shift, *frictionless.real.vectors,
+                                           largest_circular_frequency, band_margin);
+    run.progress.finish(text(reduced->size(), " vectors to start from"));
+  }
+
+  std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients, ChartStore *store)
+  {
+    std::vector<OperatingPoint> missing;
+    for (const double mu : friction_coefficients)
+      if (known.count({line, mu}) == 0)
+        {
+          const OperatingPoint point = plan.point(line, mu, regime.closed);
+          if (const auto stored = store ? store->find(point) : std::nullopt)
+            known.emplace(std::make_pair(line, mu), *stored);
+          else
+            missing.push_back(point);
+        }
+    Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, const ChartPoint &found) {
+      known.emplace(std::make_pair(line, missing[i].friction_coefficient), found);
+      if (store)
+        store->keep(missing[i], found);
+    });
+    std::vector<ChartPoint> result;
+    for (const double mu : friction_coefficients)
+      result.push_back(known.at({line, mu}));
+    return result;
+  }
+
+  std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    const ComplexDenseMatrix X = padded(selected_columns(point.right, modes), reduced->size());
+    return {reduced->reduced().basis() * real_part(X), reduced->reduced().basis() * imaginary_part(X)};
+  }
+
+  std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    const auto [re, im] = shapes(point, modes);
+    return identify_coupled(scene, linearisation, frictionless, re, &im);
+  }
+
+  CoupledSystem SweepModel::system_at(const double friction_coefficient) const
+  {
+    return with_values(linearisation.coupled, plan.point(0, friction_coefficient, regime.closed).values);
+  }
+
+  bool SweepModel::is_in_band(const std::complex<double> &lambda) const
+  {
+    return lambda.imag() <= largest_circular_frequency;
+  }
+
+  int SweepModel::leading_mode(const ChartPoint &point) const
+  {
+    const auto rate   = [&](const int mode) { return modal_quantities(point.lambda[mode]).divergence_rate; };
+    int        result = -1;
+    for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+      if (is_in_band(point.lambda[j]) && (result < 0 || rate(j) > rate(result)))
+        result = j;
+    return result;
+  }
+
+  namespace
+  {
+    /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
+    std::vector<int> training(const ContactRegime &regime)
+    {
+      const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
+                                                     [](const OperatingPoint &a, const OperatingPoint &b) { return a.line < b.line; });
+      std::vector<int> result;
+      for (const int line : {first->line, last->line})
+        {
+          const auto numbers = regime.on_line(line);
+          const int  end     = static_cast<int>(numbers.size()) - 1;
+          for (const int place : {end, end / 2, end / 4, 3 * end / 4, 0})
+            if (std::find(result.begin(), result.end(), numbers[place]) == result.end())
+              result.push_back(numbers[place]);
+        }
+      return result;
+    }
+  } // namespace
+
+  void evaluate_points(SweepModel &model, ChartStore &store)
+  {
+    Run                               &run    = model.run;
+    const std::vector<OperatingPoint> &points = model.regime.points;
+    ErrorControlledSweepOptions        options;
+    options.tolerance     = run.parameters.sweep.tolerance;
+    options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
+    run.progress.begin("Sweep");
+    const ErrorControlledSweep sweep =
+      error_controlled_sweep(*model.reduced, points, training(model.regime), options, &store, run.communicator, run.progress);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (sweep.points[i])
+        model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
+    run.progress.finish(text(model.known.size(), " of ", points.size(), " operating points, ", model.reduced->size(),
+                             " vectors, estimated error ", sweep.worst_error));
+    run.count("basis vectors", model.reduced->size());
+    run.measure("largest estimated error of lambda [-]", sweep.worst_error);
+    if (!sweep.why_stopped.empty())
+      run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
+                             ": ", sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
+  }
+} // namespace Squeal

@@ -1,0 +1,141 @@
+#include <squeal/base/conventions.h>
+#include <squeal/studies/mode_fields.h>
+#include <squeal/studies/sweep_results.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Label of the branch that a mode resembles most, at the point of the chart nearest to its own.
+    ModeLabel nearest_label(const SweepChart &main, const ChartPoint &point, const int mode)
+    {
+      const auto &points   = main.chart.points;
+      const auto  distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
+      const auto  nearest =
+        std::min_element(points.begin(), points.end(), [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
+      ModeLabel label;
+      double    largest = 0.;
+      for (std::size_t b = 0; b < main.chart.branches.size(); ++b)
+        if (const int j = main.chart.branches[b].modes[nearest - points.begin()]; j >= 0)
+          {
+            std::complex<double> product = 0.;
+            for (int row = 0; row < std::min(point.right.n_rows(), nearest->right.n_rows()); ++row)
+              product += std::conj(point.right(row, mode)) * nearest->right(row, j);
+            if (std::abs(product) > largest)
+              {
+                largest = std::abs(product);
+                label   = main.labels[b];
+              }
+          }
+      return label;
+    }
+
+    /// The modes at one of the chosen friction coefficients, which may miss the tolerance.
+    ChartPoint modes_at(SweepModel &model, const double mu)
+    {
+      const ChartPoint point     = model.evaluate(0, {mu}).front();
+      const double     tolerance = model.run.parameters.sweep.tolerance, error = model.reduced->largest_error(point);
+      if (!(error <= tolerance))
+        model.run.progress.note(
+          text("  note: at mu = ", mu, " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
+      return point;
+    }
+  } // namespace
+
+  void append_map_cells(const SweepModel &model, const SweepChart *main, std::vector<MapCell> &cells)
+  {
+    for (const OperatingPoint &operating : model.regime.points)
+      {
+        const SweepLine &line = model.plan.lines[operating.line];
+        if (line.kind != SweepLine::Kind::map)
+          continue;
+        cells.push_back({operating.friction_coefficient, line.value, model.scene.interface.size() - model.regime.closed.size(), {}, {}});
+        const auto found = model.known.find({operating.line, operating.friction_coefficient});
+        if (found == model.known.end())
+          continue;
+        MapCell          &cell  = cells.back();
+        const ChartPoint &point = found->second;
+        if (const int mode = model.leading_mode(point); mode >= 0)
+          {
+            cell.leading = modal_quantities(point.lambda[mode]);
+            if (main)
+              cell.label = nearest_label(*main, point, mode);
+          }
+        for (std::size_t j = 0; j < point.lambda.size(); ++j)
+          if (model.is_in_band(point.lambda[j]))
+            {
+              cell.n_unstable += point.verdicts[j] == Verdict::unstable;
+              cell.n_undecided += point.verdicts[j] == Verdict::undecided;
+            }
+        cell.error = model.reduced->largest_error(point);
+      }
+  }
+
+  void append_counts(SweepModel &model, std::vector<CountAt> &counts)
+  {
+    Run                    &run       = model.run;
+    const SolverParameters &solvers   = run.parameters.solvers;
+    const double            omega_max = model.largest_circular_frequency, shift = model.frictionless.shift;
+    for (const double mu : run.parameters.sweep.counts)
+      {
+        if (model.plan.closed_at(mu) != model.regime.closed)
+          continue;
+        run.progress.begin("Argument principle");
+        const CoupledSystem system = model.system_at(mu);
+        ContourOptions      options;
+        options.largest_frequency  = omega_max;
+        options.lowest_frequency   = 1e-3 * omega_max;
+        options.largest_growth     = 0.1 * omega_max;
+        options.method             = contour_method(system);
+        options.real_modes.solver  = solvers.real_solver;
+        options.real_modes.library = solvers.library;
+        options.real_modes.shift   = shift * shift;
+        options.real_modes.inverse = &model.frictionless.inverse->frictionless(); // of the undamped system
+        options.real_modes.what    = "real modes beyond the band";
+        const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();
+        const ChartPoint   point   = modes_at(model, mu);
+        const int          n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {
+          return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max &&
+                 std::abs(lambda.real()) <= options.largest_growth;
+        });
+        counts.push_back({mu, n_found, count});
+        run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at mu = ", mu, ", ", count.n_points, " points"));
+        if (count.n_modes != n_found)
+          run.progress.note(text("  note: at mu = ", mu, " the sweep has ", n_found, " modes where ", count.n_modes, " were counted"));
+      }
+  }
+
+  void write_leading_modes(SweepModel &model)
+  {
+    Run        &run    = model.run;
+    const auto &wanted = run.parameters.sweep.mode_shapes;
+    if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
+      return;
+    const FieldWriter writer(*model.scene.model, model.scene.interface, model.regime.closed, run.folder());
+    run.progress.begin("Mode shapes");
+    int n_written = 0;
+    for (const double mu : wanted)
+      {
+        if (model.plan.closed_at(mu) != model.regime.closed)
+          continue;
+        const ChartPoint point = modes_at(model, mu);
+        const int        mode  = model.leading_mode(point);
+        if (mode < 0 || !is_growing(point.lambda[mode]))
+          {
+            run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
+            continue;
+          }
+        const auto [re, im] = model.shapes(point, {mode});
+        const auto name     = text("mu_", mu, "_", file_text(model.labels(point, {mode}).front()));
+        const auto field    = mode_field(model.scene, model.system_at(mu), model.regime.closed, name, point.lambda[mode], re, im);
+        writer.write_mode(field);
+        if (run.parameters.output.animation_frames > 0)
+          writer.write_animation(field, run.parameters.output.animation_frames);
+        ++n_written;
+      }
+    run.progress.finish(text(n_written, " leading modes"));
+  }
+} // namespace Squeal
