@@ -42,10 +42,17 @@ namespace Squeal
     }
   } // namespace
 
-  Progress::Progress()
-    : start(Clock::now())
-    , step_start(start)
+  Stopwatch::Stopwatch()
+    : start(std::chrono::steady_clock::now())
+    , cpu_start(cpu_time())
   {}
+
+  Cost Stopwatch::cost() const
+  {
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), cpu_time() - cpu_start, peak_memory()};
+  }
+
+  Progress::Progress() = default;
 
   Progress::Progress(std::ostream &stream, const bool live)
     : Progress()
@@ -74,10 +81,7 @@ namespace Squeal
     std::unique_lock<std::mutex> lock(mutex);
     while (!closing.wait_for(lock, std::chrono::milliseconds(200), [this]() { return closed; }))
       if (!current.empty())
-        {
-          const double seconds = std::chrono::duration<double>(Clock::now() - step_start).count();
-          *stream << erase_line << line_start(current, seconds) << (state.empty() ? "" : "   ") << state << std::flush;
-        }
+        *stream << erase_line << line_start(current, step.cost().seconds) << (state.empty() ? "" : "   ") << state << std::flush;
   }
 
   void Progress::begin(const std::string &name)
@@ -85,9 +89,8 @@ namespace Squeal
     if (!current.empty())
       finish();
     const std::lock_guard<std::mutex> lock(mutex);
-    current        = name;
-    step_start     = Clock::now();
-    cpu_step_start = cpu_time();
+    current = name;
+    step    = Stopwatch();
     state.clear();
   }
 
@@ -97,16 +100,17 @@ namespace Squeal
     state = new_state;
   }
 
-  void Progress::finish(const std::string &summary)
+  Cost Progress::finish(const std::string &summary)
   {
     const std::lock_guard<std::mutex> lock(mutex);
     if (current.empty())
-      return;
-    const double seconds = std::chrono::duration<double>(Clock::now() - step_start).count();
-    records.push_back({current, seconds, cpu_time() - cpu_step_start, peak_memory(), summary});
+      return {};
+    const Cost cost = step.cost();
+    records.push_back({cost, current, summary});
     if (stream != nullptr)
-      *stream << (live ? erase_line : "") << line_start(current, seconds) << (summary.empty() ? "" : "   ") << summary << std::endl;
+      *stream << (live ? erase_line : "") << line_start(current, cost.seconds) << (summary.empty() ? "" : "   ") << summary << std::endl;
     current.clear();
+    return cost;
   }
 
   void Progress::note(const std::string &text)
@@ -123,6 +127,6 @@ namespace Squeal
 
   double Progress::elapsed() const
   {
-    return std::chrono::duration<double>(Clock::now() - start).count();
+    return run.cost().seconds;
   }
 } // namespace Squeal

@@ -93,10 +93,10 @@ namespace Squeal
     result.unstable = unstable_modes(modes);
     result.labels   = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
     mark_doublets(result.labels, growth_rates(result));
-    run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
-                             modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
-                             modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ",
-                             modes.summary));
+    result.cost = run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
+                                           modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
+                                           modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ",
+                                           modes.summary));
     return result;
   }
 

@@ -103,8 +103,8 @@ namespace Squeal
     run.progress.begin("Factorisation");
     result.inverse = std::make_unique<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
-    run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
-                             result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
+    result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
+                                                    result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
 
     run.progress.begin("Real modes");
     options.what  = "real modes of the coupled system";
@@ -118,9 +118,10 @@ namespace Squeal
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
     run.count("real modes", n_real);
     run.count("rigid-body modes", result.real.n_rigid_body);
-    run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
-                             n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
-                             result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
+    result.solution =
+      run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
+                               n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
+                               result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
     result.labels = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);
     for (int j = 0; j < result.real.n_rigid_body; ++j)

@@ -5,37 +5,10 @@
 #include <squeal/studies/reduction_sets.h>
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 
 namespace Squeal
 {
-  namespace
-  {
-    double processor_seconds()
-    {
-      return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-    }
-  } // namespace
-
-  Stopwatch::Stopwatch()
-    : start(processor_seconds())
-  {}
-
-  double Stopwatch::seconds() const
-  {
-    return processor_seconds() - start;
-  }
-
-  double step_seconds(const Run &run, const std::string &name)
-  {
-    double sum = 0.;
-    for (const StepRecord &step : run.progress.steps())
-      if (step.name == name)
-        sum += step.cpu_seconds;
-    return sum;
-  }
-
   ReductionSets::ReductionSets(const ReductionPlan     &plan,
                                const Scene             &scene,
                                const Linearisation     &linearisation,
@@ -49,8 +22,8 @@ namespace Squeal
     , system(system)
     , run(run)
   {
-    seconds[BasisSource::coupled_factor] = step_seconds(run, "Factorisation");
-    seconds[BasisSource::real]           = step_seconds(run, "Real modes");
+    seconds[BasisSource::coupled_factor] = frictionless.factorisation.cpu_seconds;
+    seconds[BasisSource::real]           = frictionless.solution.cpu_seconds;
     available.uncoupled                  = &scene.system;
     available.contact                    = &linearisation.contact;
     available.coupled                    = &system;
@@ -81,7 +54,7 @@ namespace Squeal
   {
     const Stopwatch watch;
     auto            result = function();
-    seconds[source]        = watch.seconds();
+    seconds[source]        = watch.cost().cpu_seconds;
     return result;
   }
 

@@ -33,18 +33,18 @@ namespace Squeal
                               Run                     &run)
     {
       Reference    reference;
-      const double factorisation = step_seconds(run, "Factorisation");
+      const double factorisation = frictionless.factorisation.cpu_seconds;
       if (plan.has_friction)
         {
           const FrictionModes full = friction_modes(scene, linearisation, frictionless, plan.friction_coefficient, run);
           reference                = {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
-                                      factorisation + step_seconds(run, "Complex modes")};
+                                      factorisation + full.cost.cpu_seconds};
         }
       else
         {
           const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
           reference = {undamped_modes(frictionless.real), labels, frictionless_groups(labels), std::vector<bool>(labels.size(), false),
-                       factorisation + step_seconds(run, "Real modes")};
+                       factorisation + frictionless.solution.cpu_seconds};
         }
       return reference;
     }
@@ -99,7 +99,7 @@ namespace Squeal
         Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe.kind, sets.ingredients(), options)};
         ReducedModel    model(system);
         model.extend(*candidate.basis.vectors);
-        candidate.build_seconds  = sets.cost(recipe) + watch.seconds();
+        candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
         const ReducedModes modes = timed_modes(model, candidate.solve_seconds);
         candidate.errors         = reduction_errors(system, *sets.ingredients().inverse, model, modes, reference.modes);
         double largest           = 0.;
@@ -122,7 +122,7 @@ namespace Squeal
             const Stopwatch watch;
             modes = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
                                         reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
-            const double latest = watch.seconds();
+            const double latest = watch.cost().cpu_seconds;
             seconds             = solution == 0 ? latest : std::min(seconds, latest);
           }
         return modes;

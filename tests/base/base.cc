@@ -109,7 +109,7 @@ TEST(ProgressChannel, RecordsStepsInOrder)
     Progress progress(stream, false);
     progress.begin("Mesh");
     progress.update("busy");
-    progress.finish("12 elements");
+    const Cost mesh = progress.finish("12 elements");
     progress.begin("Matrices");
     progress.begin("Modes"); // ends the step before
     progress.finish();
@@ -119,6 +119,7 @@ TEST(ProgressChannel, RecordsStepsInOrder)
     ASSERT_EQ(progress.steps().size(), 3u);
     EXPECT_EQ(progress.steps()[0].name, "Mesh");
     EXPECT_EQ(progress.steps()[0].summary, "12 elements");
+    EXPECT_EQ(progress.steps()[0].seconds, mesh.seconds);
     EXPECT_EQ(progress.steps()[1].name, "Matrices");
     EXPECT_EQ(progress.steps()[2].name, "Modes");
     double sum = 0.;

@@ -10,14 +10,32 @@
 
 namespace Squeal
 {
+  /// What work takes on this process.
+  struct Cost
+  {
+    double seconds     = 0.; ///< wall time [s]
+    double cpu_seconds = 0.; ///< processor time [s]
+    double peak_memory = 0.; ///< peak resident memory so far [byte]
+  };
+
+  /// Measures what is done after its construction.
+  class Stopwatch
+  {
+  public:
+    Stopwatch();
+
+    Cost cost() const;
+
+  private:
+    std::chrono::steady_clock::time_point start;
+    double                                cpu_start;
+  };
+
   /// One finished step of a run, as the run record lists it.
-  struct StepRecord
+  struct StepRecord : Cost
   {
     std::string name;
-    double      seconds;     ///< wall time [s]
-    double      cpu_seconds; ///< processor time of this process [s]
-    double      peak_memory; ///< peak resident memory of this process so far [byte]
-    std::string summary;     ///< what the step found, one phrase
+    std::string summary; ///< what the step found, one phrase
   };
 
   /**
@@ -46,8 +64,8 @@ namespace Squeal
     /// Sets the state of the current step that the live counter shows.
     void update(const std::string &state);
 
-    /// Ends the current step with the line that stays.
-    void finish(const std::string &summary = "");
+    /// Ends the current step with the line that stays; returns what it took.
+    Cost finish(const std::string &summary = "");
 
     /// Prints a line that belongs to no step.
     void note(const std::string &text);
@@ -59,15 +77,12 @@ namespace Squeal
     double elapsed() const;
 
   private:
-    using Clock = std::chrono::steady_clock;
-
     /// Shows the counter until the channel is closed.
     void count();
 
     std::ostream           *stream = nullptr;
     bool                    live   = false;
-    Clock::time_point       start, step_start;
-    double                  cpu_step_start = 0.;
+    Stopwatch               run, step;
     std::string             current, state;
     std::vector<StepRecord> records;
 

@@ -14,6 +14,7 @@ namespace Squeal
     ComplexModes           modes;
     std::vector<ModeLabel> labels;
     std::vector<bool>      unstable; ///< beyond what their accuracy leaves open
+    Cost                   cost;     ///< of the solution
 
     std::size_t n_unstable() const;
 

@@ -8,20 +8,6 @@
 
 namespace Squeal
 {
-  /// Processor seconds since construction.
-  class Stopwatch
-  {
-  public:
-    Stopwatch();
-    double seconds() const;
-
-  private:
-    double start;
-  };
-
-  /// Processor seconds of all steps of a run that have a name.
-  double step_seconds(const Run &run, const std::string &name);
-
   /**
    * The sets of vectors that the bases of a plan are made of, computed as steps of the run, with the processor seconds of each:
    * a basis pays for all that it rests on.
