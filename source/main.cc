@@ -74,7 +74,7 @@ Decides whether a disc rubbed by friction pins squeals.
     Run run(parameters, options, MPI_COMM_WORLD, progress, screen, interruption);
     if (const std::string note = unused_parameters_note(parameters); !note.empty())
       progress.note(note);
-    parameters.study->run(run);
+    run_study(run);
   }
 
   /// The message of a failed run; rethrows what is being handled.

@@ -109,15 +109,9 @@ namespace Squeal
    * published, R_n0 from equal shares of the load and from steady sliding, side
    * by side with the last column of the paper's Table 1.
    */
-  static void run_dissipation_study(Run &run)
+  static void run_dissipation_study(Scene &scene, Run &run)
   {
     const Parameters &parameters = run.parameters;
-    Scene             scene      = mesh_scene(run);
-    if (run.is_dry)
-      {
-        run.progress.note("  dry run: nothing was computed or written");
-        return;
-      }
     assemble_scene(scene, run);
     OperationParameters operation = parameters.operation;
     SlidingParameters   sliding   = parameters.sliding;

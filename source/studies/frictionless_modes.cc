@@ -60,32 +60,37 @@ namespace Squeal
     return identify({&modes.disc, &modes.pins_sliding}, *scene.system.mass, u_re, imaginary_part ? &u_im : nullptr);
   }
 
+  SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, const double shift)
+  {
+    SymmetricModesOptions options;
+    options.solver    = solvers.real_solver;
+    options.tolerance = solvers.real_tolerance;
+    options.library   = solvers.library;
+    options.what      = what;
+    options.shift     = shift * shift;
+    return options;
+  }
+
   FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, const double margin)
   {
-    const Parameters     &parameters = run.parameters;
-    const CoupledSystem  &coupled    = linearisation.coupled;
-    const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
-    const double          limit      = omega_max * omega_max;
-    FrictionlessModes     result;
-    SymmetricModesOptions options;
-    options.solver    = parameters.solvers.real_solver;
-    options.tolerance = parameters.solvers.real_tolerance;
-    options.library   = parameters.solvers.library;
-    result.shift      = stabilizing_shift(*scene.model, coupled, omega_max);
+    const Parameters    &parameters = run.parameters;
+    const CoupledSystem &coupled    = linearisation.coupled;
+    const double         omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
+    const double         limit      = omega_max * omega_max;
+    FrictionlessModes    result;
+    result.shift = stabilizing_shift(*scene.model, coupled, omega_max);
 
     // -------------------------------------------------------- component modes
     check_number_of_modes(coupled, (1. + margin) * omega_max, run);
 
     const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);
     const auto   components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
-      SymmetricModesOptions component_options = options;
-      component_options.what                  = name;
       run.progress.update(name);
-      component_options.shift = component == Component::disc ? disc_shift * disc_shift : 0.;
+      SymmetricModesOptions options = real_modes_options(parameters.solvers, name, component == Component::disc ? disc_shift : 0.);
       // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
-      component_options.by_parts = component == Component::pins;
+      options.by_parts = component == Component::pins;
       return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit,
-                               component_options);
+                               options);
     };
     run.progress.begin("Component modes");
     result.disc         = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
@@ -107,8 +112,7 @@ namespace Squeal
                                                     result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
 
     run.progress.begin("Real modes");
-    options.what  = "real modes of the coupled system";
-    options.shift = result.shift * result.shift;
+    SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
     // The factor at hand serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.has_damping())
       options.inverse = &result.inverse->frictionless();

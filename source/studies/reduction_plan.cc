@@ -9,33 +9,43 @@ namespace Squeal
 {
   namespace
   {
-    bool is_named(const std::vector<std::string> &names, const BasisRecipe &recipe)
+    /// Whether a basis belongs to the problem.
+    bool fits(const BasisRecipe &recipe, const Parameters &p)
     {
-      return std::find(names.begin(), names.end(), recipe.name) != names.end();
+      const bool has_damping = p.operation.radial_dissipation != RadialDissipation::none || p.operation.friction_slope != 0. ||
+                               p.materials.disc.is_damped() || p.materials.pin.is_damped();
+      return (p.has_friction() || !recipe.needs_friction) && (has_damping || !recipe.needs_damping);
+    }
+
+    /// Bases that the parameters name; all that fit where they name none.
+    std::vector<const BasisRecipe *> chosen_recipes(const Parameters &p)
+    {
+      const std::vector<std::string>  &names = p.reduction.bases;
+      std::vector<const BasisRecipe *> result;
+      for (const BasisRecipe &recipe : basis_recipes())
+        if (names.empty() ? fits(recipe, p) : std::find(names.begin(), names.end(), recipe.name) != names.end())
+          result.push_back(&recipe);
+      return result;
     }
 
     void refuse_unknown(const std::vector<std::string> &names)
     {
+      std::string known;
+      for (const BasisRecipe &recipe : basis_recipes())
+        known += (known.empty() ? "" : ", ") + std::string(recipe.name);
       for (const std::string &name : names)
-        {
-          std::string known;
-          for (const BasisRecipe &recipe : basis_recipes())
-            known += (known.empty() ? "" : ", ") + std::string(recipe.name);
-          if (std::none_of(basis_recipes().begin(), basis_recipes().end(), [&](const BasisRecipe &recipe) { return recipe.name == name; }))
-            throw ParameterError("there is no basis `" + name + "`", "parameter Reduction/Bases", "choose among " + known);
-        }
+        if (std::none_of(basis_recipes().begin(), basis_recipes().end(), [&](const BasisRecipe &recipe) { return recipe.name == name; }))
+          throw ParameterError("there is no basis `" + name + "`", "parameter Reduction/Bases", "choose among " + known);
     }
 
     // ---------------------------------------------------------------- in use
 
-    /// Whether a basis may be measured for which @p fits holds.
+    /// Whether a basis is measured for which @p fits holds.
     template <typename Predicate>
     bool measures(const Parameters &p, const Predicate &fits)
     {
-      const auto &names = p.reduction.bases;
-      return std::any_of(basis_recipes().begin(), basis_recipes().end(), [&](const BasisRecipe &recipe) {
-        return (names.empty() ? p.has_friction() || !recipe.needs_friction : is_named(names, recipe)) && fits(recipe);
-      });
+      const auto recipes = chosen_recipes(p);
+      return std::any_of(recipes.begin(), recipes.end(), [&](const BasisRecipe *recipe) { return fits(*recipe); });
     }
 
     bool measures(const Parameters &p, const BasisSource source)
@@ -64,37 +74,22 @@ namespace Squeal
     return std::any_of(recipes.begin(), recipes.end(), [source](const BasisRecipe *recipe) { return recipe->rests_on(source); });
   }
 
-  bool ReductionPlan::any_connected() const
-  {
-    return std::any_of(recipes.begin(), recipes.end(), [](const BasisRecipe *recipe) { return recipe->is_connected(); });
-  }
-
   ReductionPlan reduction_plan(const Parameters &parameters)
   {
-    const OperationParameters &operation   = parameters.operation;
-    const MaterialParameters  &materials   = parameters.materials;
-    const auto                &names       = parameters.reduction.bases;
-    const bool                 friction    = parameters.has_friction();
-    const bool                 has_damping = operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. ||
-                             materials.disc.is_damped() || materials.pin.is_damped();
-    refuse_unknown(names);
-
+    const bool friction = parameters.has_friction();
+    refuse_unknown(parameters.reduction.bases);
     ReductionPlan plan;
+    plan.recipes                    = chosen_recipes(parameters);
     plan.has_friction               = friction;
-    plan.friction_coefficient       = friction ? operation.friction_coefficient : 0.;
+    plan.friction_coefficient       = friction ? parameters.operation.friction_coefficient : 0.;
     plan.largest_circular_frequency = circular_frequency(parameters.discretization.maximum_frequency);
-    for (const BasisRecipe &recipe : basis_recipes())
-      {
-        const bool fits = (friction || !recipe.needs_friction) && (has_damping || !recipe.needs_damping);
-        if (!names.empty() && is_named(names, recipe) && !fits)
-          throw ParameterError(std::string("the basis `") + recipe.name + "` " +
-                                 (friction ? "needs damping, and there is none" : "belongs to the problem with friction"),
-                               "parameter Reduction/Bases",
-                               friction ? "switch a damping on, or leave the basis out" :
-                                          "set Reduction/Problem = friction, or leave it out");
-        if (names.empty() ? fits : is_named(names, recipe))
-          plan.recipes.push_back(&recipe);
-      }
+    for (const BasisRecipe *recipe : plan.recipes)
+      if (!fits(*recipe, parameters))
+        throw ParameterError(std::string("the basis `") + recipe->name + "` " +
+                               (friction ? "needs damping, and there is none" : "belongs to the problem with friction"),
+                             "parameter Reduction/Bases",
+                             friction ? "switch a damping on, or leave the basis out" :
+                                        "set Reduction/Problem = friction, or leave it out");
     if (plan.rests_on(BasisSource::snapshots) && parameters.reduction.snapshots.empty())
       throw ParameterError("the basis POD has no snapshots", "parameter Reduction/Snapshots", "give at least one friction coefficient");
     return plan;

@@ -29,7 +29,9 @@ namespace Squeal
     available.coupled                    = &system;
     available.inverse                    = frictionless.inverse.get();
     available.friction_coefficient       = plan.friction_coefficient;
-    compute_real_modes();
+    available.real                       = frictionless.real.vectors.get();
+    if (run.parameters.reduction.coupled_frequency > 0.)
+      compute_real_modes();
     compute_static_modes();
     if (plan.rests_on(BasisSource::snapshots))
       compute_snapshots();
@@ -50,7 +52,7 @@ namespace Squeal
   }
 
   template <typename Function>
-  auto ReductionSets::compute(const BasisSource source, Function &&function)
+  auto ReductionSets::timed(const BasisSource source, Function &&function)
   {
     const Stopwatch watch;
     auto            result = function();
@@ -58,40 +60,38 @@ namespace Squeal
     return result;
   }
 
+  template <typename Function>
+  const MultiVector *ReductionSets::compute(const BasisSource source, Function &&function)
+  {
+    vectors[source].reset();
+    vectors[source] = std::make_unique<MultiVector>(timed(source, function));
+    return vectors[source].get();
+  }
+
   // ------------------------------------------------------------- for all bases
 
   void ReductionSets::compute_real_modes()
   {
-    const double frequency = run.parameters.reduction.coupled_frequency;
-    real                   = frictionless.real.vectors;
-    if (frequency > 0.)
-      {
-        run.progress.begin("Real modes for bases");
-        const double            omega   = circular_frequency(frequency);
-        const CoupledSystem    &coupled = linearisation.coupled;
-        const SolverParameters &solvers = run.parameters.solvers;
-        SymmetricModesOptions   options;
-        options.solver    = solvers.real_solver;
-        options.tolerance = solvers.real_tolerance;
-        options.library   = solvers.library;
-        options.what      = "real modes of the coupled system for reduced bases";
-        options.shift     = frictionless.shift * frictionless.shift;
-        const SymmetricModes modes =
-          compute(BasisSource::real, [&] { return symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options); });
-        if (modes.eigenvalues.empty())
-          throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
-                            "raise it, or give 0 for the modes of the band");
-        real = modes.vectors;
-        run.progress.finish(text(real->NumVectors(), " below ", frequency, " Hz"));
-      }
-    available.real = real.get();
+    run.progress.begin("Real modes for bases");
+    const double                frequency = run.parameters.reduction.coupled_frequency, omega = circular_frequency(frequency);
+    const CoupledSystem        &coupled = linearisation.coupled;
+    const SymmetricModesOptions options =
+      real_modes_options(run.parameters.solvers, "real modes of the coupled system for reduced bases", frictionless.shift);
+    available.real = compute(BasisSource::real, [&] {
+      const SymmetricModes modes = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
+      if (modes.eigenvalues.empty())
+        throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
+                          "raise it, or give 0 for the modes of the band");
+      return *modes.vectors;
+    });
+    run.progress.finish(text(available.real->NumVectors(), " below ", frequency, " Hz"));
   }
 
   void ReductionSets::compute_static_modes()
   {
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
-    response                           = compute(BasisSource::uncoupled_factor, [&] {
+    response                           = timed(BasisSource::uncoupled_factor, [&] {
       return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_circular_frequency, library);
     });
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
@@ -104,7 +104,7 @@ namespace Squeal
       {BasisSource::constraint_pins, [&] { return modes.constraint(Component::pins).NumVectors(); }}};
     for (const auto &[source, set] : sets)
       if (plan.rests_on(source))
-        compute(source, set);
+        timed(source, set);
     available.static_modes = static_modes.get();
     run.progress.finish(text(modes.n_contact(), " contact nodes"));
   }
@@ -112,26 +112,22 @@ namespace Squeal
   void ReductionSets::compute_snapshots()
   {
     run.progress.begin("Snapshots");
-    const std::vector<double>       &values = run.parameters.reduction.snapshots;
-    const auto                       parts  = compute(BasisSource::snapshots, [&] {
-      std::vector<MultiVector> result;
+    const std::vector<double> &values = run.parameters.reduction.snapshots;
+    available.snapshots               = compute(BasisSource::snapshots, [&] {
+      std::vector<ComplexModes>        sets;
+      std::vector<const MultiVector *> parts;
       for (const double value : values)
         {
           run.progress.update(text("mu = ", value));
-          const ComplexModes modes =
-            krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value, plan.largest_circular_frequency,
-                                                frictionless.real.eigenvalues.size(), run.parameters.solvers, run.progress);
-          result.push_back(*modes.real_part);
-          result.push_back(*modes.imaginary_part);
+          sets.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
+                                                    plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
+                                                    run.progress));
+          for (const auto &part : {sets.back().real_part, sets.back().imaginary_part})
+            parts.push_back(part.get());
         }
-      return result;
+      return join(parts);
     });
-    std::vector<const MultiVector *> pointers;
-    for (const MultiVector &part : parts)
-      pointers.push_back(&part);
-    snapshots           = std::make_unique<MultiVector>(join(pointers));
-    available.snapshots = snapshots.get();
-    run.progress.finish(text(snapshots->NumVectors(), " vectors from ", values.size(), " friction coefficients"));
+    run.progress.finish(text(available.snapshots->NumVectors(), " vectors from ", values.size(), " friction coefficients"));
   }
 
   // ------------------------------------------------------------- for some bases
@@ -139,29 +135,24 @@ namespace Squeal
   void ReductionSets::truncate(const ModeTruncation &truncation)
   {
     run.progress.begin("Component modes for bases");
-    for (auto *set : {&disc_free, &disc_sliding, &pins_free, &pins_sliding})
-      set->reset();
     const double frequency = truncation.frequency > 0. ? truncation.frequency : run.parameters.discretization.maximum_frequency;
     const auto   set       = [&](const BasisSource source, const Component component, const ContactBoundary boundary, const int count) {
       return compute(source, [&] { return lowest_modes(component, boundary, frequency, count); });
     };
     // The disc has as many sliding as free modes in a basis (Table 3)
-    const bool slides = plan.rests_on(BasisSource::disc_sliding);
+    BasisIngredients &a      = available;
+    const bool        slides = plan.rests_on(BasisSource::disc_sliding);
     if (plan.rests_on(BasisSource::disc_free) || slides)
-      disc_free = set(BasisSource::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
+      a.disc_free = set(BasisSource::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
     if (slides)
-      disc_sliding = set(BasisSource::disc_sliding, Component::disc, ContactBoundary::sliding, disc_free->NumVectors());
+      a.disc_sliding = set(BasisSource::disc_sliding, Component::disc, ContactBoundary::sliding, a.disc_free->NumVectors());
     if (plan.rests_on(BasisSource::pins_free))
-      pins_free = set(BasisSource::pins_free, Component::pins, ContactBoundary::free, truncation.pins_free);
+      a.pins_free = set(BasisSource::pins_free, Component::pins, ContactBoundary::free, truncation.pins_free);
     if (plan.rests_on(BasisSource::pins_sliding))
-      pins_sliding = set(BasisSource::pins_sliding, Component::pins, ContactBoundary::sliding, truncation.pins_sliding);
-    available.disc_free    = disc_free.get();
-    available.disc_sliding = disc_sliding.get();
-    available.pins_free    = pins_free.get();
-    available.pins_sliding = pins_sliding.get();
-    const auto number      = [](const std::unique_ptr<MultiVector> &modes) { return modes ? std::to_string(modes->NumVectors()) : "-"; };
-    run.progress.finish(truncation.text() + ": disc " + number(disc_free) + ", pins free " + number(pins_free) + ", pins sliding " +
-                        number(pins_sliding));
+      a.pins_sliding = set(BasisSource::pins_sliding, Component::pins, ContactBoundary::sliding, truncation.pins_sliding);
+    const auto number = [](const MultiVector *modes) { return modes ? std::to_string(modes->NumVectors()) : "-"; };
+    run.progress.finish(truncation.text() + ": disc " + number(a.disc_free) + ", pins free " + number(a.pins_free) + ", pins sliding " +
+                        number(a.pins_sliding));
   }
 
   void ReductionSets::grow(const double tolerance)
@@ -171,27 +162,23 @@ namespace Squeal
     iteration.largest_frequency = plan.largest_circular_frequency;
     iteration.tolerance         = tolerance;
     iteration.maximum_basis     = run.parameters.solvers.maximum_basis;
-    residuals                   = compute(BasisSource::residuals, [&] {
-      const auto grown = grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient},
-                                                               iteration, run.progress);
-      return std::make_unique<MultiVector>(grown.model.basis());
+    available.residuals         = compute(BasisSource::residuals, [&] {
+      return grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration,
+                                         run.progress)
+        .model.basis();
     });
-    available.residuals         = residuals.get();
-    run.progress.finish(text(residuals->NumVectors(), " vectors for an estimated error of ", tolerance));
+    run.progress.finish(text(available.residuals->NumVectors(), " vectors for an estimated error of ", tolerance));
   }
 
-  std::unique_ptr<MultiVector> ReductionSets::lowest_modes(const Component       component,
-                                                           const ContactBoundary boundary,
-                                                           const double          frequency,
-                                                           const int             count) const
+  MultiVector ReductionSets::lowest_modes(const Component       component,
+                                          const ContactBoundary boundary,
+                                          const double          frequency,
+                                          const int             count) const
   {
-    SymmetricModesOptions options;
-    options.solver    = run.parameters.solvers.real_solver;
-    options.tolerance = run.parameters.solvers.real_tolerance;
-    options.library   = run.parameters.solvers.library;
-    options.what      = std::string("modes of the ") + (component == Component::disc ? "disc" : "pins") + " for reduced bases";
-    options.shift     = component == Component::disc ? frictionless.shift * frictionless.shift : 0.;
-    if (component == Component::pins)
+    const bool            is_disc = component == Component::disc;
+    const std::string     what    = std::string("modes of the ") + (is_disc ? "disc" : "pins") + " for reduced bases";
+    SymmetricModesOptions options = real_modes_options(run.parameters.solvers, what, is_disc ? frictionless.shift : 0.);
+    if (!is_disc)
       options.block_size = std::max<int>(8, 2 * scene.n_pins());
 
     // Numbers of modes are met by a band that grows
@@ -205,17 +192,15 @@ namespace Squeal
                                                      boundary, omega * omega, options);
         const int            found = modes.eigenvalues.size();
         if (count == 0 && found == 0)
-          throw SolverError(options.what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
+          throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
                             "raise the truncation frequency");
-        if (count == 0)
-          return std::make_unique<MultiVector>(*modes.vectors);
-        if (found >= count)
+        if (count == 0 || found >= count)
           {
-            const MultiVector lowest = view(*modes.vectors, 0, count);
-            return std::make_unique<MultiVector>(lowest);
+            const MultiVector lowest = view(*modes.vectors, 0, count == 0 ? found : count);
+            return MultiVector(lowest); // a copy: the modes go
           }
       }
-    throw SolverError(options.what + ": fewer than " + std::to_string(count) + " lie below " + text(band) + " Hz",
+    throw SolverError(what + ": fewer than " + std::to_string(count) + " lie below " + text(band) + " Hz",
                       "parameter Reduction/Component modes", "lower the number of modes");
   }
 } // namespace Squeal

@@ -14,8 +14,6 @@ namespace Squeal
     /// Solutions of a reduced problem of which the fastest is reported.
     constexpr int n_timed_solutions = 3;
 
-    // --------------------------------------------------------------- reference
-
     /// What bases are measured against.
     struct Reference
     {
@@ -32,108 +30,98 @@ namespace Squeal
                               const FrictionlessModes &frictionless,
                               Run                     &run)
     {
-      Reference    reference;
       const double factorisation = frictionless.factorisation.cpu_seconds;
       if (plan.has_friction)
         {
           const FrictionModes full = friction_modes(scene, linearisation, frictionless, plan.friction_coefficient, run);
-          reference                = {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
-                                      factorisation + full.cost.cpu_seconds};
+          return {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
+                  factorisation + full.cost.cpu_seconds};
         }
-      else
-        {
-          const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
-          reference = {undamped_modes(frictionless.real), labels, frictionless_groups(labels), std::vector<bool>(labels.size(), false),
-                       factorisation + frictionless.solution.cpu_seconds};
-        }
-      return reference;
+      const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
+      return {undamped_modes(frictionless.real), labels, frictionless_groups(labels), std::vector<bool>(labels.size(), false),
+              factorisation + frictionless.solution.cpu_seconds};
     }
 
-    // --------------------------------------------------------------- comparison
-
-    /// Builds bases one after the other and holds them against the reference.
-    class Comparison
+    /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
+    ReducedModes timed_modes(const ReductionPlan &plan, const ReducedModel &model, double &seconds)
     {
-    public:
-      Comparison(const ReductionPlan &plan, const CoupledSystem &system, const Reference &reference, ReductionSets &sets, Run &run)
-        : plan(plan)
-        , system(system)
-        , reference(reference)
-        , sets(sets)
-        , run(run)
-      {}
+      ReducedModes modes;
+      for (int solution = 0; solution < n_timed_solutions; ++solution)
+        {
+          const Stopwatch watch;
+          modes = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
+                                      reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
+          const double latest = watch.cost().cpu_seconds;
+          seconds             = solution == 0 ? latest : std::min(seconds, latest);
+        }
+      return modes;
+    }
 
-      /// Bases of component modes of every truncation, then the others.
-      std::vector<Candidate> candidates()
-      {
-        const ReductionParameters &reduction = run.parameters.reduction;
-        std::vector<Candidate>     result;
-        if (plan.any_connected())
-          for (const ModeTruncation &truncation : reduction.truncations)
-            {
-              sets.truncate(truncation);
-              for (const BasisRecipe *recipe : plan.recipes)
-                if (recipe->is_connected())
-                  result.push_back(measured(*recipe, recipe->name, truncation.text()));
-            }
-        for (const BasisRecipe *recipe : plan.recipes)
-          if (recipe->rests_on(BasisSource::residuals))
-            for (const double tolerance : reduction.grown_tolerances)
-              {
-                sets.grow(tolerance);
-                result.push_back(measured(*recipe, text(recipe->name, " ", tolerance), ""));
-              }
-          else if (!recipe->is_connected())
-            result.push_back(measured(*recipe, recipe->name, ""));
-        return result;
-      }
+    /// Builds a basis and holds it against the reference, as a step of the run called @p name.
+    Candidate measured(const ReductionPlan &plan,
+                       const CoupledSystem &system,
+                       const Reference     &reference,
+                       const ReductionSets &sets,
+                       const BasisRecipe   &recipe,
+                       const std::string   &name,
+                       const std::string   &truncation,
+                       Run                 &run)
+    {
+      run.progress.begin(name);
+      BasisOptions options;
+      options.tolerance     = run.parameters.reduction.rank_tolerance;
+      options.pod_tolerance = run.parameters.reduction.pod_tolerance;
+      const Stopwatch watch;
+      Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe.kind, sets.ingredients(), options)};
+      ReducedModel    model(system);
+      model.extend(*candidate.basis.vectors);
+      candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
+      const ReducedModes modes = timed_modes(plan, model, candidate.solve_seconds);
+      candidate.errors         = reduction_errors(system, *sets.ingredients().inverse, model, modes, reference.modes);
+      double largest           = 0.;
+      for (const ModeError &e : candidate.errors)
+        largest = std::max(largest, e.eigenvalue);
+      run.progress.finish(
+        text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(), " after connection and rank, largest error of lambda ", largest));
+      // Hundreds of vectors each: they are not needed any more
+      candidate.n_r = candidate.basis.size();
+      candidate.basis.vectors.reset();
+      return candidate;
+    }
 
-    private:
-      Candidate measured(const BasisRecipe &recipe, const std::string &name, const std::string &truncation) const
-      {
-        run.progress.begin(name);
-        BasisOptions options;
-        options.tolerance     = run.parameters.reduction.rank_tolerance;
-        options.pod_tolerance = run.parameters.reduction.pod_tolerance;
-        const Stopwatch watch;
-        Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe.kind, sets.ingredients(), options)};
-        ReducedModel    model(system);
-        model.extend(*candidate.basis.vectors);
-        candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
-        const ReducedModes modes = timed_modes(model, candidate.solve_seconds);
-        candidate.errors         = reduction_errors(system, *sets.ingredients().inverse, model, modes, reference.modes);
-        double largest           = 0.;
-        for (const ModeError &e : candidate.errors)
-          largest = std::max(largest, e.eigenvalue);
-        run.progress.finish(text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(),
-                                 " after connection and rank, largest error of lambda ", largest));
-        // Hundreds of vectors each: they are not needed any more
-        candidate.n_r = candidate.basis.size();
-        candidate.basis.vectors.reset();
-        return candidate;
-      }
-
-      /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
-      ReducedModes timed_modes(const ReducedModel &model, double &seconds) const
-      {
-        ReducedModes modes;
-        for (int solution = 0; solution < n_timed_solutions; ++solution)
+    /// Bases of component modes of every truncation, then the others.
+    std::vector<Candidate> candidates_of(const ReductionPlan &plan,
+                                         const CoupledSystem &system,
+                                         const Reference     &reference,
+                                         ReductionSets       &sets,
+                                         Run                 &run)
+    {
+      const ReductionParameters &reduction = run.parameters.reduction;
+      std::vector<Candidate>     result;
+      const auto                 measure = [&](const BasisRecipe &recipe, const std::string &name, const std::string &truncation) {
+        result.push_back(measured(plan, system, reference, sets, recipe, name, truncation, run));
+      };
+      std::vector<const BasisRecipe *> connected, others;
+      std::partition_copy(plan.recipes.begin(), plan.recipes.end(), std::back_inserter(connected), std::back_inserter(others),
+                          [](const BasisRecipe *recipe) { return recipe->is_connected(); });
+      if (!connected.empty())
+        for (const ModeTruncation &truncation : reduction.truncations)
           {
-            const Stopwatch watch;
-            modes = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
-                                        reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
-            const double latest = watch.cost().cpu_seconds;
-            seconds             = solution == 0 ? latest : std::min(seconds, latest);
+            sets.truncate(truncation);
+            for (const BasisRecipe *recipe : connected)
+              measure(*recipe, recipe->name, truncation.text());
           }
-        return modes;
-      }
-
-      const ReductionPlan &plan;
-      const CoupledSystem &system;
-      const Reference     &reference;
-      ReductionSets       &sets;
-      Run                 &run;
-    };
+      for (const BasisRecipe *recipe : others)
+        if (!recipe->rests_on(BasisSource::residuals))
+          measure(*recipe, recipe->name, "");
+        else
+          for (const double tolerance : reduction.grown_tolerances)
+            {
+              sets.grow(tolerance);
+              measure(*recipe, text(recipe->name, " ", tolerance), "");
+            }
+      return result;
+    }
   } // namespace
 
   /**
@@ -142,15 +130,9 @@ namespace Squeal
    * errors by groups of modes, error estimates with their verdicts, and what
    * building and solving cost.
    */
-  static void run_reduction_study(Run &run)
+  static void run_reduction_study(Scene &scene, Run &run)
   {
-    const ReductionPlan plan  = reduction_plan(run.parameters);
-    Scene               scene = mesh_scene(run);
-    if (run.is_dry)
-      {
-        run.progress.note("  dry run: nothing was computed or written");
-        return;
-      }
+    const ReductionPlan     plan          = reduction_plan(run.parameters);
     Linearisation           linearisation = linearised_scene(scene, run);
     const FrictionlessModes frictionless  = frictionless_modes(scene, linearisation, run);
     add_modal_damping(frictionless, run.parameters, linearisation);
@@ -159,7 +141,7 @@ namespace Squeal
 
     const Reference              reference = reference_modes(plan, scene, linearisation, frictionless, run);
     ReductionSets                sets(plan, scene, linearisation, frictionless, system, run);
-    const std::vector<Candidate> candidates = Comparison(plan, system, reference, sets, run).candidates();
+    const std::vector<Candidate> candidates = candidates_of(plan, system, reference, sets, run);
 
     // ----------------------------------------------------------------- results
     run.write_table("reduction_bases", reduction_basis_table(candidates, coupled.map().NumGlobalElements(), reference.seconds));
@@ -174,6 +156,7 @@ namespace Squeal
   extern const Study reduction_study = [] {
     Study study{"reduction", run_reduction_study, {"Reduction/"}, reduction_usage()};
     study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.check          = [](const Parameters &p) { reduction_plan(p); };
     study.has_friction   = [](const Parameters &p) { return p.reduction.problem == ReductionProblem::friction; };
     return study;
   }();

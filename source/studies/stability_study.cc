@@ -183,19 +183,12 @@ namespace Squeal
    * sliding, with their tables and mode shapes. A dry run makes, checks and
    * counts the mesh, and writes nothing.
    */
-  static void run_stability_study(Run &run)
+  static void run_stability_study(Scene &scene, Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // ------------------------------------------------- scene, state of contact
-    Scene scene = mesh_scene(run);
-    if (run.is_dry)
-      {
-        run.progress.note("  dry run: nothing was computed or written");
-        return;
-      }
     Linearisation                      linearisation = linearised_scene(scene, run);
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
 

@@ -1,4 +1,5 @@
 #include <squeal/parameters/study.h>
+#include <squeal/studies/scene.h>
 
 namespace Squeal
 {
@@ -8,5 +9,14 @@ namespace Squeal
   {
     static const std::vector<const Study *> all = {&stability_study, &dissipation_study, &reduction_study, &sweep_study};
     return all;
+  }
+
+  void run_study(Run &run)
+  {
+    Scene scene = mesh_scene(run);
+    if (run.is_dry)
+      run.progress.note("  dry run: nothing was computed or written");
+    else
+      run.parameters.study->run(scene, run);
   }
 } // namespace Squeal

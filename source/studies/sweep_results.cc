@@ -76,9 +76,8 @@ namespace Squeal
 
   void append_counts(SweepModel &model, std::vector<CountAt> &counts)
   {
-    Run                    &run       = model.run;
-    const SolverParameters &solvers   = run.parameters.solvers;
-    const double            omega_max = model.largest_circular_frequency, shift = model.frictionless.shift;
+    Run         &run       = model.run;
+    const double omega_max = model.largest_circular_frequency;
     for (const double mu : run.parameters.sweep.counts)
       {
         if (model.plan.closed_at(mu) != model.regime.closed)
@@ -90,11 +89,8 @@ namespace Squeal
         options.lowest_frequency   = 1e-3 * omega_max;
         options.largest_growth     = 0.1 * omega_max;
         options.method             = contour_method(system);
-        options.real_modes.solver  = solvers.real_solver;
-        options.real_modes.library = solvers.library;
-        options.real_modes.shift   = shift * shift;
+        options.real_modes         = real_modes_options(run.parameters.solvers, "real modes beyond the band", model.frictionless.shift);
         options.real_modes.inverse = &model.frictionless.inverse->frictionless(); // of the undamped system
-        options.real_modes.what    = "real modes beyond the band";
         const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();
         const ChartPoint   point   = modes_at(model, mu);
         const int          n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {

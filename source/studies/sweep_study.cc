@@ -80,17 +80,11 @@ namespace Squeal
    * `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where
    * they begin and cease to grow, and maps over load or speed.
    */
-  static void run_sweep_study(Run &run)
+  static void run_sweep_study(Scene &scene, Run &run)
   {
     const Parameters &parameters = run.parameters;
     const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    Scene scene = mesh_scene(run);
-    if (run.is_dry)
-      {
-        run.progress.note("  dry run: nothing was computed or written");
-        return;
-      }
     ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), identity(run, scene), run.communicator, omega_max);
     if (checkpoint.n_found() > 0)
       run.progress.note(text("  an interrupted sweep goes on: ", checkpoint.n_found(), " operating points are known"));

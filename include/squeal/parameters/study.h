@@ -6,6 +6,7 @@ namespace Squeal
 {
   struct Parameters;
   class Run;
+  struct Scene;
 
   /// Why a run does not use something, for a message; null if it does.
   using Reason = const char *;
@@ -28,8 +29,8 @@ namespace Squeal
    */
   struct Study
   {
-    const char *name; ///< in `set Study = ...`
-    void (*run)(Run &);
+    const char *name;            ///< in `set Study = ...`
+    void (*run)(Scene &, Run &); ///< the scene is meshed
 
     /// Paths of parameters and sections that no other study uses.
     std::vector<const char *> own_parameters = {};

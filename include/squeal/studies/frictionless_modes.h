@@ -6,6 +6,7 @@
 #include <squeal/studies/scene.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace Squeal
@@ -27,6 +28,9 @@ namespace Squeal
    * there are more modes than the parameters allow.
    */
   FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, double margin = 0.);
+
+  /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
+  SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
   void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation);

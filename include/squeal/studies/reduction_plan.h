@@ -17,9 +17,6 @@ namespace Squeal
 
     /// Whether one of the bases rests on something.
     bool rests_on(BasisSource source) const;
-
-    /// Whether one of the bases is made of component modes.
-    bool any_connected() const;
   };
 
   /// Throws ParameterError if the parameters name a basis that is none, or one that does not fit the problem.

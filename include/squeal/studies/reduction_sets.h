@@ -44,14 +44,18 @@ namespace Squeal
   private:
     /// Computes something and books its processor seconds.
     template <typename Function>
-    auto compute(BasisSource source, Function &&function);
+    auto timed(BasisSource source, Function &&function);
+
+    /// The same for vectors, which are kept in the place of earlier ones.
+    template <typename Function>
+    const MultiVector *compute(BasisSource source, Function &&function);
 
     void compute_real_modes();
     void compute_static_modes();
     void compute_snapshots();
 
-    /// The lowest modes of a component: @p count of them, or, where that is zero, all up to the frequency of the truncation.
-    std::unique_ptr<MultiVector> lowest_modes(Component component, ContactBoundary boundary, double frequency, int count) const;
+    /// The lowest modes of a component: @p count of them, or, where that is zero, all up to @p frequency [Hz].
+    MultiVector lowest_modes(Component component, ContactBoundary boundary, double frequency, int count) const;
 
     const ReductionPlan     &plan;
     const Scene             &scene;
@@ -60,11 +64,10 @@ namespace Squeal
     const CoupledSystem     &system;
     Run                     &run;
 
-    std::map<BasisSource, double>   seconds;
-    BasisIngredients                available;
-    std::shared_ptr<MultiVector>    real;
-    std::unique_ptr<StaticResponse> response;
-    std::unique_ptr<StaticModes>    static_modes;
-    std::unique_ptr<MultiVector>    disc_free, disc_sliding, pins_free, pins_sliding, snapshots, residuals;
+    std::map<BasisSource, double>                       seconds;
+    std::map<BasisSource, std::unique_ptr<MultiVector>> vectors;
+    std::unique_ptr<StaticResponse>                     response;
+    std::unique_ptr<StaticModes>                        static_modes;
+    BasisIngredients                                    available;
   };
 } // namespace Squeal

@@ -75,6 +75,9 @@ namespace Squeal
     std::vector<std::string>      tables; ///< files, in the order in which they were written
   };
 
+  /// Meshes the scene and answers the question of the run; a dry run only meshes.
+  void run_study(Run &run);
+
   /// One text from several parts; numbers with four digits.
   template <typename... Parts>
   std::string text(const Parts &...parts)
