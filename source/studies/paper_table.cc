@@ -106,24 +106,18 @@ namespace Squeal
       return table;
     }
 
-    /// The mode that a row asks for; nothing if the run has none.
-    std::optional<std::size_t> find(const Row                    &row,
-                                    const std::vector<ModeLabel> &labels,
-                                    const std::vector<double>    &frequencies,
-                                    const std::vector<double>    &growth_rates,
-                                    const Value                   paper_frequency)
+    /// The mode that a row asks for; null if the run has none.
+    const ModalQuantities *find(const Row &row, const Match match, const std::vector<ComparedMode> &modes, const Value paper_frequency)
     {
       // Modes that carry the label; where there are several, with or without the sign of a doublet
-      std::vector<std::size_t> candidates;
-      for (std::size_t i = 0; i < labels.size(); ++i)
-        if (row.match == Match::frequency || labels[i] == row.label ||
-            (row.match != Match::label && labels[i].shape() == row.label.shape()))
-          candidates.push_back(i);
+      std::vector<const ModalQuantities *> candidates;
+      for (const ComparedMode &mode : modes)
+        if (match == Match::frequency || mode.label == row.label || (match != Match::label && mode.label.shape() == row.label.shape()))
+          candidates.push_back(&mode.quantities);
       if (candidates.empty())
-        return {};
+        return nullptr;
 
-      const auto by_growth = [&](const std::size_t a, const std::size_t b) { return growth_rates[a] > growth_rates[b]; };
-      switch (row.match)
+      switch (match)
         {
           case Match::label:
           case Match::lowest:
@@ -133,23 +127,20 @@ namespace Squeal
           case Match::most_unstable:
           case Match::second_unstable:
             {
-              const std::size_t place = row.match == Match::most_unstable ? 0 : 1;
-              if (growth_rates.empty() || candidates.size() <= place)
-                return {};
-              std::stable_sort(candidates.begin(), candidates.end(), by_growth);
-              return candidates[place];
+              const std::size_t place = match == Match::most_unstable ? 0 : 1;
+              std::stable_sort(candidates.begin(), candidates.end(),
+                               [](const auto *a, const auto *b) { return a->growth_rate > b->growth_rate; });
+              return place < candidates.size() ? candidates[place] : nullptr;
             }
           case Match::frequency:
-            if (!paper_frequency)
-              return {};
             {
-              const auto distance = [&](const std::size_t mode) { return std::abs(frequencies[mode] / *paper_frequency - 1.); };
+              const auto distance = [&](const auto *mode) { return std::abs(mode->frequency / *paper_frequency - 1.); };
               const auto nearest  = *std::min_element(candidates.begin(), candidates.end(),
-                                                      [&](const std::size_t a, const std::size_t b) { return distance(a) < distance(b); });
-              return distance(nearest) < largest_distance ? std::make_optional(nearest) : std::nullopt;
+                                                      [&](const auto *a, const auto *b) { return distance(a) < distance(b); });
+              return distance(nearest) < largest_distance ? nearest : nullptr;
             }
         }
-      return {};
+      return nullptr;
     }
 
     // ---------------------------------------------------- what the paper looks at
@@ -241,39 +232,24 @@ namespace Squeal
 
   Table table_one(const TableOneResults &results, const RadialDissipation dissipation, Agreement &agreement)
   {
-    const bool          damped = dissipation != RadialDissipation::none;
-    std::vector<double> frequencies, growth_rates;
-    for (const auto &lambda : results.lambda)
-      {
-        const ModalQuantities mode = modal_quantities(lambda);
-        frequencies.push_back(mode.frequency);
-        growth_rates.push_back(mode.growth_rate);
-      }
-
+    const bool              damped = dissipation != RadialDissipation::none;
     std::vector<Comparison> comparisons;
     for (const Row &row : rows())
       {
-        Comparison comparison     = {to_string(row.label) + to_string(row.match),
-                                     {row.component},
-                                     {row.coupled},
-                                     {damped ? row.complex_damped : row.complex_undamped},
-                                     {damped ? row.divergence_damped : row.divergence_undamped}};
-        const auto find_frequency = [](const Row &match, Pair &pair, const auto &labels, const auto &values) {
-          if (const auto mode = pair.paper ? find(match, labels, values, {}, pair.paper) : std::nullopt)
-            pair.found = values[*mode];
+        const auto frequency = [&](const Value paper, const std::vector<ComparedMode> &modes, const Match match) {
+          const ModalQuantities *mode = paper ? find(row, match, modes, paper) : nullptr;
+          return Pair{paper, mode ? Value(mode->frequency) : none};
         };
         // Component modes are beyond doubt.
-        Row component_row = row;
-        if (row.match == Match::frequency)
-          component_row.match = Match::label;
-        find_frequency(component_row, comparison.component, results.component_labels, results.component_frequencies);
-        find_frequency(row, comparison.coupled, results.coupled_labels, results.coupled_frequencies);
-        if (const auto mode = find(row, results.complex_labels, frequencies, growth_rates, comparison.complex.paper))
-          {
-            comparison.complex.found    = frequencies[*mode];
-            comparison.divergence.found = 100. * modal_quantities(results.lambda[*mode]).divergence_rate;
-          }
-        comparisons.push_back(comparison);
+        const Match            component = row.match == Match::frequency ? Match::label : row.match;
+        const Value            paper     = damped ? row.complex_damped : row.complex_undamped;
+        const ModalQuantities *complex   = paper || row.match != Match::frequency ? find(row, row.match, results.complex, paper) : nullptr;
+        comparisons.push_back(
+          {to_string(row.label) + to_string(row.match),
+           frequency(row.component, results.component, component),
+           frequency(row.coupled, results.coupled, row.match),
+           {paper, complex ? Value(complex->frequency) : none},
+           {damped ? row.divergence_damped : row.divergence_undamped, complex ? Value(100. * complex->divergence_rate) : none}});
       }
     agreement.component = agreement_of(comparisons, &Comparison::component, agreement.n_component);
     agreement.coupled   = agreement_of(comparisons, &Comparison::coupled, agreement.n_coupled);

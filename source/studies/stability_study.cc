@@ -123,24 +123,19 @@ namespace Squeal
 
     TableOneResults beside_paper(const FrictionlessModes &frictionless, const FrictionModes &friction, const bool with_complex)
     {
-      TableOneResults results{{}, {}, frictionless.labels, {}, {}, {}};
-      if (with_complex)
-        {
-          results.complex_labels = friction.labels;
-          results.lambda         = friction.modes.lambda;
-        }
+      const auto      undamped = [](const double eigenvalue) { return modal_quantities({0., std::sqrt(eigenvalue)}); };
+      TableOneResults results;
       for (const ComponentModes *set : {&frictionless.disc, &frictionless.pins_sliding})
         {
           std::vector<ModeLabel> labels = set->labels;
           mark_doublets(labels);
           for (std::size_t j = 0; j < labels.size(); ++j)
-            {
-              results.component_labels.push_back(labels[j]);
-              results.component_frequencies.push_back(hertz(std::sqrt(set->eigenvalues[j])));
-            }
+            results.component.push_back({labels[j], undamped(set->eigenvalues[j])});
         }
-      for (const double eigenvalue : frictionless.real.eigenvalues)
-        results.coupled_frequencies.push_back(hertz(std::sqrt(eigenvalue)));
+      for (std::size_t j = 0; j < frictionless.labels.size(); ++j)
+        results.coupled.push_back({frictionless.labels[j], undamped(frictionless.real.eigenvalues[j])});
+      for (std::size_t j = 0; with_complex && j < friction.labels.size(); ++j)
+        results.complex.push_back({friction.labels[j], modal_quantities(friction.modes.lambda[j])});
       return results;
     }
 

@@ -1,26 +1,28 @@
 #pragma once
 
+#include <squeal/base/conventions.h>
 #include <squeal/bases/mode_label.h>
 #include <squeal/output/table.h>
 #include <squeal/parameters/parameters.h>
 
 #include <array>
-#include <complex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace Squeal
 {
-  /// Labelled frequencies and eigenvalues of a run, as they are set beside the paper's.
+  /// A mode of a run, as it is set beside the paper's.
+  struct ComparedMode
+  {
+    ModeLabel       label;
+    ModalQuantities quantities;
+  };
+
+  /// Modes of a run in the order of their frequencies: of the components alone, coupled without friction, and with friction.
   struct TableOneResults
   {
-    std::vector<ModeLabel>            component_labels;      ///< with the signs of doublets
-    std::vector<double>               component_frequencies; ///< [Hz]
-    std::vector<ModeLabel>            coupled_labels;
-    std::vector<double>               coupled_frequencies; ///< [Hz]
-    std::vector<ModeLabel>            complex_labels;
-    std::vector<std::complex<double>> lambda; ///< [rad/s]
+    std::vector<ComparedMode> component, coupled, complex;
   };
 
   /**
