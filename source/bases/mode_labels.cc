@@ -1,6 +1,8 @@
 #include <squeal/base/decision.h>
 #include <squeal/bases/mode_labels.h>
 
+#include <deal.II/base/tensor.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -268,105 +270,105 @@ namespace Squeal
     return labels;
   }
 
+  namespace
+  {
+    using Vector = dealii::Tensor<1, 3>;
+
+    Vector vector(const std::array<double, 3> &components)
+    {
+      return Vector({components[0], components[1], components[2]});
+    }
+
+    /// A pin with its axis, through the centre of its contact nodes along their mean normal.
+    struct Pin
+    {
+      Vector                    centre, axis;
+      double                    n_contact = 0.;
+      std::vector<const Node *> nodes;
+      std::vector<double>       weights; ///< masses of the nodes [kg]
+
+      Vector from_centre(const Node &node) const
+      {
+        return vector(node.position) - centre;
+      }
+
+      /// The part of a vector across the axis.
+      Vector across(const Vector &v) const
+      {
+        return v - (v * axis) * axis;
+      }
+    };
+
+    std::map<unsigned int, Pin> pins_of(const Model &model, const ContactInterface &interface, const std::vector<double> &nodal_masses)
+    {
+      std::map<unsigned int, Pin> pins;
+      for (const ContactNode &contact : interface)
+        {
+          Pin &pin = pins[contact.pin];
+          pin.n_contact += 1.;
+          pin.centre += vector(contact.position);
+          pin.axis += vector(contact.normal);
+        }
+      for (auto &[number, pin] : pins)
+        {
+          pin.centre /= pin.n_contact;
+          pin.axis /= pin.axis.norm();
+        }
+      for (std::size_t i = 0; i < model.nodes().size(); ++i)
+        if (const auto pin = pins.find(model.nodes()[i].component); pin != pins.end())
+          {
+            pin->second.nodes.push_back(&model.nodes()[i]);
+            pin->second.weights.push_back(nodal_masses[i]);
+          }
+      return pins;
+    }
+
+    /// Adds the energies of bending, torsion and stretching of each mode: of its projections on polynomials of the height.
+    void add_energies(const Pin &pin, const DenseMatrix &modes, std::vector<std::array<double, 3>> &energies)
+    {
+      constexpr int     n_height_functions = 4;
+      const std::size_t n                  = pin.nodes.size();
+      double            height             = 0.;
+      for (const Node *node : pin.nodes)
+        height = std::max(height, std::abs(pin.from_centre(*node) * pin.axis));
+      DenseMatrix powers(n, n_height_functions), radius_powers(n, n_height_functions);
+      for (std::size_t i = 0; i < n; ++i)
+        for (int p = 0; p < n_height_functions; ++p)
+          {
+            const Vector d      = pin.from_centre(*pin.nodes[i]);
+            powers(i, p)        = std::pow(d * pin.axis / height, p);
+            radius_powers(i, p) = pin.across(d).norm() * powers(i, p);
+          }
+      const Projection translation(powers, pin.weights), torsion(radius_powers, pin.weights);
+
+      std::vector<double> u_axial(n), u_turning(n), u_across[3] = {u_axial, u_axial, u_axial};
+      for (int m = 0; m < modes.n_columns(); ++m)
+        {
+          for (std::size_t i = 0; i < n; ++i)
+            {
+              const Vector u = vector(displacement(*pin.nodes[i], modes.column(m))), d = pin.across(pin.from_centre(*pin.nodes[i]));
+              u_axial[i]   = u * pin.axis;
+              u_turning[i] = d.norm() > 0. ? dealii::cross_product_3d(d, u) * pin.axis / d.norm() : 0.;
+              for (unsigned int k = 0; k < 3; ++k)
+                u_across[k][i] = pin.across(u)[k];
+            }
+          for (const auto &component : u_across)
+            energies[m][0] += translation.energy(component);
+          energies[m][1] += torsion.energy(u_turning);
+          energies[m][2] += translation.energy(u_axial);
+        }
+    }
+  } // namespace
+
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,
                                     const std::vector<double> &nodal_masses,
                                     const DenseMatrix         &modes)
   {
-    // Axis of each pin: centre and mean normal of its contact nodes
-    struct Pin
-    {
-      std::array<double, 3>     centre{}, axis{};
-      std::vector<const Node *> nodes;
-      std::vector<double>       weights, heights;
-      double                    n_contact = 0.;
-    };
-    std::map<unsigned int, Pin> pins;
-    for (const ContactNode &contact : interface)
-      {
-        Pin &pin = pins[contact.pin];
-        pin.n_contact += 1.;
-        for (unsigned int k = 0; k < 3; ++k)
-          {
-            pin.centre[k] += contact.position[k];
-            pin.axis[k] += contact.normal[k];
-          }
-      }
-    for (auto &[number, pin] : pins)
-      {
-        const double norm = std::hypot(pin.axis[0], pin.axis[1], pin.axis[2]);
-        for (unsigned int k = 0; k < 3; ++k)
-          {
-            pin.centre[k] /= pin.n_contact;
-            pin.axis[k] /= norm;
-          }
-      }
-    for (std::size_t i = 0; i < model.nodes().size(); ++i)
-      if (const auto it = pins.find(model.nodes()[i].component); it != pins.end())
-        {
-          it->second.nodes.push_back(&model.nodes()[i]);
-          it->second.weights.push_back(nodal_masses[i]);
-        }
-
-    // Energies of bending, torsion and stretching: projections on polynomials of the height
-    constexpr int                      n_height_functions = 4;
-    std::vector<unsigned>              family(modes.n_columns());
+    const auto                         pins = pins_of(model, interface, nodal_masses);
     std::vector<std::array<double, 3>> energies(modes.n_columns(), std::array<double, 3>{});
     for (const auto &[number, pin] : pins)
-      {
-        const std::size_t n = pin.nodes.size();
-        // e_1, e_2 span the cross-section
-        const unsigned int    k = std::abs(pin.axis[0]) < 0.9 ? 0 : 1;
-        std::array<double, 3> e_1{}, e_2;
-        for (unsigned int j = 0; j < 3; ++j)
-          e_1[j] = (j == k) - pin.axis[k] * pin.axis[j];
-        const double norm = std::hypot(e_1[0], e_1[1], e_1[2]);
-        for (double &value : e_1)
-          value /= norm;
-        for (unsigned int j = 0; j < 3; ++j)
-          e_2[j] = pin.axis[(j + 1) % 3] * e_1[(j + 2) % 3] - pin.axis[(j + 2) % 3] * e_1[(j + 1) % 3];
-
-        DenseMatrix         powers(n, n_height_functions), radius_powers(n, n_height_functions);
-        std::vector<double> x(n), y(n);
-        double              height = 0.;
-        for (unsigned int pass = 0; pass < 2; ++pass)
-          for (std::size_t i = 0; i < n; ++i)
-            {
-              double h = 0.;
-              x[i] = y[i] = 0.;
-              for (unsigned int j = 0; j < 3; ++j)
-                {
-                  const double d = pin.nodes[i]->position[j] - pin.centre[j];
-                  h += d * pin.axis[j];
-                  x[i] += d * e_1[j];
-                  y[i] += d * e_2[j];
-                }
-              height = std::max(height, std::abs(h));
-              for (int p = 0; p < n_height_functions; ++p)
-                {
-                  powers(i, p)        = std::pow(h / height, p);
-                  radius_powers(i, p) = std::hypot(x[i], y[i]) * powers(i, p);
-                }
-            }
-        const Projection translation(powers, pin.weights), torsion(radius_powers, pin.weights);
-
-        std::vector<double> u_1(n), u_2(n), u_axial(n), u_phi(n);
-        for (int m = 0; m < modes.n_columns(); ++m)
-          {
-            for (std::size_t i = 0; i < n; ++i)
-              {
-                const auto u   = displacement(*pin.nodes[i], modes.column(m));
-                u_1[i]         = u[0] * e_1[0] + u[1] * e_1[1] + u[2] * e_1[2];
-                u_2[i]         = u[0] * e_2[0] + u[1] * e_2[1] + u[2] * e_2[2];
-                u_axial[i]     = u[0] * pin.axis[0] + u[1] * pin.axis[1] + u[2] * pin.axis[2];
-                const double r = std::hypot(x[i], y[i]);
-                u_phi[i]       = r > 0. ? (x[i] * u_2[i] - y[i] * u_1[i]) / r : 0.;
-              }
-            energies[m][0] += translation.energy(u_1) + translation.energy(u_2);
-            energies[m][1] += torsion.energy(u_phi);
-            energies[m][2] += translation.energy(u_axial);
-          }
-      }
+      add_energies(pin, modes, energies);
 
     // Numbers within each family, by the number of modes that every pin has of it
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::flexural, ModeFamily::torsional, ModeFamily::longitudinal}};
