@@ -1,4 +1,3 @@
-#include <squeal/base/exceptions.h>
 #include <squeal/bases/basis_recipes.h>
 
 #include <algorithm>
@@ -11,160 +10,73 @@ namespace Squeal
     using Counts = BasisCounts;
     using Source = BasisSource;
 
-    /// @p pointer, or an error that names what it should point to.
-    template <typename Type>
-    const Type &required(const Type *pointer, const std::string &basis, const std::string &what, const std::string &change)
+    using Compute = MultiVector (*)(const In &);
+
+    MultiVector response(const In &in, const Side side)
     {
-      if (pointer == nullptr)
-        throw SolverError("the basis needs " + what + ", which is missing or empty", "reduced basis `" + basis + "`", change);
-      return *pointer;
+      return friction_response(*in.coupled, *in.inverse, *in.real, side);
     }
 
-    const MultiVector &modes(const MultiVector *set, const std::string &basis, const char *symbol)
+    // ----------------------------------------------------------- sets at hand
+
+    const BasisPart disc_free    = {"Phi_f^D", &Counts::disc_free, {Source::disc_free}, true, &In::disc_free};
+    const BasisPart disc_sliding = {"Phi_s^D", &Counts::disc_sliding, {Source::disc_sliding}, true, &In::disc_sliding};
+    const BasisPart pins_free    = {"Phi_f^P", &Counts::pins_free, {Source::pins_free}, true, &In::pins_free};
+    const BasisPart pins_sliding = {"Phi_s^P", &Counts::pins_sliding, {Source::pins_sliding}, true, &In::pins_sliding};
+
+    BasisPart coupled_set(const char *symbol, int Counts::*count, const MultiVector *In::*set, std::vector<Source> rests_on)
     {
-      return required(set, basis, symbol, "compute these modes, up to a higher frequency if none was found");
+      rests_on.push_back(Source::coupled_factor);
+      return {symbol, count, rests_on, false, set};
     }
 
-    const MultiVector &real_modes(const In &in, const std::string &basis)
+    const BasisPart real      = coupled_set("Phi_R", &Counts::real, &In::real, {Source::real});
+    const BasisPart snapshots = coupled_set("complex modes at several mu", &Counts::snapshots, &In::snapshots, {Source::snapshots});
+    const BasisPart residuals =
+      coupled_set("Phi_R and residuals K_c^-1 R_F, K_c^-1 L_F", &Counts::residuals, &In::residuals, {Source::real, Source::residuals});
+
+    // ------------------------------------- one for each contact node, uncoupled
+
+    BasisPart at_contact(const char *symbol, const std::vector<Source> &rests_on, const Compute compute)
     {
-      return modes(in.real, basis, "Phi_R");
+      return {symbol, &Counts::contact, rests_on, true, nullptr, compute};
     }
 
-    const StaticModes &statics(const In &in, const std::string &basis)
+    const std::vector<Source> normal     = {Source::uncoupled_factor, Source::normal_attachment};
+    const std::vector<Source> tangential = {Source::uncoupled_factor, Source::tangential_attachment};
+    const std::vector<Source> both       = {Source::uncoupled_factor, Source::normal_attachment, Source::tangential_attachment};
+
+    const BasisPart normal_attachment =
+      at_contact("(Psi_an^D - Psi_an^P)", normal, [](const In &in) { return in.static_modes->normal_attachment(); });
+    const BasisPart normal_attachment_disc =
+      at_contact("Psi_an^D", normal, [](const In &in) { return in.static_modes->normal_attachment(Component::disc); });
+    const BasisPart tangential_attachment =
+      at_contact("(Psi_at^D - Psi_at^P)", tangential, [](const In &in) { return in.static_modes->tangential_attachment(); });
+    const BasisPart rubbing_attachment = at_contact("(Psi_amu^D - Psi_amu^P)", both, [](const In &in) {
+      return in.static_modes->rubbing_attachment(in.friction_coefficient);
+    });
+    const BasisPart constraint_disc =
+      at_contact("Psi_cn^D", {Source::constraint_disc}, [](const In &in) { return in.static_modes->constraint(Component::disc); });
+    const BasisPart constraint_pins =
+      at_contact("Psi_cn^P", {Source::constraint_pins}, [](const In &in) { return in.static_modes->constraint(Component::pins); });
+
+    // ------------------------------------------- responses of the coupled system
+
+    BasisPart coupled_response(const char *symbol, int Counts::*count, const Compute compute)
     {
-      return required(in.static_modes, basis, "static modes of the bodies", "pass a StaticModes");
+      return {symbol, count, {Source::coupled_factor}, false, nullptr, compute};
     }
 
-    const CoupledSystem &coupled(const In &in, const std::string &basis)
-    {
-      return required(in.coupled, basis, "the coupled system", "pass it");
-    }
-
-    const UpdatedInverse &inverse(const In &in, const std::string &basis)
-    {
-      return required(in.inverse, basis, "the inverse of the coupled stiffness", "pass an UpdatedInverse");
-    }
-
-    // --------------------------------------------------------- uncoupled bodies
-
-    const BasisPart disc_free = {
-      "Phi_f^D",
-      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_free, basis, "Phi_f^D"); },
-      &Counts::disc_free,
-      {Source::disc_free},
-      true};
-
-    const BasisPart disc_sliding = {
-      "Phi_s^D",
-      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.disc_sliding, basis, "Phi_s^D"); },
-      &Counts::disc_sliding,
-      {Source::disc_sliding},
-      true};
-
-    const BasisPart pins_free = {
-      "Phi_f^P",
-      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_free, basis, "Phi_f^P"); },
-      &Counts::pins_free,
-      {Source::pins_free},
-      true};
-
-    const BasisPart pins_sliding = {
-      "Phi_s^P",
-      [](const In &in, const std::string &basis) -> MultiVector { return modes(in.pins_sliding, basis, "Phi_s^P"); },
-      &Counts::pins_sliding,
-      {Source::pins_sliding},
-      true};
-
-    const BasisPart normal_attachment = {"(Psi_an^D - Psi_an^P)",
-                                         [](const In &in, const std::string &basis) { return statics(in, basis).normal_attachment(); },
-                                         &Counts::contact,
-                                         {Source::uncoupled_factor, Source::normal_attachment},
-                                         true};
-
-    const BasisPart normal_attachment_disc = {
-      "Psi_an^D",
-      [](const In &in, const std::string &basis) { return statics(in, basis).normal_attachment(Component::disc); },
-      &Counts::contact,
-      {Source::uncoupled_factor, Source::normal_attachment},
-      true};
-
-    const BasisPart tangential_attachment = {
-      "(Psi_at^D - Psi_at^P)",
-      [](const In &in, const std::string &basis) { return statics(in, basis).tangential_attachment(); },
-      &Counts::contact,
-      {Source::uncoupled_factor, Source::tangential_attachment},
-      true};
-
-    const BasisPart rubbing_attachment = {
-      "(Psi_amu^D - Psi_amu^P)",
-      [](const In &in, const std::string &basis) { return statics(in, basis).rubbing_attachment(in.friction_coefficient); },
-      &Counts::contact,
-      {Source::uncoupled_factor, Source::normal_attachment, Source::tangential_attachment},
-      true};
-
-    const BasisPart constraint_disc = {
-      "Psi_cn^D",
-      [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::disc); },
-      &Counts::contact,
-      {Source::constraint_disc},
-      true};
-
-    const BasisPart constraint_pins = {
-      "Psi_cn^P",
-      [](const In &in, const std::string &basis) { return statics(in, basis).constraint(Component::pins); },
-      &Counts::contact,
-      {Source::constraint_pins},
-      true};
-
-    // ----------------------------------------------------------- coupled system
-
-    const BasisPart real = {"Phi_R",
-                            [](const In &in, const std::string &basis) -> MultiVector { return real_modes(in, basis); },
-                            &Counts::real,
-                            {Source::coupled_factor, Source::real}};
-
-    const BasisPart coupled_tangential_attachment = {
-      "(Psi_cat^D - Psi_cat^P)",
-      [](const In &in, const std::string &basis) -> MultiVector { return inverse(in, basis).attachment_modes(); },
-      &Counts::contact,
-      {Source::coupled_factor}};
-
-    const BasisPart friction_right = {"Psi_Rmu",
-                                      [](const In &in, const std::string &basis) {
-                                        return friction_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis),
-                                                                 Side::right);
-                                      },
-                                      &Counts::real,
-                                      {}};
-
-    const BasisPart friction_left = {"K_c^-1 V_K^T A^T Phi_R",
-                                     [](const In &in, const std::string &basis) {
-                                       return friction_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis), Side::left);
-                                     },
-                                     &Counts::real,
-                                     {}};
-
-    const BasisPart damping = {"K_c^-1 C_c Phi_R",
-                               [](const In &in, const std::string &basis) {
-                                 return damping_response(coupled(in, basis), inverse(in, basis), real_modes(in, basis),
-                                                         in.friction_coefficient);
-                               },
-                               &Counts::real,
-                               {}};
-
-    const BasisPart snapshots = {"complex modes at several mu",
-                                 [](const In &in, const std::string &basis) -> MultiVector {
-                                   return required(in.snapshots, basis, "complex modes", "compute them at some friction coefficients");
-                                 },
-                                 &Counts::snapshots,
-                                 {Source::coupled_factor, Source::snapshots}};
-
-    const BasisPart residuals = {"Phi_R and residuals K_c^-1 R_F, K_c^-1 L_F",
-                                 [](const In &in, const std::string &basis) -> MultiVector {
-                                   return required(in.residuals, basis, "vectors grown by residuals", "grow them first");
-                                 },
-                                 &Counts::residuals,
-                                 {Source::coupled_factor, Source::real, Source::residuals}};
+    const BasisPart coupled_tangential_attachment =
+      coupled_response("(Psi_cat^D - Psi_cat^P)", &Counts::contact, [](const In &in) -> MultiVector {
+        return in.inverse->attachment_modes();
+      });
+    const BasisPart friction_right = coupled_response("Psi_Rmu", &Counts::real, [](const In &in) { return response(in, Side::right); });
+    const BasisPart friction_left =
+      coupled_response("K_c^-1 V_K^T A^T Phi_R", &Counts::real, [](const In &in) { return response(in, Side::left); });
+    const BasisPart damping = coupled_response("K_c^-1 C_c Phi_R", &Counts::real, [](const In &in) {
+      return damping_response(*in.coupled, *in.inverse, *in.real, in.friction_coefficient);
+    });
   } // namespace
 
   // -------------------------------------------------------------------- recipes

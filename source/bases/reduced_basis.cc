@@ -25,11 +25,14 @@ namespace Squeal
       return std::string("reduced basis `") + recipe.name + "`";
     }
 
+    /// @p pointer, or an error that names what it should point to.
     template <typename Type>
     const Type &required(const Type *pointer, const BasisRecipe &recipe, const std::string &what)
     {
       if (pointer == nullptr)
-        throw SolverError("the basis needs " + what + ", which is missing or empty", where(recipe), "pass it");
+        throw SolverError("the basis needs " + what + ", which is missing or empty", where(recipe),
+                          "compute it beforehand: modes up to a higher frequency if none was found; where residuals make the vectors, "
+                          "grow them first");
       return *pointer;
     }
 
@@ -48,7 +51,9 @@ namespace Squeal
       std::vector<MultiVector> sets;
       for (const BasisPart *part : recipe.parts)
         {
-          sets.push_back(part->vectors(in, recipe.name));
+          if (part->compute && !part->is_uncoupled)
+            required(in.inverse, recipe, "an UpdatedInverse of the coupled stiffness");
+          sets.push_back(part->set ? required(in.*(part->set), recipe, part->symbol) : part->compute(in));
           counts.*(part->count) = sets.back().NumVectors();
           if (part->count != &BasisCounts::disc_free)
             continue;

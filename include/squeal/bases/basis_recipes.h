@@ -79,19 +79,16 @@ namespace Squeal
     residuals
   };
 
-  /// A set of vectors that bases are made of.
+  /// A set of vectors that bases are made of: one at hand, or one to be computed.
   struct BasisPart
   {
     const char *symbol;
+    int BasisCounts::       *count;                ///< how many they are
+    std::vector<BasisSource> rests_on;             ///< what is computed beforehand
+    bool                     is_uncoupled = false; ///< whether the vectors are of the uncoupled bodies
 
-    /// The vectors. Throws SolverError naming @p basis if an ingredient is missing.
-    MultiVector (*vectors)(const BasisIngredients &ingredients, const std::string &basis);
-
-    int BasisCounts::*count; ///< how many they are
-
-    std::vector<BasisSource> rests_on; ///< what is computed beforehand
-
-    bool is_uncoupled = false; ///< whether the vectors are of the uncoupled bodies
+    const MultiVector *BasisIngredients::*set                   = nullptr;
+    MultiVector (*compute)(const BasisIngredients &ingredients) = nullptr;
   };
 
   /// A reduced basis: what it is made of, and for which problems.
