@@ -187,17 +187,17 @@ namespace Squeal
       Pair        component, coupled, complex, divergence;
     };
 
-    /// Root mean square of the differences of frequencies [-]; counts them.
-    double agreement_of(const std::vector<Comparison> &rows, Pair Comparison::*frequency, unsigned int &n)
+    Agreement agreement_of(const std::vector<Comparison> &rows, Pair Comparison::*frequency)
     {
-      double sum = 0.;
+      Agreement agreement;
       for (const Comparison &row : rows)
         if (const Value difference = (row.*frequency).difference())
           {
-            sum += *difference * *difference / 1e4;
-            ++n;
+            agreement.difference += *difference * *difference / 1e4;
+            ++agreement.n;
           }
-      return n > 0 ? std::sqrt(sum / n) : 0.;
+      agreement.difference = std::sqrt(agreement.difference / std::max(agreement.n, 1u));
+      return agreement;
     }
   } // namespace
 
@@ -230,7 +230,7 @@ namespace Squeal
     return {};
   }
 
-  Table table_one(const TableOneResults &results, const RadialDissipation dissipation, Agreement &agreement)
+  TableOne table_one(const TableOneResults &results, const RadialDissipation dissipation)
   {
     const bool              damped = dissipation != RadialDissipation::none;
     std::vector<Comparison> comparisons;
@@ -251,21 +251,18 @@ namespace Squeal
            {paper, complex ? Value(complex->frequency) : none},
            {damped ? row.divergence_damped : row.divergence_undamped, complex ? Value(100. * complex->divergence_rate) : none}});
       }
-    agreement.component = agreement_of(comparisons, &Comparison::component, agreement.n_component);
-    agreement.coupled   = agreement_of(comparisons, &Comparison::coupled, agreement.n_coupled);
-
-    using C = Comparison;
-    return Table(Columns<C>{{"label", "", &C::name},
-                            {"component paper", "Hz", [](const C &c) { return c.component.paper; }, 0},
-                            {"component", "Hz", [](const C &c) { return c.component.found; }, 1},
-                            {"difference", "%", [](const C &c) { return c.component.difference(); }, 2},
-                            {"coupled paper", "Hz", [](const C &c) { return c.coupled.paper; }, 0},
-                            {"coupled", "Hz", [](const C &c) { return c.coupled.found; }, 1},
-                            {"difference", "%", [](const C &c) { return c.coupled.difference(); }, 2},
-                            {"complex paper", "Hz", [](const C &c) { return c.complex.paper; }, 0},
-                            {"complex", "Hz", [](const C &c) { return c.complex.found; }, 1},
-                            {"divergence paper", "%", [](const C &c) { return c.divergence.paper; }, 3},
-                            {"divergence", "%", [](const C &c) { return c.divergence.found; }, 3}},
-                 comparisons);
+    using C                  = Comparison;
+    const Columns<C> columns = {{"label", "", &C::name},
+                                {"component paper", "Hz", [](const C &c) { return c.component.paper; }, 0},
+                                {"component", "Hz", [](const C &c) { return c.component.found; }, 1},
+                                {"difference", "%", [](const C &c) { return c.component.difference(); }, 2},
+                                {"coupled paper", "Hz", [](const C &c) { return c.coupled.paper; }, 0},
+                                {"coupled", "Hz", [](const C &c) { return c.coupled.found; }, 1},
+                                {"difference", "%", [](const C &c) { return c.coupled.difference(); }, 2},
+                                {"complex paper", "Hz", [](const C &c) { return c.complex.paper; }, 0},
+                                {"complex", "Hz", [](const C &c) { return c.complex.found; }, 1},
+                                {"divergence paper", "%", [](const C &c) { return c.divergence.paper; }, 3},
+                                {"divergence", "%", [](const C &c) { return c.divergence.found; }, 3}};
+    return {Table(columns, comparisons), agreement_of(comparisons, &C::component), agreement_of(comparisons, &C::coupled)};
   }
 } // namespace Squeal

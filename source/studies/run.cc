@@ -1,29 +1,14 @@
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/studies/run.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <cmath>
 #include <fstream>
 #include <ostream>
 
 namespace Squeal
 {
-  namespace
-  {
-    int rank(MPI_Comm communicator)
-    {
-      int result;
-      MPI_Comm_rank(communicator, &result);
-      return result;
-    }
-
-    int n_processes(MPI_Comm communicator)
-    {
-      int result;
-      MPI_Comm_size(communicator, &result);
-      return result;
-    }
-  } // namespace
-
   Run::Run(const Parameters &parameters,
            const RunOptions &options,
            MPI_Comm          communicator,
@@ -35,8 +20,14 @@ namespace Squeal
     , progress(progress)
     , screen(screen)
     , is_dry(options.dry_run)
-    , is_root(rank(communicator) == 0)
-    , record{options.command, n_processes(communicator), set_blas_threads(parameters.solvers.blas_threads), {}, {}, {}, {},
+    , is_root(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    , record{options.command,
+             static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator)),
+             set_blas_threads(parameters.solvers.blas_threads),
+             {},
+             {},
+             {},
+             {},
              options.revision}
   {
     if (!is_dry)

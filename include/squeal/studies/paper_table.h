@@ -34,11 +34,18 @@ namespace Squeal
   /// Whether friction, load and speed are those of the complex modes in Table 1, and nothing but the contact damps them.
   bool is_paper_operation(const Parameters &parameters);
 
-  /// Root mean square of the relative differences of frequencies [-], and of how many.
+  /// How far frequencies agree with the paper's.
   struct Agreement
   {
-    double       component = 0., coupled = 0.;
-    unsigned int n_component = 0, n_coupled = 0;
+    double       difference = 0.; ///< root mean square of the relative differences [-]
+    unsigned int n          = 0;  ///< of so many
+  };
+
+  /// The paper's Table 1 beside a run.
+  struct TableOne
+  {
+    Table     table;
+    Agreement component, coupled;
   };
 
   /// Divergence rate in Table 1 of a mode with radial dissipation [%]; nothing where none is printed for the label.
@@ -60,5 +67,5 @@ namespace Squeal
    * modes in @p results they stay empty. Its
    * component frequency of F1, printed 3353 Hz, is read 3553 Hz.
    */
-  Table table_one(const TableOneResults &results, RadialDissipation dissipation, Agreement &agreement);
+  TableOne table_one(const TableOneResults &results, RadialDissipation dissipation);
 } // namespace Squeal
