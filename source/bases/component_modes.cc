@@ -76,7 +76,7 @@ namespace Squeal
     if (imaginary_part)
       imaginary_part->Dot(M_im, norm_im.data());
 
-    std::vector<std::map<decltype(ModeLabel().shape()), double>> shares(n_modes);
+    std::vector<std::map<ModeShape, double>> shares(n_modes);
     for (const ComponentModes *reference : references)
       if (reference->vectors)
         {

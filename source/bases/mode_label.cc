@@ -4,7 +4,7 @@
 
 namespace Squeal
 {
-  std::tuple<ModeFamily, int, int, int> ModeLabel::shape() const
+  ModeShape ModeLabel::shape() const
   {
     return {family, nodal_circles, nodal_diameters, rank};
   }
@@ -50,7 +50,7 @@ namespace Squeal
 
   void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates)
   {
-    std::map<std::tuple<ModeFamily, int, int, int>, std::vector<std::size_t>> places;
+    std::map<ModeShape, std::vector<std::size_t>> places;
     for (std::size_t i = 0; i < labels.size(); ++i)
       if (labels[i].family != ModeFamily::unnamed)
         places[labels[i].shape()].push_back(i);

@@ -11,15 +11,13 @@ namespace Squeal
 {
   namespace
   {
-    using Shape = decltype(ModeLabel().shape());
-
     /// A reading of the radial dissipation with the modes that it gives.
     struct Reading
     {
-      std::string                          name;
-      ContactState                         state;
-      RadialDissipation                    dissipation;
-      std::map<Shape, std::vector<double>> rates; ///< divergence rates [%] of the modes of each shape, by frequency
+      std::string                              name;
+      ContactState                             state;
+      RadialDissipation                        dissipation;
+      std::map<ModeShape, std::vector<double>> rates; ///< divergence rates [%] of the modes of each shape, by frequency
     };
 
     std::vector<Reading> readings()

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 namespace Squeal
 {
@@ -101,46 +100,5 @@ namespace Squeal
     return Table(Columns<double>{{"growth rate", "1/s", [](const double value) { return value; }, 4},
                                  {"kind", "", [](const double value) { return value > 0. ? "static divergence" : "decay"; }}},
                  values);
-  }
-
-  Table pin_table(const std::vector<PinContact> &pins)
-  {
-    return Table(Columns<PinContact>{{"pin", "", &PinContact::pin},
-                                     {"side", "-", &PinContact::side},
-                                     {"load", "N", &PinContact::load, 3},
-                                     {"open nodes", "-", &PinContact::n_open},
-                                     {"nodes", "-", &PinContact::n_nodes},
-                                     {"pressure offset along t", "m", &PinContact::sliding_offset, 2, true},
-                                     {"pressure offset outwards", "m", &PinContact::radial_offset, 2, true},
-                                     {"largest pressure", "Pa", &PinContact::largest_pressure, 2, true},
-                                     {"w_0", "m/s", &PinContact::sliding_speed, 4},
-                                     {"c_b", "N s/m", &PinContact::radial_damping, 3},
-                                     {"c_t", "N s/m", &PinContact::sliding_damping, 3},
-                                     {"travel of backplate", "m", &PinContact::approach, 4, true},
-                                     {"largest gap", "m", &PinContact::largest_gap, 2, true}},
-                 pins);
-  }
-
-  Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
-  {
-    std::vector<std::pair<std::string, Cell>> rows;
-    std::map<int, double>                     loads;
-    for (const PinContact &pin : pins)
-      loads[pin.side] += pin.load;
-    for (const auto &[side, load] : loads)
-      rows.emplace_back(std::string("normal load of the ") + (side > 0 ? "upper" : "lower") + " side [N]", load);
-    const SlidingCertificate &c = state.certificate;
-    rows.emplace_back("residual of the full system [-]", c.residual);
-    rows.emplace_back("error of the prescribed loads [-]", c.load);
-    rows.emplace_back("largest tension over load [-]", c.tension);
-    rows.emplace_back("largest overlap over travel [-]", c.overlap);
-    rows.emplace_back("complementarity |r_n g| over load and travel [-]", c.complementarity);
-    rows.emplace_back("force balance with the supports [-]", c.force_balance);
-    rows.emplace_back("moment balance with the supports [-]", c.moment_balance);
-    rows.emplace_back("changes of the contact set [-]", state.n_steps);
-    if (std::isfinite(state.uniqueness.unique_below))
-      rows.emplace_back("friction coefficient below which the state is unique [-]", state.uniqueness.unique_below);
-    using Row = std::pair<std::string, Cell>;
-    return Table(Columns<Row>{{"quantity", "", &Row::first}, {"value", "", &Row::second, 3, true}}, rows);
   }
 } // namespace Squeal

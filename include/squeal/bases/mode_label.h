@@ -42,6 +42,9 @@ namespace Squeal
     plus ///< the one that grows more, or has the higher frequency
   };
 
+  /// Family, nodal circles, nodal diameters and rank: what the two modes of a doublet and the modes of pins that are alike have in common.
+  using ModeShape = std::tuple<ModeFamily, int, int, int>;
+
   /// Identity of a mode: the component mode that it is, or resembles most.
   struct ModeLabel
   {
@@ -52,8 +55,7 @@ namespace Squeal
     DoubletSign sign            = DoubletSign::none;
     double      participation   = 0.; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of this shape [-]
 
-    /// What the two modes of a doublet and the modes of pins that are alike have in common.
-    std::tuple<ModeFamily, int, int, int> shape() const;
+    ModeShape shape() const;
 
     bool is_of_pins() const;
   };

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <squeal/bases/component_modes.h>
 #include <squeal/output/table.h>
-#include <squeal/sliding/steady_sliding.h>
-#include <squeal/stability/complex_modes.h>
 #include <squeal/studies/friction_modes.h>
-#include <squeal/studies/frictionless_modes.h>
 
-#include <string>
 #include <vector>
 
 namespace Squeal
@@ -32,10 +27,4 @@ namespace Squeal
 
   /// Real eigenvalues, fastest growth first: growth rate, kind.
   Table real_eigenvalue_table(std::vector<double> values);
-
-  /// The state of contact, one row for each pin.
-  Table pin_table(const std::vector<PinContact> &pins);
-
-  /// How well a steady sliding state fulfils its equations, and what is known of its uniqueness.
-  Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins);
 } // namespace Squeal
