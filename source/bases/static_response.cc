@@ -7,21 +7,11 @@ namespace Squeal
                                  const SecondOrderSystem   &system,
                                  const double               largest_circular_frequency,
                                  const FactorizationLibrary library)
-    : solver(system.stiffness,
-             system.mass,
-             free_disc_motions(model, system, largest_circular_frequency),
-             largest_circular_frequency,
-             library,
-             "stiffness of disc and pins without contact")
+    : InertiaRelief(system.stiffness,
+                    system.mass,
+                    free_disc_motions(model, system, largest_circular_frequency),
+                    largest_circular_frequency,
+                    library,
+                    "stiffness of disc and pins without contact")
   {}
-
-  MultiVector StaticResponse::solve(const MultiVector &forces) const
-  {
-    return solver.solve(forces);
-  }
-
-  const MultiVector *StaticResponse::rigid_body_modes() const
-  {
-    return solver.rigid_body_modes();
-  }
 } // namespace Squeal

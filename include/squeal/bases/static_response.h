@@ -15,7 +15,7 @@ namespace Squeal
    * Where the mount leaves the disc some rigid-body motions, the forces are
    * relieved by inertia (InertiaRelief).
    */
-  class StaticResponse
+  class StaticResponse : public InertiaRelief
   {
   public:
     /**
@@ -25,14 +25,5 @@ namespace Squeal
      * Throws SolverError if K (or K + s² M) is not positive definite.
      */
     StaticResponse(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency, FactorizationLibrary library);
-
-    /// u for every column of @p forces.
-    MultiVector solve(const MultiVector &forces) const;
-
-    /// N, n × k, M-orthonormal; null if the mounts hold the disc.
-    const MultiVector *rigid_body_modes() const;
-
-  private:
-    InertiaRelief solver;
   };
 } // namespace Squeal
