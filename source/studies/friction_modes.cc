@@ -14,9 +14,6 @@ namespace Squeal
   {
     const Decision growing("divergence rate of a complex mode / its uncertainty", 1.);
 
-    /// Divergence rates that the least structural damping outweighs [-].
-    constexpr double weak_divergence = 1e-4;
-
     /// Modes with R > ω grow by e^(2π) and more within a period: rather a slow oscillation about a divergence than a sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 

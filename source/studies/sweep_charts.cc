@@ -168,9 +168,6 @@ namespace Squeal
 
   namespace
   {
-    /// Divergence rates that the least structural damping outweighs [-].
-    constexpr double weak_divergence = 1e-4;
-
     /// A growing mode of a chart.
     struct Growing
     {

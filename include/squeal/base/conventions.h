@@ -7,6 +7,9 @@ namespace Squeal
   /// Divergence rates |ξ| below this are rounding errors of a neutral mode [-].
   constexpr double negligible_divergence = 1e-8;
 
+  /// Divergence rates that the least structural damping outweighs [-].
+  constexpr double weak_divergence = 1e-4;
+
   /**
    * How an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K is reported. This is
    * the only place where rad/s become Hz and rates become per cent.
