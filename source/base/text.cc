@@ -23,6 +23,14 @@ namespace Squeal
     return {text.data(), end};
   }
 
+  std::string exact_text(const std::vector<double> &values)
+  {
+    std::string text;
+    for (const double value : values)
+      text += (text.empty() ? "" : ", ") + exact_text(value);
+    return text;
+  }
+
   std::string decimal_text(const double value, const int n_digits)
   {
     const int          n_before = value == 0. ? 1 : static_cast<int>(std::floor(std::log10(std::abs(value)))) + 1;

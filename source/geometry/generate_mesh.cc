@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
@@ -32,35 +33,13 @@ namespace Squeal
     /// A .geo that sets the parameters and includes the geometry, which keeps values that exist.
     std::string driver(const std::string &geometry, const GeometryParameters &parameters)
     {
-      std::ostringstream file;
-      file.precision(std::numeric_limits<double>::max_digits10);
-      const auto scalar = [&](const char *name, const double value) { file << name << " = " << value << ";\n"; };
-      const auto list   = [&](const char *name, const std::vector<double> &values) {
-        file << name << "() = {";
-        for (std::size_t i = 0; i < values.size(); ++i)
-          file << (i > 0 ? ", " : "") << values[i];
-        file << "};\n";
-      };
-
-      scalar("disc_inner_radius", parameters.disc_inner_radius);
-      scalar("disc_outer_radius", parameters.disc_outer_radius);
-      scalar("disc_thickness", parameters.disc_thickness);
-      scalar("pin_diameter", parameters.pin_diameter);
-      scalar("pin_height", parameters.pin_height);
-      list("top_pin_radii", parameters.top.radii);
-      list("top_pin_angles", parameters.top.angles);
-      list("bottom_pin_radii", parameters.bottom.radii);
-      list("bottom_pin_angles", parameters.bottom.angles);
-      scalar("nodes_per_pin_face", parameters.nodes_per_pin_face);
-      scalar("pin_layers", parameters.pin_layers);
-      scalar("disc_layers", parameters.disc_layers);
-      scalar("element_size", parameters.element_size);
-      scalar("pairing_tolerance", parameters.pairing_tolerance);
+      std::string script;
+      for (const auto &[name, value] : parameters.script_variables())
+        script += name + (value[0] == '{' ? "()" : "") + " = " + value + ";\n";
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && variable.declaration.onelab_name.empty())
-          scalar(variable.declaration.name.c_str(), *variable.value);
-      file << "Include \"" << geometry << "\";\n";
-      return file.str();
+          script += variable.declaration.name + " = " + exact_text(*variable.value) + ";\n";
+      return script + "Include \"" + geometry + "\";\n";
     }
 
     // Statements of Gmsh by which a script reaches beyond the mesh

@@ -1,8 +1,8 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/installation.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/mesher.h>
 #include <squeal/geometry/mesher_protocol.h>
-#include <squeal/parameters/number_parameter.h>
 
 #include <algorithm>
 #include <cerrno>

@@ -41,16 +41,28 @@ namespace Squeal
     class BodyOutput : public DataOut<3>
     {
     public:
-      /// Writes one file with the cells of all processes; all must call. Unlike deal.II's own, it tells why a file could not be written.
-      void write(const ResultFolder &folder, const std::string &name, const MPI_Comm communicator) const
+      explicit BodyOutput(const Model &model)
+        : model(model)
       {
+        attach_dof_handler(model.dof_handler());
+      }
+
+      void add(const Vector<double> &displacement, const char *name)
+      {
+        add_data_vector(displacement, std::vector<std::string>(3, name), type_dof_data, vector_field);
+      }
+
+      /// Writes one file with the cells of all processes; all must call. Unlike deal.II's own, it tells why a file could not be written.
+      void write(const ResultFolder &folder, const std::string &name)
+      {
+        build_patches(model.mapping(), model.degree());
         std::ostringstream piece;
         if (!get_patches().empty())
           DataOutBase::write_vtu_main(get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), compressed(), piece);
         // gather() compresses what it sends once more, which takes longer than all the rest
-        const std::vector<std::string> pieces = Utilities::MPI::n_mpi_processes(communicator) == 1 ?
+        const std::vector<std::string> pieces = Utilities::MPI::n_mpi_processes(model.communicator()) == 1 ?
                                                   std::vector<std::string>{piece.str()} :
-                                                  Utilities::MPI::gather(communicator, piece.str());
+                                                  Utilities::MPI::gather(model.communicator(), piece.str());
         folder.write(name, [&](std::ostream &stream) {
           DataOutBase::write_vtu_header(stream, compressed());
           for (const std::string &text : pieces)
@@ -58,6 +70,9 @@ namespace Squeal
           DataOutBase::write_vtu_footer(stream);
         });
       }
+
+    private:
+      const Model &model;
     };
 
     std::array<long, 3> position_key(const double x, const double y, const double z)
@@ -126,15 +141,6 @@ namespace Squeal
     return result;
   }
 
-  template <typename Number, typename Function>
-  Vector<double> FieldWriter::contact_vector(const std::vector<Number> &values, const Function &value) const
-  {
-    Vector<double> result(contact_dofs.n_dofs());
-    for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
-      result(dof) = value(values[contact_node_of_dof[dof]]);
-    return result;
-  }
-
   void FieldWriter::write_mode(const ModeField &mode) const
   {
     using Complex      = std::complex<double>;
@@ -144,31 +150,39 @@ namespace Squeal
     const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
     const auto   arg   = dof_vector(mode.displacement, [](const Complex &u) { return std::arg(u); });
 
-    BodyOutput output;
-    output.attach_dof_handler(model.dof_handler());
-    output.add_data_vector(re, std::vector<std::string>(3, "displacement_real"), DataOut<3>::type_dof_data, vector_field);
-    output.add_data_vector(im, std::vector<std::string>(3, "displacement_imag"), DataOut<3>::type_dof_data, vector_field);
-    output.add_data_vector(mod, std::vector<std::string>(3, "amplitude"), DataOut<3>::type_dof_data, vector_field);
-    output.add_data_vector(arg, std::vector<std::string>(3, "phase"), DataOut<3>::type_dof_data, vector_field);
+    BodyOutput output(model);
+    output.add(re, "displacement_real");
+    output.add(im, "displacement_imag");
+    output.add(mod, "amplitude");
+    output.add(arg, "phase");
     output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    output.build_patches(model.mapping(), model.degree());
-    output.write(folder, "modes/" + mode.name + ".vtu", model.communicator());
+    output.write(folder, "modes/" + mode.name + ".vtu");
 
-    write_contact(mode);
+    std::vector<double> reactions_re, reactions_im;
+    for (const Complex &r : mode.reactions)
+      {
+        reactions_re.push_back(scale * r.real());
+        reactions_im.push_back(scale * r.imag());
+      }
+    write_contact("modes/" + mode.name + "_contact.vtu",
+                  {{&reactions_re, "normal_reaction_real"}, {&reactions_im, "normal_reaction_imag"}, {&closed, "closed"}});
   }
 
-  void FieldWriter::write_contact(const ModeField &mode) const
+  void FieldWriter::write_contact(const std::string                                                       &file,
+                                  const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const
   {
-    using Complex       = std::complex<double>;
-    const double  scale = 1. / largest_amplitude(mode);
     DataOut<2, 3> output;
     output.set_flags(compressed());
     output.attach_dof_handler(contact_dofs);
-    output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.real(); }), "normal_reaction_real");
-    output.add_data_vector(contact_vector(mode.reactions, [&](const Complex &r) { return scale * r.imag(); }), "normal_reaction_imag");
-    output.add_data_vector(contact_vector(closed, [](const double c) { return c; }), "closed");
+    for (const auto &[values, name] : fields)
+      {
+        Vector<double> vector(contact_dofs.n_dofs());
+        for (types::global_dof_index dof = 0; dof < vector.size(); ++dof)
+          vector(dof) = (*values)[contact_node_of_dof[dof]];
+        output.add_data_vector(vector, name);
+      }
     output.build_patches();
-    folder.write("modes/" + mode.name + "_contact.vtu", [&](std::ostream &stream) { output.write_vtu(stream); });
+    folder.write(file, [&](std::ostream &stream) { output.write_vtu(stream); });
   }
 
   void FieldWriter::write_contact_state(const ContactField &state) const
@@ -185,27 +199,20 @@ namespace Squeal
           u(dof)                       = -side[component] * state.approach[component];
         }
 
-    BodyOutput bodies;
-    bodies.attach_dof_handler(model.dof_handler());
-    bodies.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
+    BodyOutput bodies(model);
+    bodies.add(u, "displacement");
     bodies.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    bodies.build_patches(model.mapping(), model.degree());
-    bodies.write(folder, "sliding_state.vtu", model.communicator());
+    bodies.write(folder, "sliding_state.vtu");
 
     std::vector<double> pressure;
     for (unsigned int c = 0; c < interface.size(); ++c)
       pressure.push_back(-state.reactions[c] / interface[c].area);
-    const auto                                                              identity = [](const double value) { return value; };
-    const std::vector<std::pair<const std::vector<double> *, const char *>> fields   = {
-        {&pressure, "pressure"}, {&state.reactions, "normal_reaction"}, {&state.gaps, "gap"},
-        {&closed, "closed"},     {&state.radial_damping, "c_b"},        {&state.sliding_damping, "c_t"}};
-    DataOut<2, 3> faces;
-    faces.set_flags(compressed());
-    faces.attach_dof_handler(contact_dofs);
-    for (const auto &[values, name] : fields)
-      faces.add_data_vector(contact_vector(*values, identity), name);
-    faces.build_patches();
-    folder.write("sliding_state_contact.vtu", [&](std::ostream &stream) { faces.write_vtu(stream); });
+    write_contact("sliding_state_contact.vtu", {{&pressure, "pressure"},
+                                                {&state.reactions, "normal_reaction"},
+                                                {&state.gaps, "gap"},
+                                                {&closed, "closed"},
+                                                {&state.radial_damping, "c_b"},
+                                                {&state.sliding_damping, "c_t"}});
   }
 
   void FieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
@@ -219,14 +226,12 @@ namespace Squeal
         const auto   turn = std::polar(scale, mode.lambda.imag() * time);
         const auto   u    = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (turn * value).real(); });
 
-        BodyOutput output;
-        output.attach_dof_handler(model.dof_handler());
-        output.add_data_vector(u, std::vector<std::string>(3, "displacement"), DataOut<3>::type_dof_data, vector_field);
-        output.build_patches(model.mapping(), model.degree());
+        BodyOutput output(model);
+        output.add(u, "displacement");
 
         std::ostringstream name;
         name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame << ".vtu";
-        output.write(folder, "animations/" + name.str(), model.communicator());
+        output.write(folder, "animations/" + name.str());
         frames.emplace_back(time, name.str());
       }
     folder.write("animations/" + mode.name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, frames); });

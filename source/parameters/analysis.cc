@@ -1,27 +1,21 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/analysis.h>
-#include <squeal/parameters/enum_parameter.h>
-#include <squeal/parameters/number_parameter.h>
 
 namespace Squeal
 {
-  using dealii::Patterns::Double;
-  using dealii::Patterns::Integer;
 
-  void DiscretizationParameters::add_parameters(dealii::ParameterHandler &prm)
+  void DiscretizationParameters::declare(Declarations &declarations)
   {
-    prm.enter_subsection("Discretization");
-    prm.add_parameter("Degree", degree,
-                      "Polynomial degree of the hexahedra: 1 (trilinear) or 2 (triquadratic, on curved boundaries). Units: none.",
-                      Integer(1, 2));
-    prm.leave_subsection();
+    declarations.enter("Discretization");
+    declarations.add("Degree", degree,
+                     "Polynomial degree of the hexahedra: 1 (trilinear) or 2 (triquadratic, on curved boundaries). Units: none.", {1, 2});
 
-    prm.enter_subsection("Band");
-    add_number_parameter(prm, "Maximum frequency", maximum_frequency,
-                         "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
-                         "meshes: results hold in a stated band. Units: Hz.",
-                         Double(0.));
-    prm.leave_subsection();
+    declarations.enter("Band");
+    declarations.add("Maximum frequency", maximum_frequency,
+                     "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
+                     "meshes: results hold in a stated band. Units: Hz.",
+                     {0.});
   }
 
   void DiscretizationParameters::check() const
@@ -31,38 +25,33 @@ namespace Squeal
                            "give a positive frequency");
   }
 
-  void SolverParameters::add_parameters(dealii::ParameterHandler &prm)
+  void SolverParameters::declare(Declarations &declarations)
   {
-    prm.enter_subsection("Real modes");
-    add_enum_parameter(prm, "Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
-    add_number_parameter(prm, "Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", Double(1e-14, 1e-4));
-    prm.add_parameter("Maximum number of modes", maximum_modes,
-                      "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
-                      "gigabytes, twice as many up to eight times the time. Units: none.",
-                      Integer(1));
-    prm.leave_subsection();
+    declarations.enter("Real modes");
+    declarations.add("Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
+    declarations.add("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", {1e-14, 1e-4});
+    declarations.add("Maximum number of modes", maximum_modes,
+                     "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
+                     "gigabytes, twice as many up to eight times the time. Units: none.",
+                     {1});
 
-    prm.enter_subsection("Complex modes");
-    add_enum_parameter(prm, "Solver", complex_solver,
-                       "Krylov: shift-invert block Krylov on the quadratic pencil of full order (the reference). residual iteration: "
-                       "a basis of real modes grown by right and left residuals, one Cholesky factor for every friction coefficient.");
-    add_enum_parameter(prm, "Shift inverse", shift_inverse,
-                       "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
-                       "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
-    add_number_parameter(prm, "Tolerance", complex_tolerance, "Largest relative residual of a complex mode found by Krylov. Units: none.",
-                         Double(1e-13, 1e-4));
-    add_number_parameter(prm, "Iteration tolerance", iteration_tolerance,
-                         "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.",
-                         Double(1e-12, 1e-2));
-    prm.add_parameter("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", Integer(1));
-    prm.leave_subsection();
+    declarations.enter("Complex modes");
+    declarations.add("Solver", complex_solver,
+                     "Krylov: shift-invert block Krylov on the quadratic pencil of full order (the reference). residual iteration: "
+                     "a basis of real modes grown by right and left residuals, one Cholesky factor for every friction coefficient.");
+    declarations.add("Shift inverse", shift_inverse,
+                     "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
+                     "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
+    declarations.add("Tolerance", complex_tolerance, "Largest relative residual of a complex mode found by Krylov. Units: none.",
+                     {1e-13, 1e-4});
+    declarations.add("Iteration tolerance", iteration_tolerance,
+                     "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.", {1e-12, 1e-2});
+    declarations.add("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", {1});
 
-    prm.enter_subsection("Linear algebra");
-    add_enum_parameter(prm, "Factorization", library,
-                       "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
-    prm.add_parameter("BLAS threads", blas_threads,
-                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", Integer(1, 256));
-    prm.leave_subsection();
+    declarations.enter("Linear algebra");
+    declarations.add("Factorization", library, "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
+    declarations.add("BLAS threads", blas_threads,
+                     "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", {1, 256});
   }
 
   void SolverParameters::check() const
@@ -74,15 +63,14 @@ namespace Squeal
                            "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");
   }
 
-  void OutputParameters::add_parameters(dealii::ParameterHandler &prm)
+  void OutputParameters::declare(Declarations &declarations)
   {
-    prm.enter_subsection("Output");
-    add_enum_parameter(prm, "Mode shapes", fields, "Complex modes of which VTU files are written.");
-    prm.add_parameter("Animation frames", animation_frames,
-                      "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", Integer(0, 1000));
-    prm.add_parameter("Write matrices", write_matrices,
-                      "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, T_c of the closed contact nodes in "
-                      "Matrix Market form and the node coordinates.");
-    prm.leave_subsection();
+    declarations.enter("Output");
+    declarations.add("Mode shapes", fields, "Complex modes of which VTU files are written.");
+    declarations.add("Animation frames", animation_frames,
+                     "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", {0, 1000});
+    declarations.add("Write matrices", write_matrices,
+                     "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, T_c of the closed contact nodes in "
+                     "Matrix Market form and the node coordinates.");
   }
 } // namespace Squeal

@@ -1,51 +1,23 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/damping.h>
-#include <squeal/parameters/number_parameter.h>
-
-#include <deal.II/base/utilities.h>
+#include <squeal/parameters/number_list.h>
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 namespace Squeal
 {
   namespace
   {
-    constexpr const char *where  = "parameter Damping/Modal damping ratio";
-    constexpr const char *format = "write frequency: ratio, frequency: ratio, ... [Hz, -]";
-
-    std::string print_ratios(const std::vector<ModalDampingRatio> &ratios)
-    {
-      std::ostringstream text;
-      for (const ModalDampingRatio &entry : ratios)
-        text << (&entry == &ratios.front() ? "" : ", ") << exact_text(entry.frequency) << ": " << exact_text(entry.ratio);
-      return text.str();
-    }
-
-    double number(const std::string &text)
-    {
-      const auto value = parse_number(text);
-      if (!value)
-        throw ParameterError(in_quotes(text) + " is not a number", where, format);
-      return *value;
-    }
-
-    std::vector<ModalDampingRatio> parse_ratios(const std::string &text)
-    {
-      std::vector<ModalDampingRatio> ratios;
-      for (const std::string &entry : dealii::Utilities::split_string_list(text, ','))
-        {
-          if (entry.empty())
-            continue;
-          const auto parts = dealii::Utilities::split_string_list(entry, ':');
-          if (parts.size() != 2)
-            throw ParameterError(in_quotes(entry) + " is not a frequency with its damping ratio", where, format);
-          ratios.push_back({number(parts[0]), number(parts[1])});
-        }
-      return ratios;
-    }
+    const ListFormat ratio_list = {"Damping/Modal damping ratio",
+                                   "not a frequency with its damping ratio",
+                                   "frequency: ratio, frequency: ratio, ... [Hz, -]",
+                                   "",
+                                   {2},
+                                   ',',
+                                   ':'};
   } // namespace
 
   double DampingParameters::modal_ratio(const double frequency) const
@@ -62,18 +34,22 @@ namespace Squeal
     return below.ratio + (above->ratio - below.ratio) * (frequency - below.frequency) / (above->frequency - below.frequency);
   }
 
-  void DampingParameters::add_parameters(dealii::ParameterHandler &prm)
+  void DampingParameters::declare(Declarations &declarations)
   {
-    prm.enter_subsection("Damping");
-    prm.declare_entry("Modal damping ratio", print_ratios(modal_ratios), dealii::Patterns::Anything(),
-                      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, linear in "
-                      "between and constant beyond the ends. Empty: none. Units: Hz and none.");
-    prm.add_action("Modal damping ratio", [this](const std::string &text) { modal_ratios = parse_ratios(text); });
-    prm.leave_subsection();
+    declarations.enter("Damping");
+    declare_list(
+      declarations, "Modal damping ratio", modal_ratios,
+      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, linear in "
+      "between and constant beyond the ends. Empty: none. Units: Hz and none.",
+      ratio_list, [](const ModalDampingRatio &entry) { return exact_text(entry.frequency) + ": " + exact_text(entry.ratio); },
+      [](const ListEntry &entry) {
+        return ModalDampingRatio{entry.numbers[0], entry.numbers[1]};
+      });
   }
 
   void DampingParameters::check() const
   {
+    const std::string where = std::string("parameter ") + ratio_list.parameter;
     for (const ModalDampingRatio &entry : modal_ratios)
       {
         if (!(entry.frequency >= 0.) || !std::isfinite(entry.frequency))

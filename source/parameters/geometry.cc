@@ -1,6 +1,6 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/geometry.h>
-#include <squeal/parameters/number_parameter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -122,27 +122,19 @@ namespace Squeal
                      angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
           }
     }
-  } // namespace
 
-  namespace
-  {
-    /// Variables by which a script takes over the parameters themselves.
-    const std::vector<std::string> own_variables = {
-      "disc_inner_radius", "disc_outer_radius", "disc_thickness",     "pin_diameter", "pin_height",  "top_pin_radii", "top_pin_angles",
-      "bottom_pin_radii",  "bottom_pin_angles", "nodes_per_pin_face", "pin_layers",   "disc_layers", "element_size",  "pairing_tolerance"};
-
-    void declare_variable(dealii::ParameterHandler &prm, GeometryParameters::Variable &variable)
+    void declare_variable(Declarations &declarations, GeometryParameters::Variable &variable)
     {
       const std::string &name = variable.declaration.name;
-      prm.declare_entry(name, variable.value ? exact_text(*variable.value) : "", dealii::Patterns::Anything(),
-                        "Variable of the geometry; empty for the value there, " + variable.declaration.value +
-                          ". Units: as the geometry says.");
-      prm.add_action(name, [&variable, name](const std::string &text) {
-        variable.value = parse_number(text);
-        if (!variable.value && !text.empty())
-          refuse("Geometry/" + name + " is " + in_quotes(text) + ", which is not a finite number", name,
-                 "give a number, or leave it empty for the value in the geometry");
-      });
+      declarations.add_text(
+        name, "Variable of the geometry; empty for the value there, " + variable.declaration.value + ". Units: as the geometry says.",
+        [&variable] { return variable.value ? exact_text(*variable.value) : ""; },
+        [&variable, name](const std::string &text) {
+          variable.value = parse_number(text);
+          if (!variable.value && !text.empty())
+            refuse("Geometry/" + name + " is " + in_quotes(text) + ", which is not a finite number", name,
+                   "give a number, or leave it empty for the value in the geometry");
+        });
     }
   } // namespace
 
@@ -162,8 +154,27 @@ namespace Squeal
       }
     if (is_script(geometry))
       for (const GeometryVariable &variable : GeometryScript(geometry).variables())
-        if (std::find(own_variables.begin(), own_variables.end(), variable.name) == own_variables.end())
+        if (script_variables().count(variable.name) == 0)
           variables.push_back({variable, {}});
+  }
+
+  std::map<std::string, std::string> GeometryParameters::script_variables() const
+  {
+    const auto list = [](const std::vector<double> &values) { return "{" + exact_text(values) + "}"; };
+    return {{"disc_inner_radius", exact_text(disc_inner_radius)},
+            {"disc_outer_radius", exact_text(disc_outer_radius)},
+            {"disc_thickness", exact_text(disc_thickness)},
+            {"pin_diameter", exact_text(pin_diameter)},
+            {"pin_height", exact_text(pin_height)},
+            {"top_pin_radii", list(top.radii)},
+            {"top_pin_angles", list(top.angles)},
+            {"bottom_pin_radii", list(bottom.radii)},
+            {"bottom_pin_angles", list(bottom.angles)},
+            {"nodes_per_pin_face", std::to_string(nodes_per_pin_face)},
+            {"pin_layers", std::to_string(pin_layers)},
+            {"disc_layers", std::to_string(disc_layers)},
+            {"element_size", exact_text(element_size)},
+            {"pairing_tolerance", exact_text(pairing_tolerance)}};
   }
 
   std::string GeometryParameters::path() const
@@ -171,56 +182,50 @@ namespace Squeal
     return find_geometry(file, directory);
   }
 
-  void GeometryParameters::add_parameters(dealii::ParameterHandler &prm)
+  void GeometryParameters::declare(Declarations &declarations)
   {
-    using namespace dealii::Patterns;
-
-    prm.enter_subsection("Geometry");
-    prm.add_parameter("File", file,
-                      "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the "
-                      "parameter file, in the current directory, then among the geometries that come with "
-                      "the program. A file with physical volumes is a solid and is used as it is; one with physical "
-                      "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below, and its "
-                      "own variables (DefineConstant, DefineNumber) are parameters of this section. Units: none.",
-                      Anything());
-    add_number_parameter(prm, "Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", Double(0.));
-    add_number_parameter(prm, "Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", Double(0.));
-    add_number_parameter(prm, "Disc thickness", disc_thickness, "Thickness of the disc, half of it on each side of z = 0. Units: m.",
-                         Double(0.));
-    add_number_parameter(prm, "Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", Double(0.));
-    add_number_parameter(prm, "Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", Double(0.));
-    add_number_parameter(prm, "Top pin radii", top.radii,
-                         "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
-                         "separated by commas; empty for none. Units: m.",
-                         List(Double(0.), 0));
-    add_number_parameter(prm, "Top pin angles", top.angles,
-                         "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.", List(Double(), 0));
-    add_number_parameter(prm, "Bottom pin radii", bottom.radii,
-                         "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
-                         "separated by commas; empty for none. Units: m.",
-                         List(Double(0.), 0));
-    add_number_parameter(prm, "Bottom pin angles", bottom.angles,
-                         "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.", List(Double(), 0));
-    prm.add_parameter("Nodes per pin face", nodes_per_pin_face,
-                      "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.", Integer(1));
-    prm.add_parameter("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.", Integer(1));
-    prm.add_parameter("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", Integer(1));
-    add_number_parameter(prm, "Element size", element_size,
-                         "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
-                         "smaller ones where these do not fit between the pins. Units: m.",
-                         Double(0.));
-    add_number_parameter(prm, "Pairing tolerance", pairing_tolerance,
-                         "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
-                         "Units: m.",
-                         Double(0.));
-    prm.add_parameter("Allow shell commands", allow_shell_commands,
-                      "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. "
-                      "Only for files whose every line you trust. Units: none.");
-    add_number_parameter(prm, "Meshing time limit", meshing_time_limit, "Longest time that Gmsh may take. Units: s.", Double(0.));
-    add_number_parameter(prm, "Meshing memory limit", meshing_memory_limit, "Most memory that Gmsh may take. Units: GB.", Double(0.));
+    declarations.enter("Geometry");
+    declarations.add("File", file,
+                     "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the "
+                     "parameter file, in the current directory, then among the geometries that come with "
+                     "the program. A file with physical volumes is a solid and is used as it is; one with physical "
+                     "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below, and its "
+                     "own variables (DefineConstant, DefineNumber) are parameters of this section. Units: none.");
+    declarations.add("Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", {0.});
+    declarations.add("Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", {0.});
+    declarations.add("Disc thickness", disc_thickness, "Thickness of the disc, half of it on each side of z = 0. Units: m.", {0.});
+    declarations.add("Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", {0.});
+    declarations.add("Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", {0.});
+    declarations.add("Top pin radii", top.radii,
+                     "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
+                     "separated by commas; empty for none. Units: m.",
+                     {0.});
+    declarations.add("Top pin angles", top.angles, "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.");
+    declarations.add("Bottom pin radii", bottom.radii,
+                     "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
+                     "separated by commas; empty for none. Units: m.",
+                     {0.});
+    declarations.add("Bottom pin angles", bottom.angles,
+                     "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.");
+    declarations.add("Nodes per pin face", nodes_per_pin_face,
+                     "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.", {1});
+    declarations.add("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.", {1});
+    declarations.add("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", {1});
+    declarations.add("Element size", element_size,
+                     "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
+                     "smaller ones where these do not fit between the pins. Units: m.",
+                     {0.});
+    declarations.add("Pairing tolerance", pairing_tolerance,
+                     "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
+                     "Units: m.",
+                     {0.});
+    declarations.add("Allow shell commands", allow_shell_commands,
+                     "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. "
+                     "Only for files whose every line you trust. Units: none.");
+    declarations.add("Meshing time limit", meshing_time_limit, "Longest time that Gmsh may take. Units: s.", {0.});
+    declarations.add("Meshing memory limit", meshing_memory_limit, "Most memory that Gmsh may take. Units: GB.", {0.});
     for (Variable &variable : variables)
-      declare_variable(prm, variable);
-    prm.leave_subsection();
+      declare_variable(declarations, variable);
   }
 
   void GeometryParameters::check() const

@@ -1,12 +1,10 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/parameters/catalogue.h>
-#include <squeal/parameters/enum_parameter.h>
-#include <squeal/parameters/number_parameter.h>
 #include <squeal/parameters/parameter_file.h>
 #include <squeal/parameters/parameters.h>
 
+#include <deal.II/base/parameter_handler.h>
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
@@ -116,79 +114,29 @@ namespace Squeal
     }
 
     /// Paths of all parameters, and of the sections that they are in.
-    std::vector<std::string> known_names(const std::vector<CataloguedParameter> &declared)
+    std::vector<std::string> known_names(const Declarations &declarations)
     {
       std::vector<std::string> names;
-      for (const CataloguedParameter &parameter : declared)
+      for (const DeclaredParameter &parameter : declarations.parameters())
         {
-          for (auto slash = parameter.path.find('/'); slash != std::string::npos; slash = parameter.path.find('/', slash + 1))
-            if (const std::string section = parameter.path.substr(0, slash + 1);
-                std::find(names.begin(), names.end(), section) == names.end())
-              names.push_back(section);
+          const std::string section = parameter.path.substr(0, parameter.path.find('/') + 1);
+          if (!section.empty() && std::find(names.begin(), names.end(), section) == names.end())
+            names.push_back(section);
           names.push_back(parameter.path);
         }
       return names;
     }
 
-    /// Stays in the section of a parameter as long as it lives.
-    class InSection
-    {
-    public:
-      InSection(dealii::ParameterHandler &prm, const CataloguedParameter &parameter)
-        : parts(parameter.path_parts())
-        , prm(prm)
-      {
-        for (std::size_t i = 0; i + 1 < parts.size(); ++i)
-          prm.enter_subsection(parts[i]);
-      }
-
-      ~InSection()
-      {
-        for (std::size_t i = 0; i + 1 < parts.size(); ++i)
-          prm.leave_subsection();
-      }
-
-      InSection(const InSection &)            = delete;
-      InSection &operator=(const InSection &) = delete;
-
-      const std::string &name() const
-      {
-        return parts.back();
-      }
-
-    private:
-      const std::vector<std::string> parts;
-      dealii::ParameterHandler      &prm;
-    };
-
     /// Sets a parameter to what a statement says.
-    void assign(dealii::ParameterHandler &prm, const CataloguedParameter &parameter, const ParameterStatement &statement)
+    void assign(const DeclaredParameter &parameter, const ParameterStatement &statement)
     {
-      const InSection section(prm, parameter);
       try
         {
-          prm.set(section.name(), statement.value);
+          parameter.parse(statement.value);
         }
       catch (const ParameterError &error)
         {
-          throw ParameterError(error.reason, statement.where + ", " + error.where, error.change);
-        }
-      catch (const dealii::ParameterHandler::ExcValueDoesNotMatchPattern &)
-        {
-          throw ParameterError(refusal(parameter, statement.value), statement.where,
-                               "give " + accepted_values(parameter) + "; squeal --print-parameters says what it is");
-        }
-    }
-
-    /// Declares the parameters of a handler once more, with what they accept at the end of their documentation.
-    void document(const dealii::ParameterHandler &prm, dealii::ParameterHandler &documented)
-    {
-      for (const CataloguedParameter &parameter : catalogue(prm))
-        {
-          const std::string accepted = accepted_values(parameter);
-          const InSection   section(documented, parameter);
-          documented.declare_entry(section.name(), parameter.value, dealii::Patterns::Anything(),
-                                   parameter.documentation + (accepted.empty() ? "" : " Accepts " + accepted + "."));
+          throw ParameterError(error.reason, statement.where + (error.where.empty() ? "" : ", ") + error.where, error.change);
         }
     }
 
@@ -203,17 +151,16 @@ namespace Squeal
     }
 
     /// Declares the parameter that names the study.
-    void add_study(dealii::ParameterHandler &prm, const Study *&study)
+    void declare_study(Declarations &declarations, const Study *&study)
     {
-      std::string names;
+      std::vector<std::string> names;
       for (const Study *known : studies())
-        names += (names.empty() ? "" : "|") + std::string(known->name);
-      prm.declare_entry("Study", study->name, dealii::Patterns::Selection(names), "The question that the run answers.");
-      prm.add_action("Study", [&study](const std::string &name) {
-        for (const Study *known : studies())
-          if (known->name == name)
-            study = known;
-      });
+        names.emplace_back(known->name);
+      declarations.add_choice(
+        "Study", names, "The question that the run answers.", [&study] { return study->name; },
+        [&study](const std::string &name) {
+          study = *std::find_if(studies().begin(), studies().end(), [&](const Study *known) { return known->name == name; });
+        });
     }
 
     /// Geometry/File as the last statement about it says.
@@ -227,19 +174,19 @@ namespace Squeal
     }
   } // namespace
 
-  void Parameters::add_parameters(dealii::ParameterHandler &prm)
+  void Parameters::declare(Declarations &declarations)
   {
-    add_study(prm, study);
-    geometry.add_parameters(prm);
-    materials.add_parameters(prm);
-    discretization.add_parameters(prm);
-    operation.add_parameters(prm);
-    sliding.add_parameters(prm);
-    damping.add_parameters(prm);
-    reduction.add_parameters(prm);
-    sweep.add_parameters(prm);
-    solvers.add_parameters(prm);
-    output.add_parameters(prm);
+    declare_study(declarations, study);
+    geometry.declare(declarations);
+    materials.declare(declarations);
+    discretization.declare(declarations);
+    operation.declare(declarations);
+    sliding.declare(declarations);
+    damping.declare(declarations);
+    reduction.declare(declarations);
+    sweep.declare(declarations);
+    solvers.declare(declarations);
+    output.declare(declarations);
   }
 
   Parameters Parameters::read(const std::string &file, const std::vector<std::string> &overrides)
@@ -251,17 +198,15 @@ namespace Squeal
     // The variables of the geometry are parameters, too
     Parameters parameters;
     parameters.geometry.set_file(geometry_file(statements), std::filesystem::path(file).parent_path().string());
-    dealii::ParameterHandler prm;
-    parameters.add_parameters(prm);
-    const auto                     declared = catalogue(prm);
-    const std::vector<std::string> known    = known_names(declared);
+    Declarations declarations;
+    parameters.declare(declarations);
+    const std::vector<std::string> known = known_names(declarations);
 
     for (const ParameterStatement &statement : statements)
       check_name(statement, known);
     for (const ParameterStatement &statement : statements)
-      for (const CataloguedParameter &parameter : declared)
-        if (parameter.path == statement.path)
-          assign(prm, parameter, statement);
+      if (const DeclaredParameter *parameter = declarations.find(statement.path))
+        assign(*parameter, statement);
 
     parameters.check();
     return parameters;
@@ -269,20 +214,25 @@ namespace Squeal
 
   void Parameters::print(std::ostream &stream, const bool with_documentation) const
   {
+    Parameters   copy = *this;
+    Declarations declarations;
+    copy.declare(declarations);
+
     using dealii::ParameterHandler;
-    Parameters       copy = *this;
     ParameterHandler prm;
-    copy.add_parameters(prm);
-    if (with_documentation)
+    for (const auto &[path, documentation, accepted, value, parse] : declarations.parameters())
       {
-        ParameterHandler documented;
-        document(prm, documented);
-        documented.print_parameters(
-          stream, static_cast<ParameterHandler::OutputStyle>(ParameterHandler::PRM | ParameterHandler::KeepDeclarationOrder));
+        const auto slash = path.find('/');
+        if (slash != std::string::npos)
+          prm.enter_subsection(path.substr(0, slash));
+        prm.declare_entry(path.substr(slash + 1), value(), dealii::Patterns::Anything(),
+                          documentation + (accepted.empty() ? "" : " Accepts " + accepted + "."));
+        if (slash != std::string::npos)
+          prm.leave_subsection();
       }
-    else
-      prm.print_parameters(stream,
-                           static_cast<ParameterHandler::OutputStyle>(ParameterHandler::ShortPRM | ParameterHandler::KeepDeclarationOrder));
+    prm.print_parameters(
+      stream, static_cast<ParameterHandler::OutputStyle>((with_documentation ? ParameterHandler::PRM : ParameterHandler::ShortPRM) |
+                                                         ParameterHandler::KeepDeclarationOrder));
   }
 
   bool Parameters::needs_steady_sliding() const

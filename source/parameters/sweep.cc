@@ -1,6 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/parameters/enum_parameter.h>
-#include <squeal/parameters/number_parameter.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/sweep.h>
 
 #include <cmath>
@@ -54,44 +53,37 @@ namespace Squeal
     return ValueRange{friction_coefficients.first, friction_coefficients.last, map_friction_coefficients}.linear();
   }
 
-  void SweepParameters::add_parameters(dealii::ParameterHandler &prm)
+  void SweepParameters::declare(Declarations &declarations)
   {
-    using dealii::Patterns::Double;
-    using dealii::Patterns::Integer;
-    const dealii::Patterns::List coefficients(Double(0., 10.), 0, 1000);
-    prm.enter_subsection("Sweep");
-    add_number_parameter(prm, "First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.",
-                         Double(0., 10.));
-    add_number_parameter(prm, "Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", Double(0., 10.));
-    prm.add_parameter("Number of friction coefficients", friction_coefficients.number,
-                      "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", Integer(1, 100000));
-    add_number_parameter(prm, "Tolerance", tolerance,
-                         "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.",
-                         Double(1e-10, 1e-2));
-    prm.add_parameter(
+    constexpr Range       coefficients      = {0., 10.};
+    constexpr std::size_t most_coefficients = 1000;
+    declarations.enter("Sweep");
+    declarations.add("First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.", coefficients);
+    declarations.add("Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", coefficients);
+    declarations.add("Number of friction coefficients", friction_coefficients.number,
+                     "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", {1, 100000});
+    declarations.add("Tolerance", tolerance,
+                     "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.", {1e-10, 1e-2});
+    declarations.add(
       "Maximum basis", maximum_basis,
-      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.",
-      Integer(1));
-    add_number_parameter(prm, "Threshold tolerance", threshold_tolerance,
-                         "Width of the interval of the friction coefficient to which a threshold is located. Units: none.",
-                         Double(1e-13, 1e-2));
-    prm.add_parameter("Compare dissipation", compare_dissipation, "With radial dissipation, sweep also without it and show both.");
-    add_number_parameter(prm, "Mode shapes at", mode_shapes,
-                         "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.",
-                         coefficients);
-    add_number_parameter(prm, "Count modes at", counts,
-                         "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
-                         "in finding them, separated by commas. Units: none.",
-                         coefficients);
-    add_enum_parameter(prm, "Map parameter", map_parameter,
-                       "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
-    add_number_parameter(prm, "First map value", map_values.first, "Smallest load or speed of the map. Units: N or rad/s.", Double(0.));
-    add_number_parameter(prm, "Last map value", map_values.last, "Largest load or speed of the map. Units: N or rad/s.", Double(0.));
-    prm.add_parameter("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.",
-                      Integer(1, 10000));
-    prm.add_parameter("Map friction coefficients", map_friction_coefficients,
-                      "Friction coefficients of the map, equally spaced over the sweep. Units: none.", Integer(1, 10000));
-    prm.leave_subsection();
+      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.", {1});
+    declarations.add("Threshold tolerance", threshold_tolerance,
+                     "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", {1e-13, 1e-2});
+    declarations.add("Compare dissipation", compare_dissipation, "With radial dissipation, sweep also without it and show both.");
+    declarations.add("Mode shapes at", mode_shapes,
+                     "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.",
+                     coefficients, most_coefficients);
+    declarations.add("Count modes at", counts,
+                     "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
+                     "in finding them, separated by commas. Units: none.",
+                     coefficients, most_coefficients);
+    declarations.add("Map parameter", map_parameter,
+                     "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
+    declarations.add("First map value", map_values.first, "Smallest load or speed of the map. Units: N or rad/s.", {0.});
+    declarations.add("Last map value", map_values.last, "Largest load or speed of the map. Units: N or rad/s.", {0.});
+    declarations.add("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.", {1, 10000});
+    declarations.add("Map friction coefficients", map_friction_coefficients,
+                     "Friction coefficients of the map, equally spaced over the sweep. Units: none.", {1, 10000});
   }
 
   void SweepParameters::check() const

@@ -1,8 +1,8 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse.h>
-#include <squeal/parameters/number_parameter.h>
 #include <squeal/sliding/floating_disc.h>
 #include <squeal/sliding/steady_sliding.h>
 

@@ -1,5 +1,4 @@
 #include <squeal/geometry/geometry_usage.h>
-#include <squeal/parameters/catalogue.h>
 #include <squeal/studies/parameter_usage.h>
 
 #include <algorithm>
@@ -129,21 +128,16 @@ namespace Squeal
 
     // ------------------------------------------------------------------- changes
 
-    std::vector<CataloguedParameter> catalogue_of(Parameters parameters)
-    {
-      dealii::ParameterHandler prm;
-      parameters.add_parameters(prm);
-      return catalogue(prm);
-    }
-
     /// Paths of the parameters that differ from their defaults.
-    std::vector<std::string> changed_parameters(const Parameters &parameters)
+    std::vector<std::string> changed_parameters(Parameters parameters)
     {
-      const auto               defaults = catalogue_of(Parameters());
+      Parameters   defaults;
+      Declarations known, present;
+      defaults.declare(known);
+      parameters.declare(present);
       std::vector<std::string> changed;
-      for (const CataloguedParameter &parameter : catalogue_of(parameters))
-        if (std::none_of(defaults.begin(), defaults.end(),
-                         [&](const CataloguedParameter &other) { return other.path == parameter.path && other.value == parameter.value; }))
+      for (const DeclaredParameter &parameter : present.parameters())
+        if (const DeclaredParameter *other = known.find(parameter.path); other == nullptr || other->print() != parameter.print())
           changed.push_back(parameter.path);
       return changed;
     }

@@ -14,12 +14,13 @@ namespace
   }
 } // namespace
 
-TEST(GeometryParameters, DefaultsAreAcceptedAndSurviveTheHandler)
+TEST(GeometryParameters, DefaultsAreAcceptedAndReadBack)
 {
-  GeometryParameters       parameters;
-  dealii::ParameterHandler prm;
-  parameters.add_parameters(prm);
-  prm.parse_input_from_string("");
+  GeometryParameters parameters;
+  Declarations       declarations;
+  parameters.declare(declarations);
+  for (const DeclaredParameter &parameter : declarations.parameters())
+    parameter.parse(parameter.print());
   parameters.check();
   EXPECT_EQ(parameters.disc_inner_radius, GeometryParameters().disc_inner_radius);
   EXPECT_EQ(parameters.top.angles, GeometryParameters().top.angles);
@@ -28,16 +29,13 @@ TEST(GeometryParameters, DefaultsAreAcceptedAndSurviveTheHandler)
 
 TEST(GeometryParameters, ListsAreReadAndMayBeEmpty)
 {
-  GeometryParameters       parameters;
-  dealii::ParameterHandler prm;
-  parameters.add_parameters(prm);
-  prm.parse_input_from_string("subsection Geometry\n"
-                              "  set Bottom pin radii  = \n"
-                              "  set Bottom pin angles = \n"
-                              "  set Top pin radii  = 0.2, 0.25\n"
-                              "  set Top pin angles = -10, 25.5\n"
-                              "  set Nodes per pin face = 37\n"
-                              "end\n");
+  GeometryParameters parameters;
+  Declarations       declarations;
+  parameters.declare(declarations);
+  for (const auto &[name, value] :
+       {std::make_pair("Bottom pin radii", ""), std::make_pair("Bottom pin angles", ""), std::make_pair("Top pin radii", "0.2, 0.25"),
+        std::make_pair("Top pin angles", "-10, 25.5"), std::make_pair("Nodes per pin face", "37")})
+    declarations.find(std::string("Geometry/") + name)->parse(value);
   parameters.check();
   EXPECT_TRUE(parameters.bottom.radii.empty());
   EXPECT_TRUE(parameters.bottom.angles.empty());
@@ -48,18 +46,12 @@ TEST(GeometryParameters, ListsAreReadAndMayBeEmpty)
 
 TEST(GeometryParameters, EveryTextSaysUnits)
 {
-  GeometryParameters       parameters;
-  dealii::ParameterHandler prm;
-  parameters.add_parameters(prm);
-  std::ostringstream text;
-  prm.print_parameters(text, dealii::ParameterHandler::JSON);
-  std::size_t n_documented = 0, n_units = 0;
-  for (std::size_t at = 0; (at = text.str().find("\"documentation\"", at)) != std::string::npos; ++at)
-    ++n_documented;
-  for (std::size_t at = 0; (at = text.str().find("Units: ", at)) != std::string::npos; ++at)
-    ++n_units;
-  EXPECT_EQ(n_documented, 18u);
-  EXPECT_EQ(n_units, 18u);
+  GeometryParameters parameters;
+  Declarations       declarations;
+  parameters.declare(declarations);
+  EXPECT_EQ(declarations.parameters().size(), 18u);
+  for (const DeclaredParameter &parameter : declarations.parameters())
+    EXPECT_NE(parameter.documentation.find("Units: "), std::string::npos) << parameter.path;
 }
 
 TEST(GeometryParameters, RefusalsNameParameterValueAndRemedy)

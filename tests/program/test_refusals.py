@@ -178,9 +178,9 @@ class Refusals(ProgramTest):
         for value, mentions in {"1000": ["`1000` is not a frequency with its damping ratio", "frequency: ratio"],
                                 "1000: 0.01: 0.02": ["is not a frequency with its damping ratio"],
                                 "1000: 0.01; 2000: 0.02": ["is not a frequency with its damping ratio", "frequency: ratio, freq"],
-                                "1000: little": ["`little` is not a number"],
-                                "low: 0.01": ["`low` is not a number"],
-                                "1000: nan": ["`nan` is not a number"],
+                                "1000: little": ["`little` is not a finite number"],
+                                "low: 0.01": ["`low` is not a finite number"],
+                                "1000: nan": ["`nan` is not a finite number"],
                                 "1000: 1": ["damping ratio 1 at 1000 Hz", "[0, 1)"],
                                 "1000: -0.01": ["damping ratio -0.01 at 1000 Hz", "[0, 1)"],
                                 "-1: 0.01": ["frequency -1 Hz"],
@@ -196,7 +196,7 @@ class Refusals(ProgramTest):
 
     def test_mounts(self):
         self.scene_refused(["is not an elastic mount", "radial, tangential, axial"], "Mounts/Elastic mounts=disc_bore: 1e10, 1e10")
-        self.scene_refused(["`stiff` is not a number"], "Mounts/Elastic mounts=disc_bore: 0, stiff, 0")
+        self.scene_refused(["`stiff` is not a finite number"], "Mounts/Elastic mounts=disc_bore: 0, stiff, 0")
         self.scene_refused(["twice"], "Mounts/Elastic mounts=disc_bore: 0, 1e10, 0; disc_bore: 0, 0, 1e10")
         self.scene_refused(["'disc_ear'", "disc_bore", "disc_rim"], "Mounts/Elastic mounts=disc_ear: 0, 1e10, 1e10")
 

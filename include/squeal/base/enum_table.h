@@ -3,6 +3,7 @@
 #include <array>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace Squeal
 {
@@ -32,17 +33,17 @@ namespace Squeal
     return "?";
   }
 
-  /// All names, as deal.II's Patterns::Selection wants them: "a|b|c".
+  /// All names in their order.
   template <typename Enum>
-  std::string enum_selection()
+  std::vector<std::string> enum_names()
   {
-    std::string selection;
+    std::vector<std::string> names;
     for (const auto &entry : EnumTable<Enum>::names)
-      selection += (selection.empty() ? "" : "|") + std::string(entry.name);
-    return selection;
+      names.emplace_back(entry.name);
+    return names;
   }
 
-  /// The value called @p name; the pattern of the parameter has already refused other names.
+  /// The value called @p name, which must be one of enum_names().
   template <typename Enum>
   Enum enum_value(const std::string &name)
   {

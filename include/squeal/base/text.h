@@ -2,11 +2,15 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace Squeal
 {
   /// The shortest text that reads back as exactly this number; zero has no sign.
   std::string exact_text(double value);
+
+  /// The same for several numbers with ", " in between.
+  std::string exact_text(const std::vector<double> &values);
 
   /// A number for a sentence: at least @p n_digits significant digits, all digits before the point, no exponent.
   std::string decimal_text(double value, int n_digits = 4);

@@ -73,11 +73,8 @@ namespace Squeal
     template <typename Number, typename Function>
     dealii::Vector<double> dof_vector(const std::vector<Number> &displacement, const Function &value) const;
 
-    /// A field on the contact faces from one on the pairs of contact nodes.
-    template <typename Number, typename Function>
-    dealii::Vector<double> contact_vector(const std::vector<Number> &values, const Function &value) const;
-
-    void write_contact(const ModeField &mode) const;
+    /// Fields on the contact faces: values of the pairs of contact nodes with their names.
+    void write_contact(const std::string &file, const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const;
 
     const Model                        &model;
     const ContactInterface             &interface;

@@ -3,8 +3,7 @@
 #include <squeal/base/enum_table.h>
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <string>
 
@@ -16,7 +15,7 @@ namespace Squeal
     unsigned int degree            = 1;     ///< polynomial degree of the hexahedra, 1 or 2
     double       maximum_frequency = 5000.; ///< upper end of the band [Hz]
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;
@@ -64,7 +63,7 @@ namespace Squeal
     FactorizationLibrary library             = FactorizationLibrary::automatic;
     unsigned int         blas_threads        = 1;
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;
@@ -92,6 +91,6 @@ namespace Squeal
     unsigned int   animation_frames = 16; ///< per period of an unstable mode; 0: no animation
     bool           write_matrices   = false;
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
   };
 } // namespace Squeal

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <vector>
 
@@ -24,7 +24,7 @@ namespace Squeal
     /// ζ of a mode of @p frequency [Hz]: linear between the entries, constant beyond the first and last; 0 if there are none.
     double modal_ratio(double frequency) const;
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;

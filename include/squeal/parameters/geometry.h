@@ -1,8 +1,7 @@
 #pragma once
 
+#include <squeal/parameters/declarations.h>
 #include <squeal/parameters/geometry_file.h>
-
-#include <deal.II/base/parameter_handler.h>
 
 #include <map>
 #include <optional>
@@ -51,10 +50,13 @@ namespace Squeal
     /// Takes over file and directory, and the variables of the file where it is a script that exists.
     void set_file(const std::string &name, const std::string &parameter_directory);
 
+    /// Variables by which a script takes over these parameters, with their values as a script writes them.
+    std::map<std::string, std::string> script_variables() const;
+
     /// Path of the file. Throws MeshError if there is none.
     std::string path() const;
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError where values or their combination make no sense.
     void check() const;

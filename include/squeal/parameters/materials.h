@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <string>
 #include <vector>
@@ -38,7 +38,7 @@ namespace Squeal
     Material                  pin    = {1.90e9, 0.25, 3070.};
     std::vector<ElasticMount> mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}};
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 namespace Squeal
 {
@@ -49,7 +48,7 @@ namespace Squeal
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
     bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// ±Ω, positive about e_z [rad/s].
     double angular_velocity() const;

@@ -31,8 +31,8 @@ namespace Squeal
     SolverParameters         solvers;
     OutputParameters         output;
 
-    /// Declares every parameter with its present value and binds it to its member.
-    void add_parameters(dealii::ParameterHandler &prm);
+    /// Declares every parameter and binds it to its member.
+    void declare(Declarations &declarations);
 
     /**
      * Reads a parameter file, then applies overrides of the form

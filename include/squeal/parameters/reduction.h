@@ -1,8 +1,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <string>
 #include <vector>
@@ -47,7 +46,7 @@ namespace Squeal
     std::vector<double>         snapshots         = {0.05, 0.25, 0.45}; ///< friction coefficients whose complex modes make the POD basis
     double                      pod_tolerance     = 1e-4;               ///< [-]
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;

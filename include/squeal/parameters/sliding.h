@@ -1,8 +1,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <string>
 #include <vector>
@@ -71,7 +70,7 @@ namespace Squeal
     std::vector<PinLoad> pin_loads;         ///< of pins that do not carry an equal share of the load of their side
     std::vector<PinGap>  gaps;              ///< of pins that do not touch the disc at first
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Refuses values that leave no steady sliding state; throws ParameterError.
     void check_steady() const;

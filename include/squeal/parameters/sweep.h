@@ -1,8 +1,7 @@
 #pragma once
 
 #include <squeal/base/enum_table.h>
-
-#include <deal.II/base/parameter_handler.h>
+#include <squeal/parameters/declarations.h>
 
 #include <vector>
 
@@ -54,7 +53,7 @@ namespace Squeal
     /// Friction coefficients of the map: from the first to the last of the sweep.
     std::vector<double> map_grid() const;
 
-    void add_parameters(dealii::ParameterHandler &prm);
+    void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;
