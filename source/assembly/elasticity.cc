@@ -1,13 +1,13 @@
 #include <squeal/assembly/cell_integrals.h>
 #include <squeal/assembly/elasticity.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
 #include <functional>
-#include <sstream>
 #include <tuple>
 
 namespace Squeal
@@ -21,13 +21,10 @@ namespace Squeal
     {
       for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
         if (!(values.JxW(q) > 0.))
-          {
-            std::ostringstream where;
-            where << "component " << component << ", element with centre (" << values.get_cell()->center() << ") m";
-            throw MeshError("the element is inverted: its Jacobian is not positive everywhere", where.str(),
-                            "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
-                            "Geometry/Element size, or use Discretization/Degree = 1");
-          }
+          throw MeshError("the element is inverted: its Jacobian is not positive everywhere",
+                          text("component ", component, ", element with centre (", values.get_cell()->center(), ") m"),
+                          "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
+                          "Geometry/Element size, or use Discretization/Degree = 1");
     }
 
     /// ∫ 2 G ε:ε + Λ div div over one cell for E = 1.

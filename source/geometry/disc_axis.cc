@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/disc_axis.h>
 #include <squeal/geometry/faces.h>
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <vector>
 
 namespace Squeal
@@ -122,12 +122,8 @@ namespace Squeal
 
     std::string print(const Vector &vector, const double negligible)
     {
-      std::ostringstream text;
-      text.precision(4);
-      for (unsigned int d = 0; d < 3; ++d)
-        text << (d > 0 ? ", " : "(") << (std::abs(vector[d]) < negligible ? 0. : vector[d]);
-      text << ")";
-      return text.str();
+      const auto component = [&](const unsigned int d) { return std::abs(vector[d]) < negligible ? 0. : vector[d]; };
+      return text("(", component(0), ", ", component(1), ", ", component(2), ")");
     }
   } // namespace
 

@@ -1,25 +1,13 @@
 #include <squeal/geometry/geometry_usage.h>
 
-#include <algorithm>
-#include <array>
-#include <cctype>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 namespace Squeal
 {
   namespace
   {
-    /// Parameters by which a plan becomes a solid.
-    const std::array<const char *, 4> of_the_extrusion = {{"Disc thickness", "Pin height", "Disc layers", "Pin layers"}};
-
-    /// The variable by which a script takes over a parameter: "Pin height" is pin_height.
-    std::string variable_name(std::string name)
-    {
-      std::transform(name.begin(), name.end(), name.begin(), [](const unsigned char c) { return c == ' ' ? '_' : std::tolower(c); });
-      return name;
-    }
-
     /// Whether a Gmsh mesh has physical volumes; their names are text in binary files, too.
     bool has_volumes(const std::string &mesh)
     {
@@ -35,17 +23,18 @@ namespace Squeal
     }
   } // namespace
 
-  GeometryUsage::GeometryUsage(const GeometryParameters &parameters)
+  std::set<std::string> used_variables(const GeometryParameters &parameters)
   {
-    const std::string file = parameters.path();
+    const std::string             file = parameters.path();
+    std::optional<GeometryScript> script;
     if (is_script(file))
       script.emplace(file);
-    is_plan = script ? !script->find({"Physical Volume"}) : !has_volumes(file);
-  }
-
-  bool GeometryUsage::uses(const std::string &name) const
-  {
-    const bool is_extruded = is_plan && std::find(of_the_extrusion.begin(), of_the_extrusion.end(), name) != of_the_extrusion.end();
-    return is_extruded || (script && script->find({variable_name(name)}));
+    std::set<std::string> used = {"pairing_tolerance"};
+    if (script ? !script->find({"Physical Volume"}) : !has_volumes(file))
+      used.insert({"disc_thickness", "pin_height", "disc_layers", "pin_layers"});
+    for (const auto &[name, value] : parameters.script_variables())
+      if (script && script->find({name}))
+        used.insert(name);
+    return used;
   }
 } // namespace Squeal

@@ -1,11 +1,12 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/faces.h>
 #include <squeal/geometry/mesh_check.h>
 
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
-#include <sstream>
+#include <set>
 
 namespace Squeal
 {
@@ -20,10 +21,8 @@ namespace Squeal
       HexMesh::Point             centre;
       for (const unsigned int node : hexahedron.nodes)
         centre += mesh.points[node] / 8.;
-      std::ostringstream text;
-      text << "element " << element << " of volume '" << mesh.volume_names[hexahedron.volume] << "', near (" << centre[0] << ", "
-           << centre[1] << ", " << centre[2] << ") m";
-      return text.str();
+      return text("element ", element, " of volume '", mesh.volume_names[hexahedron.volume], "', near (", centre[0], ", ", centre[1], ", ",
+                  centre[2], ") m");
     }
 
     std::string list(const std::vector<std::string> &names)
@@ -73,14 +72,11 @@ namespace Squeal
   {
     const MeshQuality quality = mesh_quality(mesh);
     if (!(quality.worst_scaled_jacobian >= smallest_scaled_jacobian))
-      {
-        std::ostringstream what;
-        what << (quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate") << ": scaled Jacobian "
-             << quality.worst_scaled_jacobian << ", at least " << smallest_scaled_jacobian << " is needed";
-        throw MeshError(what.str(), describe(mesh, quality.worst_element),
-                        "change the element size or the number of nodes per pin face; keep pins away from "
-                        "edges and from each other, and in a mesh of your own correct this element");
-      }
+      throw MeshError(text(quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate", ": scaled Jacobian ",
+                           quality.worst_scaled_jacobian, ", at least ", smallest_scaled_jacobian, " is needed"),
+                      describe(mesh, quality.worst_element),
+                      "change the element size or the number of nodes per pin face; keep pins away from "
+                      "edges and from each other, and in a mesh of your own correct this element");
     return quality;
   }
 
@@ -105,29 +101,22 @@ namespace Squeal
     // Surfaces
     std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
-    std::vector<std::size_t> n_faces(mesh.surface_names.size(), 0);
+    std::set<std::string> with_faces;
     for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      ++n_faces[quadrilateral.surface];
+      with_faces.insert(mesh.surface_names[quadrilateral.surface]);
     for (const std::string &name : needed)
-      {
-        const auto position = std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name);
-        if (position == mesh.surface_names.end() || n_faces[position - mesh.surface_names.begin()] == 0)
-          throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
-                          "give the surface this name");
-      }
+      if (with_faces.count(name) == 0)
+        throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
+                        "give the surface this name");
 
     // Nodes belong to one volume
-    std::vector<int> volume_of_node(mesh.points.size(), -1);
+    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
     for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
       for (const unsigned int node : hexahedron.nodes)
-        {
-          int &volume = volume_of_node[node];
-          if (volume >= 0 && volume != int(hexahedron.volume))
-            throw MeshError("Volumes '" + mesh.volume_names[volume] + "' and '" + mesh.volume_names[hexahedron.volume] +
-                              "' share nodes, so nothing could slide",
-                            where, "give each volume surfaces and nodes of its own where they touch");
-          volume = hexahedron.volume;
-        }
+        if (volume_of_node[node] != hexahedron.volume)
+          throw MeshError("Volumes '" + mesh.volume_names[hexahedron.volume] + "' and '" + mesh.volume_names[volume_of_node[node]] +
+                            "' share nodes, so nothing could slide",
+                          where, "give each volume surfaces and nodes of its own where they touch");
 
     // Named faces are outer faces of volumes of their kind
     const std::vector<HexFace> faces = all_faces(mesh);

@@ -86,20 +86,10 @@ namespace Squeal
               if (before >= good_shape)
                 continue;
 
-              double      best          = before;
-              Plan::Point best_position = points[node];
-              const auto  attempt       = [&](const Plan::Point &position) {
-                points[node]       = position;
-                const double worst = worst_at(node);
-                if (worst > best)
-                  {
-                    best          = worst;
-                    best_position = position;
-                  }
-              };
-
-              Plan::Point  sum;
-              unsigned int count = 0;
+              // The mean of the neighbours, if it is better
+              const Plan::Point place = points[node];
+              Plan::Point       sum;
+              unsigned int      count = 0;
               for (const unsigned int face : faces_at[node])
                 for (const unsigned int other : faces[face])
                   if (other != node)
@@ -107,18 +97,14 @@ namespace Squeal
                       sum += points[other];
                       ++count;
                     }
-              attempt(sum / double(count));
-              const double longest = 0.5 * longest_edge[node], shortest = 1e-3 * longest;
-              for (double step = longest; step > shortest; step /= 2.)
-                {
-                  const Plan::Point from = best_position;
-                  for (int direction = 0; direction < 8; ++direction)
-                    attempt(from +
-                            step * Plan::Point(std::cos(direction * std::acos(-1.) / 4.), std::sin(direction * std::acos(-1.) / 4.)));
-                }
-
-              points[node] = best_position;
-              moved        = moved || best > before + 1e-4;
+              points[node]      = sum / double(count);
+              const double mean = worst_at(node);
+              if (!(mean > before))
+                points[node] = place;
+              const double longest = 0.5 * longest_edge[node];
+              const double best =
+                -move_to_least(points[node], longest, 1e-3 * longest, -std::max(before, mean), [&] { return -worst_at(node); });
+              moved = moved || best > before + 1e-4;
             }
         }
     }

@@ -13,13 +13,12 @@ namespace Squeal
     // Rows of faces around the bad ones that move along; a pin and its neighbour are fewer apart.
     constexpr int n_rings = 6;
 
-    constexpr int    max_sweeps        = 100; ///< ε has been least for a third of them
-    constexpr double epsilon_decrease  = 0.9;
-    constexpr double smallest_epsilon  = 1e-3;
-    constexpr double converged         = 1e-3; ///< relative decrease of a node's energy in a sweep
-    constexpr double first_turn        = 0.3;  ///< [rad]
-    constexpr double smallest_step     = 1e-3; ///< of a node [mean edge], of a part [rad]
-    constexpr int    n_step_directions = 8;
+    constexpr int    max_sweeps       = 100; ///< ε has been least for a third of them
+    constexpr double epsilon_decrease = 0.9;
+    constexpr double smallest_epsilon = 1e-3;
+    constexpr double converged        = 1e-3; ///< relative decrease of a node's energy in a sweep
+    constexpr double first_turn       = 0.3;  ///< [rad]
+    constexpr double smallest_step    = 1e-3; ///< of a node [mean edge], of a part [rad]
 
     bool is_bad(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
@@ -133,26 +132,8 @@ namespace Squeal
 
       double move(const unsigned int node)
       {
-        const double before   = energy(faces_at[node]);
-        double       least    = before;
-        Plan::Point  position = points[node];
-        const double edge     = std::sqrt(mean_area);
-        for (double step = edge / 2.; step > smallest_step * edge; step /= 2.)
-          {
-            const Plan::Point from = position;
-            for (int direction = 0; direction < n_step_directions; ++direction)
-              {
-                const double angle        = direction * 2. * std::acos(-1.) / n_step_directions;
-                points[node]              = from + step * Plan::Point(std::cos(angle), std::sin(angle));
-                const double energy_there = energy(faces_at[node]);
-                if (energy_there < least)
-                  {
-                    least    = energy_there;
-                    position = points[node];
-                  }
-              }
-          }
-        points[node] = position;
+        const double before = energy(faces_at[node]), edge = std::sqrt(mean_area);
+        const double least = move_to_least(points[node], edge / 2., smallest_step * edge, before, [&] { return energy(faces_at[node]); });
         return (before - least) / before;
       }
 

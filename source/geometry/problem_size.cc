@@ -1,10 +1,10 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/memory_limit.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/problem_size.h>
 
 #include <cmath>
 #include <set>
-#include <sstream>
 
 namespace Squeal
 {
@@ -79,11 +79,9 @@ namespace Squeal
     const double needed = size.memory(degree, n_modes), available = available_memory();
     if (!(needed > available))
       return;
-    std::ostringstream what;
-    what.precision(3);
-    what << "The scene has about " << size.hexahedra << " hexahedra and " << size.dofs << " dofs, which need about " << needed / 1e9
-         << " GB of memory; " << available / 1e9 << " GB are available";
-    throw MeshError(what.str(), where,
+    throw MeshError(text("The scene has about ", size.hexahedra, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,
+                         " GB of memory; ", available / 1e9, " GB are available"),
+                    where,
                     "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
                     "Band/Maximum frequency");
   }

@@ -2,7 +2,6 @@
 
 #include <squeal/geometry/mesher_protocol.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -47,61 +46,43 @@ namespace Squeal
 
     // ------------------------------------------------------- what is forbidden
 
-    constexpr int starting_programs[] = {SYS_execve, SYS_execveat
-#  if defined(__x86_64__)
-                                         ,
-                                         SYS_fork, SYS_vfork
-#  endif
+    /// A system call that ends the process, the reply to it, and which of its arguments names a file; -1 if none does.
+    struct Forbidden
+    {
+      int         call;
+      MesherReply reply;
+      int         file_argument;
     };
 
-    constexpr int using_network[] = {SYS_socket, SYS_socketpair};
+    constexpr MesherReply starts = MesherReply::starts_program, writes = MesherReply::writes_file, connects = MesherReply::uses_network;
 
-    // File name first
-    constexpr int changing_files[] = {SYS_truncate
-#  if defined(__x86_64__)
-                                      ,
-                                      SYS_creat,
-                                      SYS_mkdir,
-                                      SYS_mknod,
-                                      SYS_rename,
-                                      SYS_link,
-                                      SYS_symlink,
-                                      SYS_chmod,
-                                      SYS_chown,
-                                      SYS_lchown
-#  endif
-    };
-
-    // Directory first, then file name
-    constexpr int changing_files_at[] = {SYS_mkdirat,
-                                         SYS_mknodat,
-                                         SYS_renameat2,
-                                         SYS_linkat,
-                                         SYS_symlinkat,
-                                         SYS_fchmodat,
-                                         SYS_fchownat
+    // Of open, openat and clone some uses are allowed, see confine()
+    constexpr Forbidden forbidden[] = {
+      {SYS_execve, starts, -1},       {SYS_execveat, starts, -1}, {SYS_clone, starts, -1}, {SYS_socket, connects, -1},
+      {SYS_socketpair, connects, -1}, {SYS_truncate, writes, 0},  {SYS_openat, writes, 1}, {SYS_mkdirat, writes, 1},
+      {SYS_mknodat, writes, 1},       {SYS_renameat2, writes, 1}, {SYS_linkat, writes, 1}, {SYS_symlinkat, writes, 1},
+      {SYS_fchmodat, writes, 1},      {SYS_fchownat, writes, 1},
 #  if defined(SYS_renameat)
-                                         ,
-                                         SYS_renameat
+      {SYS_renameat, writes, 1},
+#  endif
+#  if defined(__x86_64__)
+      {SYS_fork, starts, -1},         {SYS_vfork, starts, -1},    {SYS_open, writes, 0},   {SYS_creat, writes, 0},
+      {SYS_mkdir, writes, 0},         {SYS_mknod, writes, 0},     {SYS_rename, writes, 0}, {SYS_link, writes, 0},
+      {SYS_symlink, writes, 0},       {SYS_chmod, writes, 0},     {SYS_chown, writes, 0},  {SYS_lchown, writes, 0},
 #  endif
     };
 
     // No script asks for these; Gmsh itself tries to remove files that it did not make.
-    constexpr int removing_files[] = {SYS_unlinkat
+    constexpr int removing_files[] = {
+      SYS_unlinkat,
 #  if defined(__x86_64__)
-                                      ,
-                                      SYS_unlink, SYS_rmdir
+      SYS_unlink,
+      SYS_rmdir,
 #  endif
     };
 
     // Ways around the above whose arguments a filter cannot read; callers take the older call instead.
     constexpr int unavailable[] = {435 /* clone3 */, 437 /* openat2 */, 425 /* io_uring_setup */};
-
-    template <typename Calls>
-    bool contains(const Calls &calls, const int call)
-    {
-      return std::find(std::begin(calls), std::end(calls), call) != std::end(calls);
-    }
 
     // ------------------------------------------------------------------ filter
 
@@ -116,14 +97,14 @@ namespace Squeal
         load(offsetof(seccomp_data, nr));
       }
 
-      template <typename Calls>
-      void forbid(const Calls &calls, const unsigned int action)
+      /// Answers a call by an action of the kernel, unless a rule before this one has decided about it.
+      void answer(const int call, const unsigned int action)
       {
-        for (const int call : calls)
-          if_equal(call, action);
+        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)(call), 0, 1));
+        program.push_back(BPF_STMT(BPF_RET | BPF_K, action));
       }
 
-      /// Forbids a call whose 32-bit argument has one of @p bits, or lacks all of them.
+      /// Decides about a call: forbids it if its 32-bit argument has one of @p bits, or lacks all of them.
       void forbid_bits(const int call, const int argument, const unsigned int bits, const bool where_set)
       {
         program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)(call), 0, 4));
@@ -155,12 +136,6 @@ namespace Squeal
         program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offset));
       }
 
-      void if_equal(const unsigned int value, const unsigned int action)
-      {
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 0, 1));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, action));
-      }
-
       void unless_equal(const unsigned int value, const unsigned int action)
       {
         program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 1, 0));
@@ -184,17 +159,10 @@ namespace Squeal
 
     void on_forbidden_call(int, siginfo_t *info, void *context)
     {
-      const int         call  = info->si_syscall;
-      const ucontext_t &where = *static_cast<const ucontext_t *>(context);
-      if (contains(using_network, call))
-        reply_and_end(MesherReply::uses_network, nullptr);
-      if (contains(starting_programs, call) || call == SYS_clone)
-        reply_and_end(MesherReply::starts_program, nullptr);
-#  if defined(__x86_64__)
-      if (call == SYS_open)
-        reply_and_end(MesherReply::writes_file, text_argument(where, 0));
-#  endif
-      reply_and_end(MesherReply::writes_file, text_argument(where, contains(changing_files, call) ? 0 : 1));
+      for (const Forbidden &rule : forbidden)
+        if (rule.call == info->si_syscall)
+          reply_and_end(rule.reply,
+                        rule.file_argument < 0 ? nullptr : text_argument(*static_cast<const ucontext_t *>(context), rule.file_argument));
     }
   } // namespace
 
@@ -217,14 +185,14 @@ namespace Squeal
     filter.forbid_from(0x40000000); // the x32 numbers of the same calls
     filter.forbid_bits(SYS_open, 1, writing, true);
 #  endif
-    filter.forbid(starting_programs, SECCOMP_RET_TRAP);
-    filter.forbid(using_network, SECCOMP_RET_TRAP);
-    filter.forbid(changing_files, SECCOMP_RET_TRAP);
-    filter.forbid(changing_files_at, SECCOMP_RET_TRAP);
-    filter.forbid(removing_files, SECCOMP_RET_ERRNO | EACCES);
-    filter.forbid(unavailable, SECCOMP_RET_ERRNO | ENOSYS);
     filter.forbid_bits(SYS_openat, 2, writing, true);
     filter.forbid_bits(SYS_clone, 0, CLONE_THREAD, false); // threads are no programs
+    for (const Forbidden &rule : forbidden)
+      filter.answer(rule.call, SECCOMP_RET_TRAP);
+    for (const int call : removing_files)
+      filter.answer(call, SECCOMP_RET_ERRNO | EACCES);
+    for (const int call : unavailable)
+      filter.answer(call, SECCOMP_RET_ERRNO | ENOSYS);
     filter.install();
   }
 #else

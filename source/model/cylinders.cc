@@ -1,7 +1,7 @@
 #include <squeal/model/cylinders.h>
 
+#include <deal.II/base/tensor.h>
 #include <deal.II/grid/manifold_lib.h>
-#include <deal.II/lac/full_matrix.h>
 
 #include <cmath>
 #include <map>
@@ -39,27 +39,20 @@ namespace Squeal
       Point<3> centre;
       for (const auto &p : points)
         centre += p / static_cast<double>(points.size());
-      FullMatrix<double> normal(3, 3);
-      Vector<double>     rhs(3), solution(3);
+      Tensor<2, 3> normal;
+      Tensor<1, 3> rhs;
       for (const auto &p : points)
         {
-          const Tensor<1, 3> d      = p - centre;
-          const double       row[3] = {2 * d[0], 2 * d[1], 1.}, value = d[0] * d[0] + d[1] * d[1];
-          for (unsigned int i = 0; i < 3; ++i)
-            {
-              for (unsigned int j = 0; j < 3; ++j)
-                normal(i, j) += row[i] * row[j];
-              rhs(i) += row[i] * value;
-            }
+          const Tensor<1, 3> d = p - centre, row({2. * d[0], 2. * d[1], 1.});
+          normal += outer_product(row, row);
+          rhs += (d[0] * d[0] + d[1] * d[1]) * row;
         }
-      if (std::abs(normal.determinant()) < 1e-14 * std::pow(normal.frobenius_norm(), 3))
+      if (std::abs(determinant(normal)) < 1e-14 * std::pow(normal.norm(), 3))
         return {}; // a plane surface
-      FullMatrix<double> inverse(3, 3);
-      inverse.invert(normal);
-      inverse.vmult(solution, rhs);
-      const double radius = std::sqrt(solution(2) + solution(0) * solution(0) + solution(1) * solution(1));
+      const Tensor<1, 3> solution = invert(normal) * rhs;
+      const double       radius   = std::sqrt(solution[2] + solution[0] * solution[0] + solution[1] * solution[1]);
 
-      Cylinder cylinder{centre + Point<3>(solution(0), solution(1), 0.), radius};
+      Cylinder cylinder{centre + Point<3>(solution[0], solution[1], 0.), radius};
       for (const auto &p : points)
         if (std::abs(std::hypot(p[0] - cylinder.axis_point[0], p[1] - cylinder.axis_point[1]) - radius) > roundness * radius)
           return {};

@@ -6,6 +6,8 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_tools.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 #include <sstream>
 
@@ -176,13 +178,8 @@ namespace Squeal
   {
     const auto it = std::find(surfaces.begin(), surfaces.end(), name);
     if (it == surfaces.end())
-      {
-        std::string known;
-        for (const std::string &surface : surfaces)
-          known += (known.empty() ? "" : ", ") + surface;
-        throw MeshError("the mesh has no surface named `" + name + "`", "mesh",
-                        "name such a surface in the geometry, or use one of: " + known);
-      }
+      throw MeshError("the mesh has no surface named `" + name + "`", "mesh",
+                      "name such a surface in the geometry, or use one of: " + boost::algorithm::join(surfaces, ", "));
     return it - surfaces.begin() + 1;
   }
 

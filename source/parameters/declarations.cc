@@ -69,7 +69,7 @@ namespace Squeal
         const auto        number          = parse_number(text);
         if (number && is_integer && *number > largest_integer)
           refuse(path, "be at most " + std::to_string(largest_integer) + unit, text, wanted);
-        if (number && (*number < range.least || *number > range.greatest))
+        if (number && !range.contains(*number))
           refuse(path, (has_both_bounds() ? "lie in " : "be ") + bounds() + unit, text, wanted);
         if (!number || (is_integer && text.find_first_not_of("+-0123456789") != std::string::npos))
           refuse(path, "be " + wanted, text, wanted);
@@ -77,6 +77,11 @@ namespace Squeal
       }
     };
   } // namespace
+
+  bool Range::contains(const double value) const
+  {
+    return value >= least && value <= greatest;
+  }
 
   void Declarations::enter(const std::string &name)
   {

@@ -12,32 +12,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Part of a message; parameters are shown as they are.
-    template <typename Value>
-    void print(std::ostream &stream, const Value &value)
-    {
-      if constexpr (std::is_same_v<Value, double>)
-        stream << exact_text(value);
-      else
-        stream << value;
-    }
-
-    template <typename... Values>
-    std::string text(const Values &...values)
-    {
-      std::ostringstream stream;
-      (print(stream, values), ...);
-      return stream.str();
-    }
-
-    /// What was computed from parameters, without the digits that rounding adds.
-    std::string rounded(const double value)
-    {
-      std::ostringstream stream;
-      stream << value;
-      return stream.str();
-    }
-
     [[noreturn]] void refuse(const std::string &what, const std::string &name, const std::string &change)
     {
       throw ParameterError(what, "Geometry/" + name, change);
@@ -58,7 +32,7 @@ namespace Squeal
     void check_positive(const double value, const std::string &name)
     {
       if (!(value > 0.) || !std::isfinite(value))
-        refuse(text("Geometry/", name, " is ", value, ", but must be positive"), name, "set a positive value");
+        refuse(text("Geometry/", name, " is ", exact_text(value), ", but must be positive"), name, "set a positive value");
     }
 
     /// Number of intervals k on a third of the circle of a pin whose face has 3 k (k + 1) + 1 nodes, not rounded.
@@ -97,13 +71,13 @@ namespace Squeal
           const double inside  = parameters.disc_inner_radius - (layout.radii[i] - pin_radius);
           const double outside = layout.radii[i] + pin_radius - parameters.disc_outer_radius;
           if (inside >= 0. || outside >= 0.)
-            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", layout.radii[i], " m with diameter ",
-                        parameters.pin_diameter, " m, reaches ", rounded(std::max(inside, outside)), " m beyond the ",
+            refuse(text("Geometry/", radii_name, ": pin ", i + 1, ", on radius ", exact_text(layout.radii[i]), " m with diameter ",
+                        exact_text(parameters.pin_diameter), " m, reaches ", std::max(inside, outside), " m beyond the ",
                         inside >= outside ? "inner" : "outer", " radius of the disc (",
                         inside >= outside ? parameters.disc_inner_radius : parameters.disc_outer_radius, " m)"),
                    radii_name,
-                   text("a radius between ", rounded(parameters.disc_inner_radius + pin_radius), " m and ",
-                        rounded(parameters.disc_outer_radius - pin_radius),
+                   text("a radius between ", parameters.disc_inner_radius + pin_radius, " m and ",
+                        parameters.disc_outer_radius - pin_radius,
                         " m, both excluded, keeps the pin on the disc; or make the pin smaller"));
         }
 
@@ -117,8 +91,8 @@ namespace Squeal
                                               4. * layout.radii[i] * layout.radii[j] * std::pow(std::sin(angle / 2.), 2));
             if (distance <= parameters.pin_diameter)
               refuse(text("Geometry/", angles_name, ": pins ", i + 1, " and ", j + 1, " of this side overlap by ",
-                          rounded(parameters.pin_diameter - distance), " m: their axes are ", rounded(distance),
-                          " m apart, their diameter is ", parameters.pin_diameter, " m"),
+                          parameters.pin_diameter - distance, " m: their axes are ", distance, " m apart, their diameter is ",
+                          exact_text(parameters.pin_diameter), " m"),
                      angles_name, text("move one of them in angle or radius (", radii_name, "), or make the pins smaller"));
           }
     }
@@ -243,8 +217,8 @@ namespace Squeal
     check_positive(pairing_tolerance, "Pairing tolerance");
     check_positive(meshing_time_limit, "Meshing time limit");
     if (!(meshing_memory_limit >= least_memory_limit))
-      refuse(text("Geometry/Meshing memory limit is ", meshing_memory_limit, " GB, with which Gmsh cannot start"), "Meshing memory limit",
-             text("set it to at least ", least_memory_limit, " GB"));
+      refuse(text("Geometry/Meshing memory limit is ", exact_text(meshing_memory_limit), " GB, with which Gmsh cannot start"),
+             "Meshing memory limit", text("set it to at least ", exact_text(least_memory_limit), " GB"));
     check_positive(pin_layers, "Pin layers");
     check_positive(disc_layers, "Disc layers");
     check_nodes_per_pin_face(nodes_per_pin_face);
@@ -259,23 +233,24 @@ namespace Squeal
 
     // Pairs must be unambiguous: neighbours on a contact face are at least one element apart.
     if (pairing_tolerance >= element_size / 2.)
-      refuse(text("Geometry/Pairing tolerance is ", pairing_tolerance, " m with elements of ", element_size, " m"), "Pairing tolerance",
-             "set it far below the element size; 1e-6 m suits most geometries");
+      refuse(text("Geometry/Pairing tolerance is ", exact_text(pairing_tolerance), " m with elements of ", exact_text(element_size), " m"),
+             "Pairing tolerance", "set it far below the element size; 1e-6 m suits most geometries");
 
     // The built-in plan; in files of the user's own these need not mean anything
     if (std::filesystem::path(file).filename() != "disc_pins.geo")
       return;
     if (disc_inner_radius >= disc_outer_radius)
-      refuse(text("Geometry/Disc inner radius is ", disc_inner_radius, " m, not smaller than Geometry/Disc outer radius, ",
-                  disc_outer_radius, " m"),
+      refuse(text("Geometry/Disc inner radius is ", exact_text(disc_inner_radius), " m, not smaller than Geometry/Disc outer radius, ",
+                  exact_text(disc_outer_radius), " m"),
              "Disc inner radius", "set it below the outer radius");
     const double width = disc_outer_radius - disc_inner_radius;
     if (element_size > width / 2.)
-      refuse(text("Geometry/Element size is ", element_size, " m, but the disc is only ", rounded(width), " m wide between its radii"),
-             "Element size", text("set it to at most ", rounded(width / 2.), " m, better a fraction of that"));
+      refuse(text("Geometry/Element size is ", exact_text(element_size), " m, but the disc is only ", width, " m wide between its radii"),
+             "Element size", text("set it to at most ", width / 2., " m, better a fraction of that"));
     if (element_size > disc_inner_radius)
-      refuse(text("Geometry/Element size is ", element_size, " m, but the bore has a radius of only ", disc_inner_radius, " m"),
-             "Element size", text("set it to at most ", disc_inner_radius, " m, better a fraction of that"));
+      refuse(text("Geometry/Element size is ", exact_text(element_size), " m, but the bore has a radius of only ",
+                  exact_text(disc_inner_radius), " m"),
+             "Element size", text("set it to at most ", exact_text(disc_inner_radius), " m, better a fraction of that"));
     if (top.radii.empty() && bottom.radii.empty())
       refuse("Geometry/Top pin radii and Geometry/Bottom pin radii are both empty, so there is no contact", "Top pin radii",
              "place at least one pin");

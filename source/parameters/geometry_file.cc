@@ -3,6 +3,9 @@
 #include <squeal/base/text.h>
 #include <squeal/parameters/geometry_file.h>
 
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
+
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -15,18 +18,6 @@ namespace Squeal
 
   namespace
   {
-    std::string lower_case(std::string text)
-    {
-      std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-      return text;
-    }
-
-    std::string trimmed(const std::string &text)
-    {
-      const auto first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
-      return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-    }
-
     /// The text with blanks for comments, so that lines keep their numbers.
     std::string without_comments(std::string text)
     {
@@ -47,17 +38,28 @@ namespace Squeal
       return text;
     }
 
-    /// The text between a bracket and its counterpart; empty where there is none.
-    std::string inside_brackets(const std::string &text, const std::size_t open)
+    /// How deep in brackets a text is where it has been read to, and whether in a string.
+    struct Nesting
     {
       int  depth     = 0;
       bool in_string = false;
+
+      void read(const char c)
+      {
+        in_string = in_string != (c == '"');
+        if (!in_string)
+          depth += (c == '[' || c == '{' || c == '(') - (c == ']' || c == '}' || c == ')');
+      }
+    };
+
+    /// The text between a bracket and its counterpart; empty where there is none.
+    std::string inside_brackets(const std::string &text, const std::size_t open)
+    {
+      Nesting nesting;
       for (std::size_t i = open; i < text.size(); ++i)
         {
-          in_string = in_string != (text[i] == '"');
-          depth += !in_string && (text[i] == '[' || text[i] == '{' || text[i] == '(');
-          depth -= !in_string && (text[i] == ']' || text[i] == '}' || text[i] == ')');
-          if (depth == 0)
+          nesting.read(text[i]);
+          if (nesting.depth == 0)
             return i == open ? "" : text.substr(open + 1, i - open - 1);
         }
       return "";
@@ -67,20 +69,17 @@ namespace Squeal
     std::vector<std::string> items(const std::string &text)
     {
       std::vector<std::string> result(1);
-      int                      depth     = 0;
-      bool                     in_string = false;
+      Nesting                  nesting;
       for (const char c : text)
         {
-          in_string = in_string != (c == '"');
-          depth += !in_string && (c == '[' || c == '{' || c == '(');
-          depth -= !in_string && (c == ']' || c == '}' || c == ')');
-          if (c == ',' && depth == 0 && !in_string)
+          nesting.read(c);
+          if (c == ',' && nesting.depth == 0 && !nesting.in_string)
             result.emplace_back();
           else
             result.back() += c;
         }
       for (std::string &item : result)
-        item = trimmed(item);
+        boost::trim(item);
       return result;
     }
 
@@ -132,17 +131,17 @@ namespace Squeal
     {
       for (const std::string &option : options)
         if (leading_name(option) == "Name")
-          return leading_string(trimmed(option.substr(std::string("Name").size())));
+          return leading_string(boost::trim_copy(option.substr(std::string("Name").size())));
       return "";
     }
 
     /// One item of DefineConstant[...]: name, name = value, or name = {value, options}.
     std::optional<GeometryVariable> constant(const std::string &item)
     {
-      const std::string name = leading_name(item), rest = trimmed(item.substr(name.size()));
+      const std::string name = leading_name(item), rest = boost::trim_copy(item.substr(name.size()));
       if (name.empty() || (!rest.empty() && rest[0] != '='))
         return {};
-      std::string value = rest.empty() ? "0" : trimmed(rest.substr(1));
+      std::string value = rest.empty() ? "0" : boost::trim_copy(rest.substr(1));
       if (!value.empty() && value[0] == '{')
         value = items(inside_brackets(value, 0))[0];
       if (value.empty() || value[0] == '"' || value[0] == '{')
@@ -198,7 +197,7 @@ namespace Squeal
 
   bool is_script(const std::string &geometry)
   {
-    return lower_case(fs::path(geometry).extension().string()) == ".geo";
+    return boost::iequals(fs::path(geometry).extension().string(), ".geo");
   }
 
   GeometryScript::GeometryScript(const std::string &file)
@@ -274,7 +273,7 @@ namespace Squeal
         for (unsigned int number = 1; std::getline(lines, line); ++number)
           for (const std::string &word : words)
             if (find_word(single_spaced(line), word) != std::string::npos)
-              return part.file + ", line " + std::to_string(number) + ": " + trimmed(line);
+              return part.file + ", line " + std::to_string(number) + ": " + boost::trim_copy(line);
       }
     return {};
   }

@@ -2,6 +2,9 @@
 #include <squeal/base/text.h>
 #include <squeal/parameters/parameter_file.h>
 
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -12,23 +15,14 @@ namespace Squeal
   namespace
   {
     namespace fs = std::filesystem;
+    using boost::starts_with;
+    using boost::trim_copy;
 
     constexpr const char *blanks = " \t\r\n\v\f";
-
-    std::string trim(const std::string &text)
-    {
-      const auto first = text.find_first_not_of(blanks);
-      return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-    }
 
     std::string place(const std::string &file, const unsigned int line)
     {
       return "file " + legible(file) + ", line " + std::to_string(line);
-    }
-
-    bool starts_with(const std::string &text, const char *start)
-    {
-      return text.rfind(start, 0) == 0;
     }
 
     /// The text of a file without its byte order mark; @p where names it in messages.
@@ -48,8 +42,7 @@ namespace Squeal
         throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
       if (const auto zero = text.find('\0'); zero != std::string::npos)
         throw ParameterError("the parameter file is no text: it holds a zero byte",
-                             "file " + legible(file) + ", line " +
-                               std::to_string(1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
+                             place(file, 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n')),
                              "give a text file in UTF-8");
       constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
       return starts_with(text, byte_order_mark) ? text.substr(3) : text;
@@ -74,7 +67,7 @@ namespace Squeal
         while (std::getline(stream, line))
           {
             ++number;
-            line = trim(line);
+            line = trim_copy(line);
             if (whole.empty())
               first = number;
             const bool goes_on = !line.empty() && line.back() == '\\';
@@ -121,9 +114,9 @@ namespace Squeal
       void read_line(const std::string &line, const std::string &file, const unsigned int number, const std::size_t outer_depth)
       {
         const std::string where = place(file, number);
-        const std::string text  = trim(line.substr(0, line.find('#')));
+        const std::string text  = trim_copy(line.substr(0, line.find('#')));
         const std::string key   = text.substr(0, text.find_first_of(blanks));
-        const std::string rest  = trim(text.substr(key.size()));
+        const std::string rest  = trim_copy(text.substr(key.size()));
         if (key.empty())
           return;
         if (key == "subsection" || key == "SUBSECTION")
@@ -142,7 +135,7 @@ namespace Squeal
             const auto equal = rest.find('=');
             if (equal == std::string::npos)
               throw ParameterError(in_quotes(text) + " has no `=`", where, "write set NAME = VALUE");
-            statements.push_back({path(single_spaced(rest.substr(0, equal))), trim(rest.substr(equal + 1)), where});
+            statements.push_back({path(single_spaced(rest.substr(0, equal))), trim_copy(rest.substr(equal + 1)), where});
           }
         else if ((key == "include" || key == "INCLUDE") && !rest.empty())
           {

@@ -8,7 +8,6 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
-#include <iomanip>
 #include <filesystem>
 #include <numeric>
 #include <sstream>
@@ -19,14 +18,6 @@ namespace Squeal
   {
     /// Distance of -1/β from zero over the radius of the band from which the search for eigenvalues does not meet them [-].
     constexpr double clear_of_accumulation = 1.2;
-
-    /// Three digits.
-    std::string short_text(const double value)
-    {
-      std::ostringstream text;
-      text << std::setprecision(3) << value;
-      return text.str();
-    }
 
     /// Levenshtein distance without regard to case.
     unsigned int edit_distance(const std::string &a, const std::string &b)
@@ -47,23 +38,14 @@ namespace Squeal
       return row[b.size()];
     }
 
-    /// The words of a name.
-    std::vector<std::string> words(const std::string &name)
-    {
-      std::istringstream       stream(name);
-      std::vector<std::string> result;
-      for (std::string word; stream >> word;)
-        result.push_back(word);
-      return result;
-    }
-
     /**
      * Edits that lead from one name to another, words compared with their best counterparts: words may be left out,
      * exchanged or cut short, each at the price of one edit.
      */
     unsigned int word_distance(const std::string &written, const std::string &name)
     {
-      const auto   written_words = words(written), name_words = words(name);
+      using dealii::Utilities::split_string_list;
+      const auto   written_words = split_string_list(written, ' '), name_words = split_string_list(name, ' ');
       unsigned int sum = std::max(written_words.size(), name_words.size()) - written_words.size();
       for (const std::string &word : written_words)
         {
@@ -287,13 +269,12 @@ namespace Squeal
     for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
         throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) +
-                               " s, gathers the real eigenvalues of all "
-                               "overdamped waves at -1/beta = " +
-                               exact_text(-1. / beta) + " 1/s, within reach of the band",
+                               " s, gathers the real eigenvalues of all overdamped waves at -1/beta = " + exact_text(-1. / beta) +
+                               " 1/s, within reach of the band",
                              std::string("parameter ") + section + "/Rayleigh beta",
-                             "give less than " + short_text(1. / radius) + " s, let the band end below " +
-                               short_text(hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius))) +
-                               " Hz, or give Damping/Modal damping ratio instead");
+                             text("give less than ", 1. / radius, " s, let the band end below ",
+                                  hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius)),
+                                  " Hz, or give Damping/Modal damping ratio instead"));
   }
 
   void Parameters::check() const

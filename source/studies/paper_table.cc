@@ -39,15 +39,12 @@ namespace Squeal
 
   /// What the name of a row adds to its label.
   template <>
-  struct EnumTable<Match>
-  {
-    static constexpr std::array<EnumName<Match>, 6> names = {{{Match::label, ""},
-                                                              {Match::lowest, " lowest"},
-                                                              {Match::highest, " highest"},
-                                                              {Match::most_unstable, " most unstable"},
-                                                              {Match::second_unstable, " second unstable"},
-                                                              {Match::frequency, ""}}};
-  };
+  inline constexpr EnumName<Match> enum_table<Match>[] = {{Match::label, ""},
+                                                          {Match::lowest, " lowest"},
+                                                          {Match::highest, " highest"},
+                                                          {Match::most_unstable, " most unstable"},
+                                                          {Match::second_unstable, " second unstable"},
+                                                          {Match::frequency, ""}};
 
   namespace
   {

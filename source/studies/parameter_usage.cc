@@ -1,7 +1,10 @@
 #include <squeal/geometry/geometry_usage.h>
 #include <squeal/studies/parameter_usage.h>
 
+#include <boost/algorithm/string.hpp>
+
 #include <algorithm>
+#include <optional>
 
 namespace Squeal
 {
@@ -110,20 +113,11 @@ namespace Squeal
 
     // ------------------------------------------------------------------ geometry
 
-    /// Lengths, layouts and numbers of elements, which a geometry of the user's own may not use.
-    bool is_of_the_geometry(const std::string &path)
+    /// The variable by which a script takes over a parameter: that of "Geometry/Pin height" is pin_height.
+    std::string script_variable(const std::string &path)
     {
-      for (const char *name :
-           {"Disc inner radius", "Disc outer radius", "Disc thickness", "Pin diameter", "Pin height", "Top pin radii", "Top pin angles",
-            "Bottom pin radii", "Bottom pin angles", "Nodes per pin face", "Pin layers", "Disc layers", "Element size"})
-        if (path == std::string("Geometry/") + name)
-          return true;
-      return false;
-    }
-
-    std::string name_of(const std::string &path)
-    {
-      return path.substr(path.rfind('/') + 1);
+      const std::string section = "Geometry/";
+      return boost::starts_with(path, section) ? boost::replace_all_copy(boost::to_lower_copy(path.substr(section.size())), " ", "_") : "";
     }
 
     // ------------------------------------------------------------------- changes
@@ -151,16 +145,18 @@ namespace Squeal
 
   std::vector<UnusedParameter> unused_parameters(const Parameters &parameters)
   {
-    std::optional<GeometryUsage> geometry; // read only where it matters
-    std::vector<UnusedParameter> unused;
+    const auto                           variables = parameters.geometry.script_variables();
+    std::optional<std::set<std::string>> used; // found out only where it matters
+    std::vector<UnusedParameter>         unused;
     for (const std::string &path : changed_parameters(parameters))
       {
         std::string reason = why_unused(path, parameters);
-        if (is_of_the_geometry(path))
+        if (const std::string variable = script_variable(path); variables.count(variable) > 0)
           {
-            if (!geometry)
-              geometry.emplace(parameters.geometry);
-            reason = geometry->uses(name_of(path)) ? "" : "the geometry does not use it";
+            if (!used)
+              used = used_variables(parameters.geometry);
+            if (used->count(variable) == 0)
+              reason = "the geometry does not use it";
           }
         if (!reason.empty())
           unused.push_back({path, reason});

@@ -14,20 +14,11 @@ namespace Squeal
   namespace
   {
     // Bodies and materials of machines, from a desk toy to a turbine and from rubber to beryllium
-    struct Interval
-    {
-      double least, greatest;
-
-      bool contains(const double value) const
-      {
-        return value >= least && value <= greatest;
-      }
-    };
-    constexpr Interval disc_radii  = {5e-3, 5.};    ///< [m]
-    constexpr Interval heights     = {1e-5, 1.};    ///< [m]
-    constexpr Interval densities   = {50., 25000.}; ///< [kg/m³]
-    constexpr Interval bar_speeds  = {20., 20000.}; ///< [m/s]
-    constexpr Interval disc_masses = {1e-3, 2e4};   ///< [kg]
+    constexpr Range disc_radii  = {5e-3, 5.};    ///< [m]
+    constexpr Range heights     = {1e-5, 1.};    ///< [m]
+    constexpr Range densities   = {50., 25000.}; ///< [kg/m³]
+    constexpr Range bar_speeds  = {20., 20000.}; ///< [m/s]
+    constexpr Range disc_masses = {1e-3, 2e4};   ///< [kg]
 
     constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
     constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
@@ -38,7 +29,7 @@ namespace Squeal
       return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume);
     }
 
-    std::string range_text(const Interval &range, const char *unit)
+    std::string range_text(const Range &range, const char *unit)
     {
       return text(range.least, " to ", range.greatest, " ", unit);
     }
@@ -60,7 +51,7 @@ namespace Squeal
     // Each body by itself
     constexpr double         infinity = std::numeric_limits<double>::infinity();
     std::vector<BodySummary> bodies;
-    std::vector<Interval>    z(mesh.volume_names.size(), {infinity, -infinity});
+    std::vector<Range>       z(mesh.volume_names.size(), {infinity, -infinity});
     for (const std::string &name : mesh.volume_names)
       {
         const Material &material = name == PhysicalNames::disc ? materials.disc : materials.pin;
@@ -70,7 +61,7 @@ namespace Squeal
     for (std::size_t node = 0; node < mesh.points.size(); ++node)
       {
         BodySummary &body   = bodies[volume_of_node[node]];
-        Interval    &extent = z[volume_of_node[node]];
+        Range       &extent = z[volume_of_node[node]];
         const double radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
         body.inner_radius   = std::min(body.inner_radius, radius);
         body.outer_radius   = std::max(body.outer_radius, radius);

@@ -73,7 +73,8 @@ namespace Squeal
       const auto               damping   = contact_damping(contact, linearisation.damping);
       run.progress.begin("Matrix files");
       const auto write = [&](const SparseMatrix &matrix, const char *name, const MatrixMarketSymmetry symmetry) {
-        write_matrix_market(matrix, folder.path(text("matrices/", name, ".mtx")), symmetry);
+        const std::string content = matrix_market(matrix, symmetry);
+        folder.write(text("matrices/", name, ".mtx"), [&](std::ostream &stream) { stream << content; });
       };
       write(*system.mass, "M", MatrixMarketSymmetry::symmetric);
       write(*system.stiffness, "K", MatrixMarketSymmetry::symmetric);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,19 +15,15 @@ namespace Squeal
     std::string_view name;
   };
 
-  /**
-   * Names of an enumeration, stated once: specialised beside each enum as
-   * `static constexpr std::array names`; parser, printing and documentation
-   * all read it.
-   */
+  /// Names of an enumeration, stated once: specialised beside each enum as an array of EnumName; parser, printing and documentation all read it.
   template <typename Enum>
-  struct EnumTable;
+  inline constexpr std::nullptr_t enum_table = nullptr;
 
   /// The name of @p value.
   template <typename Enum>
   std::string to_string(const Enum value)
   {
-    for (const auto &entry : EnumTable<Enum>::names)
+    for (const EnumName<Enum> &entry : enum_table<Enum>)
       if (entry.value == value)
         return std::string(entry.name);
     return "?";
@@ -38,7 +34,7 @@ namespace Squeal
   std::vector<std::string> enum_names()
   {
     std::vector<std::string> names;
-    for (const auto &entry : EnumTable<Enum>::names)
+    for (const EnumName<Enum> &entry : enum_table<Enum>)
       names.emplace_back(entry.name);
     return names;
   }
@@ -47,9 +43,9 @@ namespace Squeal
   template <typename Enum>
   Enum enum_value(const std::string &name)
   {
-    for (const auto &entry : EnumTable<Enum>::names)
+    for (const EnumName<Enum> &entry : enum_table<Enum>)
       if (entry.name == name)
         return entry.value;
-    return EnumTable<Enum>::names.front().value;
+    return enum_table<Enum>[0].value;
   }
 } // namespace Squeal

@@ -14,11 +14,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<FactorizationLibrary>
-  {
-    static constexpr std::array<EnumName<FactorizationLibrary>, 4> names = {{{FactorizationLibrary::automatic, "automatic"},
-                                                                             {FactorizationLibrary::cholmod, "CHOLMOD"},
-                                                                             {FactorizationLibrary::umfpack, "UMFPACK"},
-                                                                             {FactorizationLibrary::mumps, "MUMPS"}}};
-  };
+  inline constexpr EnumName<FactorizationLibrary> enum_table<FactorizationLibrary>[] = {{FactorizationLibrary::automatic, "automatic"},
+                                                                                        {FactorizationLibrary::cholmod, "CHOLMOD"},
+                                                                                        {FactorizationLibrary::umfpack, "UMFPACK"},
+                                                                                        {FactorizationLibrary::mumps, "MUMPS"}};
 } // namespace Squeal

@@ -12,8 +12,5 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<RealSolver>
-  {
-    static constexpr std::array<EnumName<RealSolver>, 2> names = {{{RealSolver::anasazi, "Anasazi"}, {RealSolver::arpack, "ARPACK"}}};
-  };
+  inline constexpr EnumName<RealSolver> enum_table<RealSolver>[] = {{RealSolver::anasazi, "Anasazi"}, {RealSolver::arpack, "ARPACK"}};
 } // namespace Squeal

@@ -1,11 +1,23 @@
 #pragma once
 
+#include <iomanip>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
 namespace Squeal
 {
+  /// One text from several parts; numbers with four digits.
+  template <typename... Parts>
+  std::string text(const Parts &...parts)
+  {
+    std::ostringstream stream;
+    stream << std::setprecision(4);
+    (stream << ... << parts);
+    return stream.str();
+  }
+
   /// The shortest text that reads back as exactly this number; zero has no sign.
   std::string exact_text(double value);
 

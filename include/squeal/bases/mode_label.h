@@ -22,17 +22,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ModeFamily>
-  {
-    static constexpr std::array<EnumName<ModeFamily>, 8> names = {{{ModeFamily::unnamed, "unnamed"},
-                                                                   {ModeFamily::rigid_body, "RB"},
-                                                                   {ModeFamily::axial, "A"},
-                                                                   {ModeFamily::radial, "R"},
-                                                                   {ModeFamily::circumferential, "C"},
-                                                                   {ModeFamily::flexural, "F"},
-                                                                   {ModeFamily::torsional, "T"},
-                                                                   {ModeFamily::longitudinal, "L"}}};
-  };
+  inline constexpr EnumName<ModeFamily> enum_table<ModeFamily>[] = {
+    {ModeFamily::unnamed, "unnamed"},   {ModeFamily::rigid_body, "RB"}, {ModeFamily::axial, "A"},     {ModeFamily::radial, "R"},
+    {ModeFamily::circumferential, "C"}, {ModeFamily::flexural, "F"},    {ModeFamily::torsional, "T"}, {ModeFamily::longitudinal, "L"}};
 
   /// Which of the two modes of a doublet.
   enum class DoubletSign

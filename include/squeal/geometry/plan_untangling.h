@@ -2,10 +2,37 @@
 
 #include <squeal/geometry/plan.h>
 
+#include <cmath>
 #include <vector>
 
 namespace Squeal
 {
+  /**
+   * Moves a point to where a function of it is less than @p least, by steps in eight directions that become half as
+   * long again and again. Returns the least value found.
+   */
+  template <typename Function>
+  double move_to_least(Plan::Point &point, const double longest_step, const double shortest_step, double least, const Function &function)
+  {
+    Plan::Point best = point;
+    for (double step = longest_step; step > shortest_step; step /= 2.)
+      {
+        const Plan::Point from = best;
+        for (int direction = 0; direction < 8; ++direction)
+          {
+            const double angle = direction * std::acos(-1.) / 4.;
+            point              = from + step * Plan::Point(std::cos(angle), std::sin(angle));
+            if (const double value = function(); value < least)
+              {
+                least = value;
+                best  = point;
+              }
+          }
+      }
+    point = best;
+    return least;
+  }
+
   /// Nodes that keep their distances and turn together about a centre: a pin's.
   struct TurningPart
   {

@@ -29,11 +29,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ComplexSolver>
-  {
-    static constexpr std::array<EnumName<ComplexSolver>, 2> names = {
-      {{ComplexSolver::krylov, "Krylov"}, {ComplexSolver::residual_iteration, "residual iteration"}}};
-  };
+  inline constexpr EnumName<ComplexSolver> enum_table<ComplexSolver>[] = {{ComplexSolver::krylov, "Krylov"},
+                                                                          {ComplexSolver::residual_iteration, "residual iteration"}};
 
   /// How the shifted pencil is inverted for the Krylov solver.
   enum class ShiftInverse
@@ -43,11 +40,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ShiftInverse>
-  {
-    static constexpr std::array<EnumName<ShiftInverse>, 2> names = {
-      {{ShiftInverse::updated_cholesky, "updated Cholesky"}, {ShiftInverse::sparse_lu, "sparse LU"}}};
-  };
+  inline constexpr EnumName<ShiftInverse> enum_table<ShiftInverse>[] = {{ShiftInverse::updated_cholesky, "updated Cholesky"},
+                                                                        {ShiftInverse::sparse_lu, "sparse LU"}};
 
   /// Eigensolvers and factorisations (sections `Real modes`, `Complex modes`, `Linear algebra`).
   struct SolverParameters
@@ -78,11 +72,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<FieldSelection>
-  {
-    static constexpr std::array<EnumName<FieldSelection>, 3> names = {
-      {{FieldSelection::none, "none"}, {FieldSelection::unstable, "unstable"}, {FieldSelection::all, "all"}}};
-  };
+  inline constexpr EnumName<FieldSelection> enum_table<FieldSelection>[] = {{FieldSelection::none, "none"},
+                                                                            {FieldSelection::unstable, "unstable"},
+                                                                            {FieldSelection::all, "all"}};
 
   /// What a run leaves behind (section `Output`).
   struct OutputParameters

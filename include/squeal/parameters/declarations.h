@@ -14,6 +14,8 @@ namespace Squeal
   {
     double least    = -std::numeric_limits<double>::infinity();
     double greatest = std::numeric_limits<double>::infinity();
+
+    bool contains(double value) const;
   };
 
   /// A parameter, bound to the member that holds its value.

@@ -13,10 +13,7 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<Rotation>
-  {
-    static constexpr std::array<EnumName<Rotation>, 2> names = {{{Rotation::positive, "positive"}, {Rotation::negative, "negative"}}};
-  };
+  inline constexpr EnumName<Rotation> enum_table<Rotation>[] = {{Rotation::positive, "positive"}, {Rotation::negative, "negative"}};
 
   /**
    * Viscous contact damping along b, c_b [N s/m] per node: from the
@@ -31,11 +28,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<RadialDissipation>
-  {
-    static constexpr std::array<EnumName<RadialDissipation>, 3> names = {
-      {{RadialDissipation::none, "none"}, {RadialDissipation::consistent, "consistent"}, {RadialDissipation::published, "published"}}};
-  };
+  inline constexpr EnumName<RadialDissipation> enum_table<RadialDissipation>[] = {{RadialDissipation::none, "none"},
+                                                                                  {RadialDissipation::consistent, "consistent"},
+                                                                                  {RadialDissipation::published, "published"}};
 
   /// The braking conditions (section `Operation`).
   struct OperationParameters

@@ -16,11 +16,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ReductionProblem>
-  {
-    static constexpr std::array<EnumName<ReductionProblem>, 2> names = {
-      {{ReductionProblem::frictionless, "frictionless"}, {ReductionProblem::friction, "friction"}}};
-  };
+  inline constexpr EnumName<ReductionProblem> enum_table<ReductionProblem>[] = {{ReductionProblem::frictionless, "frictionless"},
+                                                                                {ReductionProblem::friction, "friction"}};
 
   /// How many component modes a basis gets: all up to a frequency, or given numbers of the lowest.
   struct ModeTruncation

@@ -16,11 +16,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ContactState>
-  {
-    static constexpr std::array<EnumName<ContactState>, 2> names = {
-      {{ContactState::equal_load, "equal load"}, {ContactState::steady_sliding, "steady sliding"}}};
-  };
+  inline constexpr EnumName<ContactState> enum_table<ContactState>[] = {{ContactState::equal_load, "equal load"},
+                                                                        {ContactState::steady_sliding, "steady sliding"}};
 
   /// What is prescribed at the rigid backplates, which move along the disc's axis.
   enum class BackplateControl
@@ -31,12 +28,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<BackplateControl>
-  {
-    static constexpr std::array<EnumName<BackplateControl>, 3> names = {{{BackplateControl::load_per_side, "load per side"},
-                                                                         {BackplateControl::displacement, "displacement"},
-                                                                         {BackplateControl::load_per_pin, "load per pin"}}};
-  };
+  inline constexpr EnumName<BackplateControl> enum_table<BackplateControl>[] = {{BackplateControl::load_per_side, "load per side"},
+                                                                                {BackplateControl::displacement, "displacement"},
+                                                                                {BackplateControl::load_per_pin, "load per pin"}};
 
   /**
    * Gap between the face of an unloaded pin and the disc, measured along the

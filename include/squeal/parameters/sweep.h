@@ -16,11 +16,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<MapParameter>
-  {
-    static constexpr std::array<EnumName<MapParameter>, 3> names = {
-      {{MapParameter::none, "none"}, {MapParameter::load, "load"}, {MapParameter::speed, "speed"}}};
-  };
+  inline constexpr EnumName<MapParameter> enum_table<MapParameter>[] = {{MapParameter::none, "none"},
+                                                                        {MapParameter::load, "load"},
+                                                                        {MapParameter::speed, "speed"}};
 
   /// Values from first to last.
   struct ValueRange

@@ -40,11 +40,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ThresholdEvent>
-  {
-    static constexpr std::array<EnumName<ThresholdEvent>, 2> names = {
-      {{ThresholdEvent::onset, "onset"}, {ThresholdEvent::restabilisation, "restabilisation"}}};
-  };
+  inline constexpr EnumName<ThresholdEvent> enum_table<ThresholdEvent>[] = {{ThresholdEvent::onset, "onset"},
+                                                                            {ThresholdEvent::restabilisation, "restabilisation"}};
 
   /// How a branch begins or ceases to grow.
   enum class ThresholdMechanism
@@ -54,11 +51,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ThresholdMechanism>
-  {
-    static constexpr std::array<EnumName<ThresholdMechanism>, 2> names = {
-      {{ThresholdMechanism::coalescence, "coalescence"}, {ThresholdMechanism::zero_growth, "zero growth"}}};
-  };
+  inline constexpr EnumName<ThresholdMechanism> enum_table<ThresholdMechanism>[] = {{ThresholdMechanism::coalescence, "coalescence"},
+                                                                                    {ThresholdMechanism::zero_growth, "zero growth"}};
 
   /// Where a branch begins or ceases to grow.
   struct Threshold
@@ -80,11 +74,7 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<BandEdge>
-  {
-    static constexpr std::array<EnumName<BandEdge>, 2> names = {
-      {{BandEdge::end_of_band, "end of band"}, {BandEdge::real_axis, "real axis"}}};
-  };
+  inline constexpr EnumName<BandEdge> enum_table<BandEdge>[] = {{BandEdge::end_of_band, "end of band"}, {BandEdge::real_axis, "real axis"}};
 
   /// Where a branch enters or leaves the band.
   struct BandCrossing

@@ -17,11 +17,8 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<ContourMethod>
-  {
-    static constexpr std::array<EnumName<ContourMethod>, 2> names = {
-      {{ContourMethod::condensed, "condensed"}, {ContourMethod::sparse_lu, "sparse LU"}}};
-  };
+  inline constexpr EnumName<ContourMethod> enum_table<ContourMethod>[] = {{ContourMethod::condensed, "condensed"},
+                                                                          {ContourMethod::sparse_lu, "sparse LU"}};
 
   /// Condensed where all terms but K_c and M_c are of low rank.
   ContourMethod contour_method(const CoupledSystem &system);

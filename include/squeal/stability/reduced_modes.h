@@ -68,11 +68,9 @@ namespace Squeal
   };
 
   template <>
-  struct EnumTable<Verdict>
-  {
-    static constexpr std::array<EnumName<Verdict>, 3> names = {
-      {{Verdict::stable, "stable"}, {Verdict::unstable, "unstable"}, {Verdict::undecided, "undecided"}}};
-  };
+  inline constexpr EnumName<Verdict> enum_table<Verdict>[] = {{Verdict::stable, "stable"},
+                                                              {Verdict::unstable, "unstable"},
+                                                              {Verdict::undecided, "undecided"}};
 
   /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
   struct EigenvalueEstimates

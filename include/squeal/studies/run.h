@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/base/progress.h>
+#include <squeal/base/text.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 #include <squeal/output/table.h>
@@ -8,10 +9,8 @@
 
 #include <mpi.h>
 
-#include <iomanip>
 #include <iosfwd>
 #include <memory>
-#include <sstream>
 #include <string>
 
 namespace Squeal
@@ -77,14 +76,4 @@ namespace Squeal
 
   /// Meshes the scene and answers the question of the run; a dry run only meshes.
   void run_study(Run &run);
-
-  /// One text from several parts; numbers with four digits.
-  template <typename... Parts>
-  std::string text(const Parts &...parts)
-  {
-    std::ostringstream stream;
-    stream << std::setprecision(4);
-    (stream << ... << parts);
-    return stream.str();
-  }
 } // namespace Squeal
