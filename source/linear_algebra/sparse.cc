@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/sparse.h>
 
 #include <EpetraExt_MatrixMatrix.h>
@@ -7,11 +8,11 @@
 #include <Epetra_IntVector.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <sstream>
 
 namespace Squeal
 {
@@ -180,67 +181,42 @@ namespace Squeal
 
 
 
-  void write_matrix_market(const SparseMatrix &A, const std::string &file, const MatrixMarketSymmetry symmetry)
+  std::string matrix_market(const SparseMatrix &A, const MatrixMarketSymmetry symmetry)
   {
     const bool is_writer = A.Comm().MyPID() == 0;
     const bool symmetric = symmetry == MatrixMarketSymmetry::symmetric;
 
     // Global indices are what the file shows: bring all rows to process 0.
+    const int        base = A.RowMap().IndexBase();
     std::vector<int> all_rows(is_writer ? A.NumGlobalRows() : 0);
-    std::iota(all_rows.begin(), all_rows.end(), A.RowMap().IndexBase());
-    const Epetra_Map target(-1, all_rows.size(), all_rows.data(), A.RowMap().IndexBase(), A.Comm());
+    std::iota(all_rows.begin(), all_rows.end(), base);
+    const Epetra_Map target(-1, all_rows.size(), all_rows.data(), base, A.Comm());
     SparseMatrix     gathered(Copy, target, 0);
     check_epetra(gathered.Import(A, Epetra_Import(target, A.RowMap()), Insert), "gathering of a matrix on process 0");
     check_epetra(gathered.FillComplete(A.DomainMap(), target), "gathering of a matrix on process 0");
+    if (!is_writer)
+      return "";
 
-    int problem = 0; // errno of the first error
-    if (is_writer)
+    std::ostringstream entries;
+    entries.precision(std::numeric_limits<double>::max_digits10);
+    long long n_entries = 0;
+    for (int i = 0; i < gathered.NumMyRows(); ++i)
       {
-        const int  base    = A.RowMap().IndexBase();
-        const auto for_all = [&](const auto &action) {
-          for (int i = 0; i < gathered.NumMyRows(); ++i)
-            {
-              int     n;
-              double *value;
-              int    *column;
-              gathered.ExtractMyRowView(i, n, value, column);
-              std::vector<std::pair<int, double>> row;
-              for (int k = 0; k < n; ++k)
-                row.emplace_back(gathered.GCID(column[k]) - base, value[k]);
-              std::sort(row.begin(), row.end());
-              for (const auto &[j, entry] : row)
-                if (!symmetric || j <= i)
-                  action(i, j, entry);
-            }
-        };
-        long long n_entries = 0;
-        for_all([&](int, int, double) { ++n_entries; });
-
-        const std::string temporary = file + ".part";
-        std::FILE        *stream    = std::fopen(temporary.c_str(), "w");
-        if (stream == nullptr)
-          problem = errno;
-        else
-          {
-            if (std::fprintf(stream, "%%%%MatrixMarket matrix coordinate real %s\n%d %d %lld\n", symmetric ? "symmetric" : "general",
-                             A.NumGlobalRows(), A.NumGlobalCols(), n_entries) < 0)
-              problem = errno;
-            for_all([&](const int i, const int j, const double entry) {
-              if (problem == 0 && std::fprintf(stream, "%d %d %.17g\n", i + 1, j + 1, entry) < 0)
-                problem = errno;
-            });
-            if (std::fclose(stream) != 0 && problem == 0)
-              problem = errno;
-            if (problem == 0 && std::rename(temporary.c_str(), file.c_str()) != 0)
-              problem = errno;
-            if (problem != 0)
-              std::remove(temporary.c_str());
-          }
+        int     n;
+        double *value;
+        int    *column;
+        gathered.ExtractMyRowView(i, n, value, column);
+        std::map<int, double> row;
+        for (int k = 0; k < n; ++k)
+          if (const int j = gathered.GCID(column[k]) - base; !symmetric || j <= i)
+            row[j] = value[k];
+        for (const auto &[j, entry] : row)
+          entries << i + 1 << ' ' << j + 1 << ' ' << entry << '\n';
+        n_entries += row.size();
       }
-    A.Comm().Broadcast(&problem, 1, 0);
-    if (problem != 0)
-      throw FileError(std::string("a matrix could not be written: ") + std::strerror(problem), "file `" + file + "`",
-                      "check that the directory exists, is writable and has space left");
+    return text("%%MatrixMarket matrix coordinate real ", symmetric ? "symmetric" : "general", "\n", A.NumGlobalRows(), " ",
+                A.NumGlobalCols(), " ", n_entries, "\n") +
+           entries.str();
   }
 
 

@@ -157,22 +157,6 @@ namespace Squeal
         fs::remove(*parent, ignored);
   }
 
-  std::string ResultFolder::path(const std::string &name) const
-  {
-    const auto held = uninterrupted();
-    promised.insert(name);
-    return place_for(name).string();
-  }
-
-  fs::path ResultFolder::place_for(const std::string &name) const
-  {
-    const fs::path  file = unfinished / name;
-    std::error_code ignored;
-    if (is_root)
-      fs::create_directories(file.parent_path(), ignored);
-    return file;
-  }
-
   void ResultFolder::write(const std::string &name, const std::function<void(std::ostream &)> &writer) const
   {
     if (!is_root)
@@ -183,8 +167,11 @@ namespace Squeal
       throw not_written(shown + "/" + name, ENOMEM);
     const std::string text = stream.str();
     // Once a signal has begun to clear away, nothing new may come up.
-    const auto held = uninterrupted();
-    if (const int problem = write_file(place_for(name), O_TRUNC, {text}, false); problem != 0)
+    const auto      held = uninterrupted();
+    const fs::path  file = unfinished / name;
+    std::error_code ignored;
+    fs::create_directories(file.parent_path(), ignored);
+    if (const int problem = write_file(file, O_TRUNC, {text}, false); problem != 0)
       throw not_written(shown + "/" + name, problem);
     written[name] = text.size();
   }
@@ -201,11 +188,7 @@ namespace Squeal
 
   void ResultFolder::check_complete(const fs::path &folder, const FileSizes &sizes) const
   {
-    std::string missing = first_incomplete(folder, sizes);
-    for (const std::string &name : promised)
-      if (missing.empty() && !fs::exists(folder / name))
-        missing = name;
-    if (!missing.empty())
+    if (const std::string missing = first_incomplete(folder, sizes); !missing.empty())
       throw FileError("a result was removed or changed while the program ran", "file " + shown + "/" + missing,
                       "let nothing else write to the folders of a run, and run again");
   }

@@ -200,12 +200,6 @@ TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)
         fs::remove(results + ".unfinished/table.csv");
       EXPECT_TRUE(contains(refusal([&] { folder.commit(); }), "results/table.csv"));
     }
-  {
-    // A file that a library should have written
-    ResultFolder folder(results, true);
-    folder.path("mesh.msh");
-    EXPECT_TRUE(contains(refusal([&] { folder.commit(); }), "results/mesh.msh"));
-  }
   EXPECT_EQ(files(), (Names{"results/modes/one.vtu", "results/run.json", "results/table.csv"}));
   EXPECT_EQ(content(results + "/table.csv"), "one");
 }

@@ -38,12 +38,10 @@ namespace Squeal
   };
 
   /**
-   * Writes A to @p file in Matrix Market coordinate form with 17 significant
-   * digits, so that reading returns the same numbers. The rows are gathered on
-   * process 0, which writes to a temporary name and renames at the end: no
-   * reader ever sees half a file. Throws FileError on all processes.
+   * A in Matrix Market coordinate form with 17 significant digits, so that reading returns the same numbers: the whole text on
+   * process 0, nothing on the others. All processes must call.
    */
-  void write_matrix_market(const SparseMatrix &A, const std::string &file, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
+  std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 
   /**
    * The local rows of a matrix with rows and columns numbered without gaps over

@@ -9,7 +9,6 @@
 #include <iosfwd>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -44,9 +43,6 @@ namespace Squeal
 
     ResultFolder(const ResultFolder &)            = delete;
     ResultFolder &operator=(const ResultFolder &) = delete;
-
-    /// Where to write a file called @p name for now, which has to be there by commit(); creates its parent folders.
-    std::string path(const std::string &name) const;
 
     /// Writes a file on the root process; throws FileError with the cause if it could not be written to the end.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
@@ -88,7 +84,6 @@ namespace Squeal
     std::vector<std::string>     bring_user_files() const;
     void                         put_in_place() const;
     void                         remove_traces();
-    std::filesystem::path        place_for(const std::string &name) const;
     std::unique_lock<std::mutex> uninterrupted() const;
 
     const std::string                  shown; ///< name as the user has it
@@ -99,8 +94,6 @@ namespace Squeal
     std::unique_ptr<FolderLock>        lock;
     State                              state = State::not_begun;
 
-    // Whoever may write to the folder adds to the list.
-    mutable FileSizes             written;  ///< here, to the end
-    mutable std::set<std::string> promised; ///< whatever writes them
+    mutable FileSizes written; ///< whoever may write to the folder adds to the list
   };
 } // namespace Squeal
