@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -15,19 +16,17 @@ namespace Squeal
   {
     constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-    /// The number behind a word at the beginning of a line; nothing if there is none.
-    std::optional<double> number_behind(const fs::path &file, const std::string &word)
+    /// Numbers behind the words with which lines begin.
+    std::map<std::string, double> numbers_in(const fs::path &file)
     {
-      std::ifstream stream(file);
+      std::map<std::string, double> numbers;
+      std::ifstream                 stream(file);
+      std::string                   word;
+      double                        number;
       for (std::string line; std::getline(stream, line);)
-        {
-          std::istringstream words(line);
-          std::string        first;
-          double             number;
-          if (words >> first && first == word && words >> number)
-            return number;
-        }
-      return {};
+        if (std::istringstream(line) >> word >> number)
+          numbers[word] = number;
+      return numbers;
     }
 
     /// The number of which a file consists; nothing where it says `max`, or is missing.
@@ -54,9 +53,8 @@ namespace Squeal
       const auto limit = number_in(folder / files.limit), usage = number_in(folder / files.usage);
       if (!limit || !usage)
         return unlimited;
-      const fs::path statistics = folder / "memory.stat";
-      const double   cache =
-        number_behind(statistics, files.inactive_cache).value_or(0.) + number_behind(statistics, files.active_cache).value_or(0.);
+      auto         statistics = numbers_in(folder / "memory.stat");
+      const double cache      = statistics[files.inactive_cache] + statistics[files.active_cache];
       return std::max(0., *limit - std::max(0., *usage - cache));
     }
 
@@ -73,9 +71,8 @@ namespace Squeal
   double available_memory(const fs::path &root)
   {
     constexpr double kilobyte = 1024.;
-    double           result   = unlimited;
-    if (const auto available = number_behind(root / "proc/meminfo", "MemAvailable:"))
-      result = *available * kilobyte;
+    const auto       memory   = numbers_in(root / "proc/meminfo");
+    double           result   = memory.count("MemAvailable:") > 0 ? memory.at("MemAvailable:") * kilobyte : unlimited;
 
     // Lines "number:controllers:group"; the second version has no controllers there
     const fs::path hierarchies = root / "sys/fs/cgroup";

@@ -11,6 +11,8 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <sstream>
 #include <vector>
@@ -56,18 +58,11 @@ namespace Squeal
 
       ~Descriptor()
       {
-        reset();
+        close(number);
       }
 
       Descriptor(const Descriptor &)            = delete;
       Descriptor &operator=(const Descriptor &) = delete;
-
-      void reset()
-      {
-        if (number >= 0)
-          close(number);
-        number = -1;
-      }
 
       int operator*() const
       {
@@ -75,30 +70,13 @@ namespace Squeal
       }
 
     private:
-      int number = -1;
+      int number;
     };
 
-    /// A file in memory that vanishes with its last descriptor.
-    int memory_file(const char *name, const std::string &content = "")
+    /// A file in memory, which vanishes with its last descriptor, has no name but this one.
+    std::string name_of(const Descriptor &memory_file)
     {
-      const int file = memfd_create(name, MFD_CLOEXEC);
-      for (std::size_t written = 0; file >= 0 && written < content.size();)
-        {
-          const ssize_t n = pwrite(file, content.data() + written, content.size() - written, written);
-          if (n <= 0)
-            cannot_start(errno);
-          written += n;
-        }
-      return file;
-    }
-
-    std::string content_of(const Descriptor &file)
-    {
-      std::string       all;
-      std::vector<char> buffer(1 << 16);
-      for (ssize_t n; (n = pread(*file, buffer.data(), buffer.size(), all.size())) > 0;)
-        all.append(buffer.data(), n);
-      return all;
+      return "/proc/self/fd/" + std::to_string(*memory_file);
     }
 
     /// A process that runs Gmsh, from its start until it is waited for or killed.
@@ -106,14 +84,16 @@ namespace Squeal
     {
     public:
       MesherProcess(const std::vector<std::string> &arguments, const std::vector<std::string> &environment, const std::string &script)
-        : printed(memory_file("gmsh.log"))
+        : printed(memfd_create("gmsh.log", MFD_CLOEXEC))
       {
         int pipe_ends[2] = {-1, -1};
         if (pipe2(pipe_ends, O_CLOEXEC) != 0)
           cannot_start(errno);
         Descriptor writing(pipe_ends[1]);
         reply.emplace(pipe_ends[0]);
-        const Descriptor script_file(memory_file("driver.geo", script));
+        const Descriptor script_file(memfd_create("driver.geo", MFD_CLOEXEC));
+        if (!(std::ofstream(name_of(script_file)) << script << std::flush))
+          cannot_start(errno);
 
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
@@ -126,10 +106,7 @@ namespace Squeal
           posix_spawn(&process, installation().mesher.c_str(), &actions, nullptr, pointers(arguments).data(), pointers(environment).data());
         posix_spawn_file_actions_destroy(&actions);
         if (error != 0)
-          {
-            is_over = true;
-            cannot_start(error);
-          }
+          cannot_start(error);
       }
 
       ~MesherProcess()
@@ -180,7 +157,8 @@ namespace Squeal
       /// What Gmsh printed so far.
       std::string log() const
       {
-        return content_of(printed);
+        std::ifstream stream(name_of(printed));
+        return {std::istreambuf_iterator<char>(stream), {}};
       }
 
     private:

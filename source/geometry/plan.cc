@@ -335,18 +335,15 @@ namespace Squeal
       return points.size() - 1;
     };
 
-    // Centre and spokes
-    const Plan::Point                        centre      = mean(loop, points);
-    const unsigned int                       centre_node = add_point(centre);
-    std::array<std::vector<unsigned int>, 3> spokes;
+    // Centre and inner nodes of the spokes
+    const Plan::Point  centre      = mean(loop, points);
+    const unsigned int centre_node = add_point(centre);
     for (unsigned int s = 0; s < 3; ++s)
-      {
-        const Plan::Point end = points[at(2 * k * s)];
-        spokes[s].push_back(centre_node);
-        for (unsigned int i = 1; i < k; ++i)
-          spokes[s].push_back(add_point((1. - double(i) / k) * centre + double(i) / k * end));
-        spokes[s].push_back(at(2 * k * s));
-      }
+      for (unsigned int i = 1; i < k; ++i)
+        add_point((1. - double(i) / k) * centre + double(i) / k * points[at(2 * k * s)]);
+    const auto spoke = [&](const unsigned int s, const unsigned int i) {
+      return i == 0 ? centre_node : i == k ? at(2 * k * s) : centre_node + s % 3 * (k - 1) + i;
+    };
 
     // Blocks: i runs along one spoke, j along the next, the far sides are on the loop
     std::vector<Plan::Face> faces;
@@ -355,8 +352,8 @@ namespace Squeal
         std::vector<std::vector<unsigned int>> node(k + 1, std::vector<unsigned int>(k + 1, no_node));
         for (unsigned int i = 0; i <= k; ++i)
           {
-            node[i][0] = spokes[b][i];
-            node[0][i] = spokes[(b + 1) % 3][i];
+            node[i][0] = spoke(b, i);
+            node[0][i] = spoke(b + 1, i);
             node[k][i] = at(2 * k * b + i);
             node[i][k] = at(2 * k * (b + 1) - i);
           }

@@ -86,16 +86,8 @@ namespace Squeal
 
     // Clamped dofs: all three directions on the clamped surface
     free_numbers.assign(dofs.n_dofs(), 0);
-    const types::boundary_id             clamp = surface_id(PhysicalNames::pin_clamp);
-    std::vector<types::global_dof_index> face_dofs(fe.n_dofs_per_face()), cell_dofs(fe.n_dofs_per_cell());
-    for (const auto &cell : dofs.active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary() && face->boundary_id() == clamp)
-          {
-            face->get_dof_indices(face_dofs);
-            for (const auto dof : face_dofs)
-              free_numbers[dof] = -1;
-          }
+    for (const auto dof : DoFTools::extract_boundary_dofs(dofs, ComponentMask(), {surface_id(PhysicalNames::pin_clamp)}))
+      free_numbers[dof] = -1;
 
     // Numbers of the others: deal.II's order, so that ownership stays contiguous
     int n_free = 0, n_own = 0;
@@ -108,8 +100,9 @@ namespace Squeal
     map = std::make_unique<Epetra_Map>(n_free, n_own, 0, epetra_communicator);
 
     // Nodes: the dofs of the three directions at each support point
-    constexpr unsigned int none = -1;
-    std::vector<Point<3>>  support(dofs.n_dofs());
+    constexpr unsigned int               none = -1;
+    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
+    std::vector<Point<3>>                support(dofs.n_dofs());
     DoFTools::map_dofs_to_support_points(geometry_mapping, dofs, support);
     dof_nodes.assign(dofs.n_dofs(), none);
     for (const auto &cell : dofs.active_cell_iterators())

@@ -91,6 +91,7 @@ namespace Squeal
     , folder(folder)
     , components(model.triangulation().n_active_cells())
     , closed(interface.size(), 0.)
+    , contact_fe(1)
   {
     for (const unsigned int c : closed_pairs)
       closed[c] = 1.;
@@ -114,9 +115,8 @@ namespace Squeal
     GridTools::delete_unused_vertices(vertices, cells, none);
     GridTools::consistently_order_cells(cells);
     contact_mesh.create_triangulation(vertices, cells, none);
-    contact_fe = std::make_unique<FE_Q<2, 3>>(1);
     contact_dofs.reinit(contact_mesh);
-    contact_dofs.distribute_dofs(*contact_fe);
+    contact_dofs.distribute_dofs(contact_fe);
 
     // Its vertices are contact nodes; nodes between them (degree 2) are not shown
     std::map<std::array<long, 3>, unsigned int> numbers;

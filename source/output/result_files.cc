@@ -68,12 +68,8 @@ namespace Squeal
   std::string first_incomplete(const fs::path &folder, const FileSizes &files)
   {
     for (const auto &[name, size] : files)
-      {
-        std::error_code      problem;
-        const std::uintmax_t actual = fs::file_size(folder / name, problem);
-        if (problem || actual != size)
-          return name;
-      }
+      if (std::error_code missing; fs::file_size(folder / name, missing) != size)
+        return name;
     return {};
   }
 

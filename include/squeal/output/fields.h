@@ -9,7 +9,6 @@
 #include <deal.II/lac/vector.h>
 
 #include <complex>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -76,14 +75,14 @@ namespace Squeal
     /// Fields on the contact faces: values of the pairs of contact nodes with their names.
     void write_contact(const std::string &file, const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const;
 
-    const Model                        &model;
-    const ContactInterface             &interface;
-    const ResultFolder                 &folder;
-    dealii::Vector<double>              components;
-    std::vector<double>                 closed; ///< 1 for pairs in contact
-    dealii::Triangulation<2, 3>         contact_mesh;
-    std::unique_ptr<dealii::FE_Q<2, 3>> contact_fe;
-    dealii::DoFHandler<2, 3>            contact_dofs;
-    std::vector<unsigned int>           contact_node_of_dof;
+    const Model                &model;
+    const ContactInterface     &interface;
+    const ResultFolder         &folder;
+    dealii::Vector<double>      components;
+    std::vector<double>         closed; ///< 1 for pairs in contact
+    dealii::Triangulation<2, 3> contact_mesh;
+    dealii::FE_Q<2, 3>          contact_fe;
+    dealii::DoFHandler<2, 3>    contact_dofs;
+    std::vector<unsigned int>   contact_node_of_dof;
   };
 } // namespace Squeal
