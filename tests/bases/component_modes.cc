@@ -191,6 +191,20 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
 
 
 
+TEST(ModeLabels, OnePrinter)
+{
+  const ModeLabel disc = {A, 0, 4, 0, DoubletSign::minus}, pin = {T, 0, 0, 1, DoubletSign::plus};
+  EXPECT_EQ(to_string(disc), "A0-4 -");
+  EXPECT_EQ(file_text(disc), "A0-4_minus");
+  EXPECT_EQ(shape_text(disc), "A0-4");
+  EXPECT_EQ(to_string(pin), "T1 +");
+  EXPECT_EQ(file_text(pin), "T1_plus");
+  EXPECT_EQ(to_string(ModeLabel()), "unnamed");
+  EXPECT_EQ(to_string(ModeLabel{ModeFamily::rigid_body}), "RB");
+  EXPECT_FALSE(disc.is_of_pins());
+  EXPECT_TRUE(pin.is_of_pins());
+}
+
 TEST(MarkDoublets, PairsOnly)
 {
   std::vector<ModeLabel> labels = {{A, 0, 2}, pin_mode(F, 1), {A, 0, 2}, {A, 0, 0}, pin_mode(F, 1), pin_mode(F, 1)};
