@@ -136,7 +136,9 @@ namespace Squeal
       else if (first.n_modes + first.n_overdamped != n_real)
         progress.note(text("  note: ", first.n_modes, " modes lie in the band at mu = 0, where ", n_real,
                            " real modes were counted: damping moved some across its end"));
-      if (const std::size_t n = n_incomplete(chart); n > 0)
+      const auto n =
+        std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
+      if (n > 0)
         progress.note(text("  note: at ", n, " points the number of modes is not the expected one, see counts.csv"));
     }
   } // namespace
@@ -158,12 +160,6 @@ namespace Squeal
             if (kind == SweepLine::Kind::main)
               compare_with_inertia(model, charts[l].back().chart);
           }
-  }
-
-  std::size_t n_incomplete(const StabilityChart &chart)
-  {
-    return std::count_if(chart.counts.begin(), chart.counts.end(),
-                         [](const ChartCount &count) { return count.n_modes != count.n_expected; });
   }
 
   namespace

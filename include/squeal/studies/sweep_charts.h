@@ -23,9 +23,6 @@ namespace Squeal
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
   void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts);
 
-  /// Points at which the number of modes is not the expected one.
-  std::size_t n_incomplete(const StabilityChart &chart);
-
   /// From which friction coefficient on there is squeal, and what grows most: of the stretches of the main line, of @p n_asked values.
   std::string verdict(const std::vector<SweepChart> &charts, std::size_t n_asked, double largest_circular_frequency);
 } // namespace Squeal
