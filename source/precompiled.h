@@ -14,6 +14,8 @@
 #include <Epetra_MultiVector.h>
 #include <Epetra_Vector.h>
 
+#include <Eigen/LU>
+
 #include <boost/serialization/complex.hpp>
 #include <boost/serialization/vector.hpp>
 

@@ -82,7 +82,7 @@ namespace Squeal
         {
           const DenseMatrix re = gram(*reference->vectors, M_re), im = gram(*reference->vectors, M_im);
           for (int j = 0; j < n_modes; ++j)
-            for (int i = 0; i < re.n_rows(); ++i)
+            for (int i = 0; i < re.rows(); ++i)
               shares[j][reference->labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
         }
 

@@ -1,5 +1,6 @@
 #include <squeal/base/decision.h>
 #include <squeal/bases/mode_labels.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 
 #include <deal.II/base/tensor.h>
 
@@ -24,79 +25,36 @@ namespace Squeal
        * @param functions  n_nodes × n_functions
        * @param weights    n_nodes
        */
-      Projection(DenseMatrix functions, const std::vector<double> &weights)
-        : basis(std::move(functions))
-        , combinations(identity(basis.n_columns()))
-        , weights(weights)
+      Projection(const DenseMatrix &functions, const std::vector<double> &weights)
+        : roots(as_column(weights).cwiseSqrt())
+        // Functions that others span (r^k on a single radius) are dropped
+        , basis(
+            orthonormal_basis(DenseMatrix(roots.asDiagonal() * functions), [](const double rest) { return independent.exceeded_by(rest); }))
       {
-        // Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped
-        for (int j = 0; j < basis.n_columns(); ++j)
-          {
-            const double before = std::sqrt(inner(basis.column(j), basis.column(j)));
-            for (unsigned int pass = 0; pass < 2; ++pass)
-              for (int i = 0; i < j; ++i)
-                {
-                  const double s = inner(basis.column(i), basis.column(j));
-                  subtract(basis, s, i, j);
-                  subtract(combinations, s, i, j);
-                }
-            const double norm   = std::sqrt(inner(basis.column(j), basis.column(j)));
-            const double factor = independent.exceeded_by(norm / before) ? 1. / norm : 0.;
-            scale(basis, factor, j);
-            scale(combinations, factor, j);
-          }
+        for (auto &diagonal : basis.R.diagonal())
+          diagonal = diagonal > 0. ? diagonal : 1.;
       }
 
       /// Energy of the projection of a field: the sum of its squared orthonormal coefficients.
       double energy(const std::vector<double> &field) const
       {
-        const auto c = orthonormal_coefficients(field);
-        return std::inner_product(c.begin(), c.end(), c.begin(), 0.);
+        return orthonormal_coefficients(field).squaredNorm();
       }
 
       /// Factors of the functions in the projection of a field.
-      std::vector<double> coefficients(const std::vector<double> &field) const
+      Eigen::VectorXd coefficients(const std::vector<double> &field) const
       {
-        const auto          c = orthonormal_coefficients(field);
-        std::vector<double> result(c.size(), 0.);
-        for (std::size_t j = 0; j < c.size(); ++j)
-          for (std::size_t k = 0; k < c.size(); ++k)
-            result[k] += combinations(k, j) * c[j];
-        return result;
+        return basis.R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients(field));
       }
 
     private:
-      std::vector<double> orthonormal_coefficients(const std::vector<double> &field) const
+      Eigen::VectorXd orthonormal_coefficients(const std::vector<double> &field) const
       {
-        std::vector<double> result(basis.n_columns());
-        for (int j = 0; j < basis.n_columns(); ++j)
-          result[j] = inner(basis.column(j), field.data());
-        return result;
+        return basis.Q.transpose() * roots.cwiseProduct(as_column(field));
       }
 
-      double inner(const double *u, const double *v) const
-      {
-        double sum = 0.;
-        for (std::size_t k = 0; k < weights.size(); ++k)
-          sum += weights[k] * u[k] * v[k];
-        return sum;
-      }
-
-      static void subtract(DenseMatrix &matrix, const double factor, const int i, const int j)
-      {
-        for (int k = 0; k < matrix.n_rows(); ++k)
-          matrix(k, j) -= factor * matrix(k, i);
-      }
-
-      static void scale(DenseMatrix &matrix, const double factor, const int j)
-      {
-        for (int k = 0; k < matrix.n_rows(); ++k)
-          matrix(k, j) *= factor;
-      }
-
-      DenseMatrix         basis;        ///< orthonormal combinations of the functions
-      DenseMatrix         combinations; ///< their factors, upper triangular
-      std::vector<double> weights;
+      Eigen::VectorXd               roots; ///< of the weights
+      OrthonormalBasis<DenseMatrix> basis; ///< of the functions times the roots; dropped ones have ones on the diagonal of R
     };
 
     /// Displacement of a node; clamped directions are at rest.
@@ -243,9 +201,9 @@ namespace Squeal
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::axial, ModeFamily::radial, ModeFamily::circumferential}};
     const DiscHarmonics                 disc(model, nodal_masses);
     std::vector<ModeLabel>              labels;
-    for (int j = 0; j < modes.n_columns(); ++j)
+    for (int j = 0; j < modes.cols(); ++j)
       {
-        const auto fields = disc.cylindrical(modes.column(j));
+        const auto fields = disc.cylindrical(modes.col(j).data());
 
         // Harmonic of the largest energy, the three directions together
         double                largest = -1.;
@@ -342,11 +300,11 @@ namespace Squeal
       const Projection translation(powers, pin.weights), torsion(radius_powers, pin.weights);
 
       std::vector<double> u_axial(n), u_turning(n), u_across[3] = {u_axial, u_axial, u_axial};
-      for (int m = 0; m < modes.n_columns(); ++m)
+      for (int m = 0; m < modes.cols(); ++m)
         {
           for (std::size_t i = 0; i < n; ++i)
             {
-              const Vector u = vector(displacement(*pin.nodes[i], modes.column(m))), d = pin.across(pin.from_centre(*pin.nodes[i]));
+              const Vector u = vector(displacement(*pin.nodes[i], modes.col(m).data())), d = pin.across(pin.from_centre(*pin.nodes[i]));
               u_axial[i]   = u * pin.axis;
               u_turning[i] = d.norm() > 0. ? dealii::cross_product_3d(d, u) * pin.axis / d.norm() : 0.;
               for (unsigned int k = 0; k < 3; ++k)
@@ -366,7 +324,7 @@ namespace Squeal
                                     const DenseMatrix         &modes)
   {
     const auto                         pins = pins_of(model, interface, nodal_masses);
-    std::vector<std::array<double, 3>> energies(modes.n_columns(), std::array<double, 3>{});
+    std::vector<std::array<double, 3>> energies(modes.cols(), std::array<double, 3>{});
     for (const auto &[number, pin] : pins)
       add_energies(pin, modes, energies);
 

@@ -99,8 +99,8 @@ namespace Squeal
     {
       const SparseMatrix &P_n = *in.contact->normal;
       scale_to_unit_norm(*in.uncoupled->mass, recipe, T_r0);
-      auto [values, V] = singular_values(replicate(P_n * T_r0));
-      agree(T_r0.Comm(), V, values);
+      const SingularValues axes = singular_values(replicate(P_n * T_r0));
+      const auto [values, V]    = agreed(T_r0.Comm(), {axes.values, axes.right});
 
       const double largest = values.front();
       const int    n_r0    = T_r0.NumVectors();
@@ -112,7 +112,7 @@ namespace Squeal
       connection.smallest_kept   = connection.rank > 0 ? values[connection.rank - 1] / largest : 0.;
       connection.largest_dropped = connection.rank < static_cast<int>(values.size()) ? values[connection.rank] / largest : 0.;
 
-      const MultiVector u         = T_r0 * columns(V, connection.rank, n_r0 - connection.rank);
+      const MultiVector u         = T_r0 * V.rightCols(n_r0 - connection.rank);
       connection.constraint_error = max_norm(replicate(P_n * u)) / largest_entry(u);
       return coordinates(*in.contact->kernel, u);
     }

@@ -18,17 +18,11 @@ namespace Squeal
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
     std::pair<MultiVector, std::vector<double>> rayleigh_ritz(const MultiVector &X, const SecondOrderSystem &system)
     {
-      DenseMatrix axes = gram(X, *system.mass * X);
-      const auto  m    = symmetric_eigenvalues(axes);
-      for (int j = 0; j < axes.n_columns(); ++j)
-        for (int i = 0; i < axes.n_rows(); ++i)
-          axes(i, j) /= std::sqrt(m[j]);
-      const MultiVector Y      = X * axes;
-      DenseMatrix       K      = gram(Y, *system.stiffness * Y);
-      auto              values = symmetric_eigenvalues(K);
+      const RealPairs   axes = symmetric_eigenpairs(gram(X, *system.mass * X));
+      const MultiVector Y    = X * DenseMatrix(axes.vectors * as_column(axes.values).cwiseSqrt().cwiseInverse().asDiagonal());
       // Every process must cut the same motions off.
-      agree(X.Comm(), K, values);
-      return {Y * K, values};
+      const RealPairs ritz = agreed(X.Comm(), symmetric_eigenpairs(gram(Y, *system.stiffness * Y)));
+      return {Y * ritz.vectors, ritz.values};
     }
 
     /**
@@ -67,19 +61,19 @@ namespace Squeal
 
   ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions)
   {
-    const DenseMatrix D    = replicate(normal * motions);
-    const double      size = max_norm(replicate(motions)) * std::sqrt(D.n_rows());
-    auto [values, V]       = singular_values(D); // descending
-    agree(motions.Comm(), V, values);
-    const int k = motions.NumVectors();
+    const DenseMatrix    D    = replicate(normal * motions);
+    const double         size = max_norm(replicate(motions)) * std::sqrt(D.rows());
+    const SingularValues axes = singular_values(D); // descending
+    const auto [values, V]    = agreed(motions.Comm(), {axes.values, axes.right});
+    const int k               = motions.NumVectors();
     const int rank =
       std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
 
     ContactMotions result;
     if (rank > 0)
-      result.pressing.emplace(motions * columns(V, 0, rank));
+      result.pressing.emplace(motions * V.leftCols(rank));
     if (rank < k)
-      result.sliding.emplace(motions * columns(V, rank, k - rank));
+      result.sliding.emplace(motions * V.rightCols(k - rank));
     return result;
   }
 

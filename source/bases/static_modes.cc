@@ -33,13 +33,6 @@ namespace Squeal
     {
       return transpose_times(P, unit_vectors(P.RangeMap()));
     }
-
-    MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
-    {
-      MultiVector U(F.Map(), F.NumVectors());
-      inverse.apply_frictionless(F, U);
-      return U;
-    }
   } // namespace
 
   StaticModes::StaticModes(const Model               &model,
@@ -134,7 +127,7 @@ namespace Squeal
       return MultiVector(real_modes.Map(), real_modes.NumVectors());
     if (side == Side::right)
       return inverse.attachment_modes() * replicate(*V_K * real_modes);
-    return solve(inverse, transpose_times(*V_K, *system.friction_forces->sparse_transpose() * real_modes));
+    return inverse.solve_frictionless(transpose_times(*V_K, *system.friction_forces->sparse_transpose() * real_modes));
   }
 
   MultiVector damping_response(const CoupledSystem  &system,
@@ -145,6 +138,6 @@ namespace Squeal
     if (!system.has_damping())
       throw SolverError("there is no damping to respond to", "response of the real modes to damping",
                         "set Operation/Radial dissipation or the Rayleigh coefficients of a material, or leave this response out");
-    return solve(inverse, times(system.terms, system.at(friction_coefficient), 1, real_modes));
+    return inverse.solve_frictionless(times(system.terms, system.at(friction_coefficient), 1, real_modes));
   }
 } // namespace Squeal

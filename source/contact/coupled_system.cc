@@ -158,32 +158,21 @@ namespace Squeal
     return sum(parts);
   }
 
-  void normal_reactions(const CoupledSystem                     &system,
-                        const std::vector<std::complex<double>> &lambda,
-                        const MultiVector                       &real_part,
-                        const MultiVector                       &imaginary_part,
-                        DenseMatrix                             &reaction_real,
-                        DenseMatrix                             &reaction_imaginary)
+  ComplexDenseMatrix normal_reactions(const CoupledSystem                     &system,
+                                      const std::vector<std::complex<double>> &lambda,
+                                      const MultiVector                       &real_part,
+                                      const MultiVector                       &imaginary_part)
   {
-    using Complex = std::complex<double>;
-
-    const ParameterValues reactions = system.at(-1.); // −μ A V is A V there
-    reaction_real = reaction_imaginary = DenseMatrix(system.n_contact(), static_cast<int>(lambda.size()));
+    const std::complex<double> i(0., 1.);
+    const ParameterValues      values    = system.at(-1.); // −μ A V is A V there
+    ComplexDenseMatrix         reactions = ComplexDenseMatrix::Zero(system.n_contact(), lambda.size());
     for (const Term &term : system.terms)
       if (is_friction(term))
         {
           const DenseMatrix re = term.right->transpose_times(real_part), im = term.right->transpose_times(imaginary_part);
-          const double      coefficient = term.coefficient.at(reactions);
-          for (int j = 0; j < re.n_columns(); ++j)
-            {
-              const Complex theta = coefficient * (term.power == 0 ? 1. : std::pow(lambda[j], term.power));
-              for (int i = 0; i < re.n_rows(); ++i)
-                {
-                  const Complex r = theta * Complex(re(i, j), im(i, j));
-                  reaction_real(i, j) += r.real();
-                  reaction_imaginary(i, j) += r.imag();
-                }
-            }
+          for (Eigen::Index j = 0; j < re.cols(); ++j)
+            reactions.col(j) += term.factor(lambda[j], values) * (re.col(j) + i * im.col(j));
         }
+    return reactions;
   }
 } // namespace Squeal

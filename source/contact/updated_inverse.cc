@@ -35,16 +35,16 @@ namespace Squeal
     factor = factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction");
 
     const MultiVector A = system.friction_forces->columns(0, n_c);
-    X                   = std::make_unique<MultiVector>(A.Map(), A.NumVectors());
-    factor->apply(A, *X);
-    V  = reactions_at(system, shift);
-    VX = V ? replicate(*V * *X) : DenseMatrix(n_c, n_c);
+    X                   = std::make_unique<MultiVector>(solve_frictionless(A));
+    V                   = reactions_at(system, shift);
+    VX                  = V ? replicate(*V * *X) : DenseMatrix::Zero(n_c, n_c);
   }
 
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
     friction_coefficient = mu;
-    correction = std::make_unique<DenseLU>(add(identity(VX.n_rows()), VX, -mu), "stiffness with friction, condensed to the contact nodes");
+    const auto I         = DenseMatrix::Identity(VX.rows(), VX.cols());
+    correction           = regular_lu(I - mu * VX, "stiffness with friction, condensed to the contact nodes");
   }
 
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const
@@ -52,14 +52,14 @@ namespace Squeal
     factor->apply(B, Y);
     if (friction_coefficient == 0. || !V)
       return;
-    DenseMatrix reactions = replicate(*V * Y);
-    correction->solve(reactions);
-    multiply_add(friction_coefficient, *X, reactions, 1., Y);
+    multiply_add(friction_coefficient, *X, correction->solve(replicate(*V * Y)), 1., Y);
   }
 
-  void UpdatedInverse::apply_frictionless(const MultiVector &B, MultiVector &Y) const
+  MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
   {
+    MultiVector Y(B.Map(), B.NumVectors());
     factor->apply(B, Y);
+    return Y;
   }
 
   const Epetra_Map &UpdatedInverse::map() const

@@ -2,6 +2,7 @@
 #include <squeal/eigen/compact_krylov.h>
 
 #include <Epetra_Comm.h>
+#include <Eigen/QR>
 #include <lapacke.h>
 
 #include <algorithm>
@@ -27,53 +28,35 @@ namespace Squeal
 
     void replicate(const Epetra_Comm &comm, DenseMatrix &A)
     {
-      replicate(comm, A.column(), static_cast<std::size_t>(A.n_rows()) * A.n_columns());
+      replicate(comm, A.data(), A.size());
     }
 
-    /// A copied into the upper left corner of an n_rows × n_columns matrix of zeros.
-    DenseMatrix enlarged(const DenseMatrix &A, const int n_rows, const int n_columns)
+    /// Parts of stacked coordinates, each of r rows, side by side.
+    DenseMatrix parts_of(const DenseMatrix &states, const int degree)
     {
-      DenseMatrix result(n_rows, n_columns);
-      for (int j = 0; j < A.n_columns(); ++j)
-        std::copy_n(A.column(j), A.n_rows(), result.column(j));
+      const Eigen::Index r = states.rows() / degree, k = states.cols();
+      DenseMatrix        parts(r, degree * k);
+      for (int part = 0; part < degree; ++part)
+        parts.middleCols(part * k, k) = states.middleRows(part * r, r);
+      return parts;
+    }
+
+    /// Parts side by side, stacked, each with rows of zeros appended up to @p r_new.
+    DenseMatrix stacked(const DenseMatrix &parts, const int degree, const int r_new)
+    {
+      const Eigen::Index k      = parts.cols() / degree;
+      DenseMatrix        states = DenseMatrix::Zero(degree * r_new, k);
+      for (int part = 0; part < degree; ++part)
+        states.block(part * r_new, 0, parts.rows(), k) = parts.middleCols(part * k, k);
+      return states;
+    }
+
+    /// A above B.
+    DenseMatrix above(const DenseMatrix &A, const DenseMatrix &B)
+    {
+      DenseMatrix result(A.rows() + B.rows(), A.cols());
+      result << A, B;
       return result;
-    }
-
-    /// Rows [first, first + n) of A.
-    DenseMatrix rows(const DenseMatrix &A, const int first, const int n)
-    {
-      DenseMatrix result(n, A.n_columns());
-      for (int j = 0; j < A.n_columns(); ++j)
-        std::copy_n(A.column(j) + first, n, result.column(j));
-      return result;
-    }
-
-    /// [A B].
-    DenseMatrix beside(const DenseMatrix &A, const DenseMatrix &B)
-    {
-      DenseMatrix result = enlarged(A, std::max(A.n_rows(), B.n_rows()), A.n_columns() + B.n_columns());
-      for (int j = 0; j < B.n_columns(); ++j)
-        std::copy_n(B.column(j), B.n_rows(), result.column(A.n_columns() + j));
-      return result;
-    }
-
-    /// Coordinates of @p degree stacked parts of length r, padded by zeros to parts of length r_new.
-    DenseMatrix padded(const DenseMatrix &G, const int degree, const int r_new)
-    {
-      const int   r = G.n_rows() / degree;
-      DenseMatrix result(degree * r_new, G.n_columns());
-      for (int j = 0; j < G.n_columns(); ++j)
-        for (int part = 0; part < degree; ++part)
-          std::copy_n(G.column(j) + part * r, r, result.column(j) + part * r_new);
-      return result;
-    }
-
-    double norm(const double *x, const int n)
-    {
-      double sum = 0.;
-      for (int i = 0; i < n; ++i)
-        sum += x[i] * x[i];
-      return std::sqrt(sum);
     }
 
     /**
@@ -84,7 +67,7 @@ namespace Squeal
     DenseMatrix pivoted_qr(MultiVector &X, std::vector<double> smallest)
     {
       const int        b = X.NumVectors();
-      DenseMatrix      R(b, b);
+      DenseMatrix      R = DenseMatrix::Zero(b, b);
       std::vector<int> permutation(b);
       std::iota(permutation.begin(), permutation.end(), 0);
 
@@ -108,8 +91,7 @@ namespace Squeal
               const MultiVector copy = first;
               first.Update(1., second, 0.);
               second.Update(1., copy, 0.);
-              for (int i = 0; i < k; ++i)
-                std::swap(R(i, k), R(i, pivot));
+              R.col(k).head(k).swap(R.col(pivot).head(k));
               std::swap(permutation[k], permutation[pivot]);
               std::swap(smallest[k], smallest[pivot]);
             }
@@ -125,49 +107,32 @@ namespace Squeal
               MultiVector       others       = view(X, k + 1, b - k - 1);
               const DenseMatrix coefficients = gram(q, others);
               multiply_add(-1., q, coefficients, 1., others);
-              for (int j = k + 1; j < b; ++j)
-                R(k, j) = coefficients(0, j - k - 1);
+              R.row(k).tail(b - k - 1) = coefficients;
             }
         }
 
       DenseMatrix result(k, b);
       for (int j = 0; j < b; ++j)
-        std::copy_n(R.column(j), k, result.column(permutation[j]));
+        result.col(permutation[j]) = R.col(j).head(k);
       return result;
     }
 
     /// The same for a small matrix, by Householder reflections (X is replaced by Q, n × k).
     DenseMatrix pivoted_qr(DenseMatrix &X, const double smallest)
     {
-      const int           n = X.n_rows(), b = X.n_columns();
-      const int           size = std::min(n, b);
-      std::vector<int>    permutation(b, 0);
-      std::vector<double> reflections(size);
-      if (size == 0)
+      const DenseMatrix::Index b = X.cols();
+      if (X.size() == 0)
         {
-          X = DenseMatrix(n, 0);
+          X.resize(Eigen::NoChange, 0);
           return DenseMatrix(0, b);
         }
-      LAPACKE_dgeqp3(LAPACK_COL_MAJOR, n, b, X.column(), n, permutation.data(), reflections.data());
-      int k = 0;
-      while (k < size && std::abs(X(k, k)) > smallest)
+      const Eigen::ColPivHouseholderQR<DenseMatrix> qr(X);
+      Eigen::Index                                  k = 0;
+      while (k < std::min(X.rows(), b) && std::abs(qr.matrixR()(k, k)) > smallest)
         ++k;
-      DenseMatrix R(k, b);
-      for (int j = 0; j < b; ++j)
-        std::copy_n(X.column(j), std::min(k, j + 1), R.column(permutation[j] - 1));
-      if (k > 0)
-        LAPACKE_dorgqr(LAPACK_COL_MAJOR, n, k, k, X.column(), n, reflections.data());
-      X = columns(X, 0, k);
-      return R;
-    }
-
-    /// A above B.
-    DenseMatrix above(const DenseMatrix &A, const DenseMatrix &B)
-    {
-      DenseMatrix result = enlarged(A, A.n_rows() + B.n_rows(), A.n_columns());
-      for (int j = 0; j < B.n_columns(); ++j)
-        std::copy_n(B.column(j), B.n_rows(), result.column(j) + A.n_rows());
-      return result;
+      X                   = qr.householderQ() * DenseMatrix::Identity(X.rows(), k);
+      const DenseMatrix R = qr.matrixR().topRows(k).triangularView<Eigen::Upper>();
+      return R * qr.colsPermutation().transpose();
     }
   } // namespace
 
@@ -212,13 +177,13 @@ namespace Squeal
 
   DenseMatrix CompactKrylov::absorb(MultiVector &X, const std::vector<double> &magnitudes)
   {
-    DenseMatrix coefficients(r, X.NumVectors()), R = identity(X.NumVectors());
+    DenseMatrix coefficients = DenseMatrix::Zero(r, X.NumVectors()), R = DenseMatrix::Identity(X.NumVectors(), X.NumVectors());
     const auto  project = [&](MultiVector &Q) {
       if (r == 0)
         return 0.;
       const DenseMatrix removed = gram(basis(), Q);
       multiply_add(-1., basis(), removed, 1., Q);
-      coefficients = add(coefficients, multiply(removed, R));
+      coefficients += removed * R;
       return max_norm(removed);
     };
 
@@ -228,23 +193,23 @@ namespace Squeal
     std::for_each(smallest.begin(), smallest.end(), [](double &x) { x *= negligible; });
     project(X);
     R = pivoted_qr(X, smallest);
-    for (int round = 0; round < 2 && R.n_rows() > 0; ++round)
+    for (int round = 0; round < 2 && R.rows() > 0; ++round)
       {
-        MultiVector Q       = view(X, 0, R.n_rows());
+        MultiVector Q       = view(X, 0, R.rows());
         double      removed = project(Q);
         replicate(map->Comm(), &removed, 1);
-        R = multiply(pivoted_qr(Q, std::vector<double>(R.n_rows(), meaningless)), R);
+        R = pivoted_qr(Q, std::vector<double>(R.rows(), meaningless)) * R;
         if (removed < 1e-8)
           break;
       }
 
-    const int n_new = R.n_rows();
+    const int n_new = R.rows();
     if (n_new > 0)
       {
         reserve(r + n_new);
         MultiVector target = view(*U, r, n_new);
         target.Update(1., view(X, 0, n_new), 0.);
-        G = padded(G, degree, r + n_new);
+        G = stacked(parts_of(G, degree), degree, r + n_new);
         r += n_new;
       }
     return above(coefficients, R);
@@ -252,25 +217,23 @@ namespace Squeal
 
   DenseMatrix CompactKrylov::append_active(const DenseMatrix &states, const int n_basis)
   {
-    DenseMatrix X        = states;
-    double      smallest = 0.;
-    for (int j = 0; j < X.n_columns(); ++j)
-      smallest = std::max(smallest, negligible * norm(X.column(j), X.n_rows()));
+    DenseMatrix  X        = states;
+    const double smallest = X.cols() == 0 ? 0. : negligible * X.colwise().norm().maxCoeff();
 
-    const DenseMatrix V = columns(G, 0, n_basis);
-    DenseMatrix       coefficients(n_basis, X.n_columns()), R = identity(X.n_columns());
-    for (int round = 0; round < 3 && R.n_rows() > 0; ++round)
+    const DenseMatrix V            = G.leftCols(n_basis);
+    DenseMatrix       coefficients = DenseMatrix::Zero(n_basis, X.cols()), R = DenseMatrix::Identity(X.cols(), X.cols());
+    for (int round = 0; round < 3 && R.rows() > 0; ++round)
       {
-        const DenseMatrix removed = multiply(V, X, true);
-        X                         = add(X, multiply(V, removed), -1.);
-        coefficients              = add(coefficients, multiply(removed, R));
-        R                         = multiply(pivoted_qr(X, round == 0 ? smallest : meaningless), R);
-        double largest            = max_norm(removed);
+        const DenseMatrix removed = V.transpose() * X;
+        X -= V * removed;
+        coefficients += removed * R;
+        R              = pivoted_qr(X, round == 0 ? smallest : meaningless) * R;
+        double largest = max_norm(removed);
         replicate(map->Comm(), &largest, 1);
         if (round > 0 && largest < 1e-8)
           break;
       }
-    G = beside(V, X);
+    G = append_columns(V, X);
     return above(coefficients, R);
   }
 
@@ -278,49 +241,39 @@ namespace Squeal
   {
     MultiVector       X           = directions;
     const DenseMatrix coordinates = absorb(X, column_norms(directions));
-    const DenseMatrix states      = enlarged(coordinates, degree * r, coordinates.n_columns());
     const int         n_before    = m + b;
-    append_active(states, n_before);
-    b = G.n_columns() - m;
-    H = enlarged(H, m + b, m);
+    append_active(with_rows(coordinates, degree * r), n_before);
+    b = G.cols() - m;
+    H = with_rows(H, m + b);
     return m + b - n_before;
   }
 
   void CompactKrylov::expand(const Operator &apply)
   {
     // ------------------------------------------------- upper part of the image
-    DenseMatrix parts(r, degree * b);
-    for (int part = 0; part < degree; ++part)
-      for (int j = 0; j < b; ++j)
-        std::copy_n(G.column(m + j) + part * r, r, parts.column(part * b + j));
-    MultiVector states(*map, degree * b, false), image(*map, b, false);
+    const DenseMatrix parts = parts_of(G.middleCols(m, b), degree);
+    MultiVector       states(*map, degree * b, false), image(*map, b, false);
     multiply_add(1., basis(), parts, 0., states);
     apply(states, image);
 
+    const DenseMatrix   shifted    = parts.leftCols((degree - 1) * b);
     std::vector<double> magnitudes = column_norms(image);
     for (int j = 0; j < b; ++j)
       for (int part = 0; part < degree - 1; ++part)
-        magnitudes[j] = std::hypot(magnitudes[j], norm(parts.column(part * b + j), parts.n_rows()));
+        magnitudes[j] = std::hypot(magnitudes[j], shifted.col(part * b + j).norm());
     const DenseMatrix upper = absorb(image, magnitudes);
 
     // ------------------------------------------------- lower parts: shifted
-    DenseMatrix coordinates(degree * r, b);
-    for (int j = 0; j < b; ++j)
-      {
-        std::copy_n(upper.column(j), upper.n_rows(), coordinates.column(j));
-        for (int part = 1; part < degree; ++part)
-          std::copy_n(parts.column((part - 1) * b + j), parts.n_rows(), coordinates.column(j) + part * r);
-      }
+    const DenseMatrix coordinates = stacked(append_columns(upper, with_rows(shifted, r)), degree, r);
 
     // ------------------------------------------------- new columns of [H; B]
-    const int         m_new    = m + b;
-    const DenseMatrix entries  = append_active(coordinates, m_new);
     const int         m_before = m;
-    b                          = G.n_columns() - m_new;
-    m                          = m_new;
-    H                          = enlarged(H, m + b, m);
-    for (int j = m_before; j < m; ++j)
-      std::copy_n(entries.column(j - m_before), entries.n_rows(), H.column(j));
+    const DenseMatrix entries  = append_active(coordinates, m + b);
+    m += b;
+    b = G.cols() - m;
+    H = with_rows(H, m + b);
+    H.conservativeResize(Eigen::NoChange, m);
+    H.rightCols(m - m_before) = entries;
   }
 
   RitzPairs CompactKrylov::ritz_pairs() const
@@ -330,13 +283,13 @@ namespace Squeal
       return ritz;
 
     // ------------------------------------------------- real Schur form and eigenvectors
-    ritz.schur_form       = rows(H, 0, m);
+    ritz.schur_form       = H.topRows(m);
     ritz.schur_vectors    = DenseMatrix(m, m);
     DenseMatrix        &T = ritz.schur_form, &Z = ritz.schur_vectors;
     std::vector<double> real(m), imaginary(m);
     lapack_int          n_sorted = 0;
     const lapack_int    info =
-      LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', nullptr, m, T.column(), m, &n_sorted, real.data(), imaginary.data(), Z.column(), m);
+      LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', nullptr, m, T.data(), m, &n_sorted, real.data(), imaginary.data(), Z.data(), m);
     if (info != 0)
       throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(m) + " rows",
                         "eigenvalues of the quadratic pencil",
@@ -346,21 +299,17 @@ namespace Squeal
     replicate(map->Comm(), real.data(), m);
     replicate(map->Comm(), imaginary.data(), m);
 
-    ritz.eigenvectors    = Z;
-    lapack_int n_vectors = 0;
-    LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'R', 'B', nullptr, m, T.column(), m, nullptr, 1, ritz.eigenvectors.column(), m, m, &n_vectors);
+    ritz.eigenvectors      = Z;
+    DenseMatrix &Y         = ritz.eigenvectors;
+    lapack_int   n_vectors = 0;
+    LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'R', 'B', nullptr, m, T.data(), m, nullptr, 1, Y.data(), m, m, &n_vectors);
 
     // ------------------------------------------------- unit vectors and their errors
-    DenseMatrix &Y = ritz.eigenvectors;
-    for (int j = 0; j < m; ++j)
-      {
-        const int    width = imaginary[j] != 0. ? 2 : 1;
-        const double scale = 1. / norm(Y.column(j), width * m);
-        std::for_each(Y.column(j), Y.column(j) + width * m, [scale](double &y) { y *= scale; });
-        j += width - 1;
-      }
+    const auto width = [&](const int j) { return imaginary[j] != 0. ? 2 : 1; };
+    for (int j = 0; j < m; j += width(j))
+      Y.middleCols(j, width(j)).normalize();
     replicate(map->Comm(), Y);
-    DenseMatrix errors = multiply(rows(H, m, b), Y);
+    DenseMatrix errors = H.bottomRows(b) * Y;
     replicate(map->Comm(), errors);
 
     // ------------------------------------------------- by descending |ν|
@@ -371,12 +320,8 @@ namespace Squeal
       int                  position;
     };
     std::vector<Entry> entries;
-    for (int j = 0; j < m; ++j)
-      {
-        const int width = imaginary[j] != 0. ? 2 : 1;
-        entries.push_back({{real[j], std::abs(imaginary[j])}, norm(errors.column(j), width * b), j});
-        j += width - 1;
-      }
+    for (int j = 0; j < m; j += width(j))
+      entries.push_back({{real[j], std::abs(imaginary[j])}, errors.middleCols(j, width(j)).norm(), j});
     std::stable_sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return std::abs(a.value) > std::abs(b.value); });
     for (const Entry &entry : entries)
       for (const bool conjugate : {false, true})
@@ -408,42 +353,30 @@ namespace Squeal
     // A positive result means that two values too close to be exchanged stay
     // where they are: the Schur form is valid all the same. LAPACKE's driver
     // without "_work" hands over no integer work space here, and crashes.
-    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), m, T.column(), m, Z.column(), m, real.data(), imaginary.data(), &q,
+    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), m, T.data(), m, Z.data(), m, real.data(), imaginary.data(), &q,
                         &condition, &separation, work.data(), m, &integer_work, 1);
     if (q > 0 && q < m && T(q, q - 1) != 0.)
       ++q;
     replicate(map->Comm(), T);
     replicate(map->Comm(), Z);
-    const DenseMatrix kept = columns(Z, 0, q);
+    const DenseMatrix kept = Z.leftCols(q);
 
     // ------------------------------------------------- new coordinates and [H; B]
-    const DenseMatrix states = beside(multiply(columns(G, 0, m), kept), columns(G, m, b));
-    DenseMatrix       H_new  = enlarged(rows(columns(T, 0, q), 0, q), q + b, q);
-    const DenseMatrix B      = multiply(rows(H, m, b), kept);
-    for (int j = 0; j < q; ++j)
-      std::copy_n(B.column(j), b, H_new.column(j) + q);
+    const DenseMatrix states = append_columns(G.leftCols(m) * kept, G.rightCols(b));
+    H                        = above(T.topLeftCorner(q, q), H.bottomRows(b) * kept);
 
     // ------------------------------------------------- smallest basis of all parts
-    DenseMatrix parts(r, degree * (q + b));
-    for (int part = 0; part < degree; ++part)
-      for (int j = 0; j < q + b; ++j)
-        std::copy_n(states.column(j) + part * r, r, parts.column(part * (q + b) + j));
-    DenseMatrix       P = parts;
+    DenseMatrix       P = parts_of(states, degree);
     const DenseMatrix R = pivoted_qr(P, negligible);
     replicate(map->Comm(), P);
-    const int r_new = P.n_columns();
 
     auto        compressed = std::make_unique<MultiVector>(*map, U->NumVectors(), false);
-    MultiVector target     = view(*compressed, 0, r_new);
+    MultiVector target     = view(*compressed, 0, P.cols());
     multiply_add(1., basis(), P, 0., target);
     U = std::move(compressed);
-    r = r_new;
+    r = P.cols();
     m = q;
-    H = H_new;
-    G = DenseMatrix(degree * r, m + b);
-    for (int part = 0; part < degree; ++part)
-      for (int j = 0; j < m + b; ++j)
-        std::copy_n(R.column(part * (m + b) + j), r, G.column(j) + part * r);
+    G = stacked(R, degree, r);
   }
 
   CompactKrylov CompactKrylov::deflated(const RitzPairs &ritz, const int n_locked) const
@@ -458,17 +391,14 @@ namespace Squeal
     result.H = H;
     result.restart(ritz, n_locked);
     result.b = 0;
-    result.G = columns(result.G, 0, result.m);
-    result.H = rows(result.H, 0, result.m);
+    result.G.conservativeResize(Eigen::NoChange, result.m);
+    result.H.conservativeResize(result.m, Eigen::NoChange);
     return result;
   }
 
   MultiVector CompactKrylov::ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const
   {
-    DenseMatrix Y(m, static_cast<int>(positions.size()));
-    for (int j = 0; j < Y.n_columns(); ++j)
-      std::copy_n(ritz.eigenvectors.column(positions[j]), m, Y.column(j));
-    const DenseMatrix image = multiply(H, Y);
-    return basis() * multiply(rows(G, 0, r), image);
+    const DenseMatrix Y = ritz.eigenvectors(Eigen::all, positions);
+    return basis() * (G.topRows(r) * (H * Y));
   }
 } // namespace Squeal

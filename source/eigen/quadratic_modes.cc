@@ -1,3 +1,6 @@
+#include "inverse_at_shift.h"
+#include "pencil_residuals.h"
+
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
@@ -28,95 +31,6 @@ namespace Squeal
     constexpr int n_proving_steps = 8;
     /// The same if fewer modes were found than expected.
     constexpr int n_searching_steps = 16;
-
-    /**
-     * S and its eigenvalues: the only place where λ becomes θ and ν. In units
-     * of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ = ρ² θ̂ with
-     * λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
-     */
-    class InverseAtShift
-    {
-    public:
-      InverseAtShift(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
-        : pencil(pencil)
-        , inverse(inverse)
-        , s(options.shift)
-        , degree(pencil.damping != nullptr ? 2 : 1)
-      {
-        // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² hold every wanted λ. Of degree one the last to be reached is the
-        // corner with the largest Im λ, of degree two it is -ρ.
-        const Complex corner(-options.largest_damping * options.largest_frequency, options.largest_frequency);
-        largest_modulus = std::abs(corner);
-        radius          = degree == 2 ? largest_modulus + s : std::sqrt(std::abs(corner * corner - s * s));
-      }
-
-      /// Upper part of S x for the states x = [u v] (degree two) or [u] (degree one).
-      void apply(const MultiVector &states, MultiVector &image) const
-      {
-        const int         b = image.NumVectors();
-        const MultiVector u = view(states, 0, b);
-        MultiVector       force(image.Map(), b, false);
-        if (degree == 1)
-          {
-            pencil.mass->apply(u, force);
-            force.Scale(-radius * radius);
-          }
-        else
-          {
-            // ρ (C + 2 s M) u + ρ² M v = ρ C u + M (2 ρ s u + ρ² v)
-            MultiVector combined(image.Map(), b, false);
-            combined.Update(2. * radius * s, u, radius * radius, view(states, b, b), 0.);
-            pencil.mass->apply(combined, force);
-            MultiVector damped(image.Map(), b, false);
-            pencil.damping->apply(u, damped);
-            force.Update(-radius, damped, -1.);
-          }
-        inverse.apply(force, image);
-        n_solves += b;
-      }
-
-      /// λ of ν; of the two for degree one, the one with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
-      Complex value(const Complex nu) const
-      {
-        const double  tiny  = std::numeric_limits<double>::min();
-        const Complex theta = std::abs(nu) > tiny ? 1. / nu : Complex(1. / tiny);
-        if (degree == 2)
-          return s + radius * theta;
-        const Complex square = s * s + radius * radius * theta;
-        // A negative square must not depend on the sign of a zero.
-        const Complex root = square.imag() == 0. && square.real() < 0. ? Complex(0., std::sqrt(-square.real())) : std::sqrt(square);
-        return root.imag() < 0. ? -root : root;
-      }
-
-      bool inside(const Complex nu) const
-      {
-        return std::abs(nu) >= 1.;
-      }
-
-      /**
-       * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε.
-       * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1
-       * (degree two) or θ M r_0 (degree one): no stiffness enters. Compared
-       * with |λ²| |ν| ‖M u‖ for uniform masses; the residuals proper decide.
-       */
-      double residual_estimate(const Complex nu, const double epsilon) const
-      {
-        const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
-        const double lambda = std::abs(value(nu)) / radius;
-        if (lambda < zero_frequency)
-          return epsilon * theta;
-        if (degree == 1)
-          return epsilon * theta * theta / (lambda * lambda);
-        return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
-      }
-
-      const QuadraticPencil &pencil;
-      const LinearOperator  &inverse;
-      double                 s, radius;
-      double                 largest_modulus; ///< ρ: of the wanted λ
-      int                    degree;
-      mutable int            n_solves = 0;
-    };
 
     /// How far the Ritz values have converged.
     struct Convergence
@@ -221,7 +135,7 @@ namespace Squeal
           const bool    pair   = nu.imag() != 0.;
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
-          if (!nonzero.exceeded_by(std::abs(lambda) / options.largest_frequency))
+          if (!nonzero.exceeded_by(std::abs(lambda) / options.largest_circular_frequency))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
           else if (!oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
             {
@@ -229,7 +143,7 @@ namespace Squeal
               if (transformation.degree == 1)
                 modes.real_values.push_back(-lambda.real());
             }
-          else if (lambda.imag() > 0. && lambda.imag() <= options.largest_frequency)
+          else if (lambda.imag() > 0. && lambda.imag() <= options.largest_circular_frequency)
             {
               // The members of a conjugate pair ν share two columns; of degree
               // one both have a λ with Im λ > 0, of degree two only one.
@@ -276,121 +190,6 @@ namespace Squeal
       return text.str();
     }
 
-    /// Q(λ_j) φ_j for some modes.
-    struct PencilImage
-    {
-      MultiVector         real, imaginary;
-      std::vector<double> stiffness_norms; ///< ‖Kφ‖₂
-
-      /// ‖Q(λ)φ‖₂ / ‖Kφ‖₂
-      std::vector<double> residuals() const
-      {
-        const std::vector<double> real_norms = column_norms(real), imaginary_norms = column_norms(imaginary);
-        std::vector<double>       result;
-        for (std::size_t j = 0; j < stiffness_norms.size(); ++j)
-          result.push_back(std::hypot(real_norms[j], imaginary_norms[j]) /
-                           std::max(stiffness_norms[j], std::numeric_limits<double>::min()));
-        return result;
-      }
-    };
-
-    PencilImage apply_pencil(const QuadraticPencil      &pencil,
-                             const std::vector<Complex> &values,
-                             const MultiVector          &real_part,
-                             const MultiVector          &imaginary_part)
-    {
-      const int   width = static_cast<int>(values.size());
-      PencilImage image{MultiVector(real_part.Map(), width), MultiVector(real_part.Map(), width), std::vector<double>(width, 0.)};
-      MultiVector product(real_part.Map(), width, false);
-      const std::vector<double> norms   = column_norms(imaginary_part);
-      const bool                is_real = std::all_of(norms.begin(), norms.end(), [](const double x) { return x == 0.; });
-      for (const bool imaginary_input : {false, true})
-        {
-          if (imaginary_input && is_real)
-            continue;
-          const MultiVector &input    = imaginary_input ? imaginary_part : real_part;
-          const auto         add_term = [&](const LinearOperator *matrix, const int power) {
-            if (matrix == nullptr)
-              return;
-            matrix->apply(input, product);
-            if (power == 0)
-              {
-                const std::vector<double> product_norms = column_norms(product);
-                for (int j = 0; j < width; ++j)
-                  image.stiffness_norms[j] = std::hypot(image.stiffness_norms[j], product_norms[j]);
-              }
-            for (int j = 0; j < width; ++j)
-              {
-                Complex factor = power == 2 ? values[j] * values[j] : power == 1 ? values[j] : Complex(1.);
-                if (imaginary_input)
-                  factor *= Complex(0., 1.);
-                image.real(j)->Update(factor.real(), *product(j), 1.);
-                image.imaginary(j)->Update(factor.imag(), *product(j), 1.);
-              }
-          };
-          add_term(pencil.stiffness, 0);
-          add_term(pencil.damping, 1);
-          add_term(pencil.mass, 2);
-        }
-      return image;
-    }
-
-    /**
-     * One step φ ← φ - Q(s)⁻¹ Q(λ) φ for the modes that miss the tolerance: a
-     * mode far below the others keeps rounding errors of high frequency, small
-     * in φ but large in Kφ, where Q(s)⁻¹ nearly inverts Q(λ). A step that does
-     * not lower the residual is not taken.
-     */
-    void correct(const QuadraticPencil &pencil, const LinearOperator &inverse, QuadraticModes &modes, const double tolerance)
-    {
-      for (std::size_t j = 0; j < modes.values.size(); ++j)
-        {
-          if (modes.residuals[j] <= tolerance)
-            continue;
-          const int         column = static_cast<int>(j);
-          MultiVector       re = view(*modes.real_part, column, 1), im = view(*modes.imaginary_part, column, 1);
-          const PencilImage before = apply_pencil(pencil, {modes.values[j]}, re, im);
-          MultiVector       new_re(re.Map(), 1), new_im(re.Map(), 1);
-          inverse.apply(before.real, new_re);
-          inverse.apply(before.imaginary, new_im);
-          new_re.Update(1., re, -1.);
-          new_im.Update(1., im, -1.);
-          const double norm = std::hypot(column_norms(new_re)[0], column_norms(new_im)[0]);
-          new_re.Scale(1. / norm);
-          new_im.Scale(1. / norm);
-          const double residual = apply_pencil(pencil, {modes.values[j]}, new_re, new_im).residuals()[0];
-          if (residual < modes.residuals[j])
-            {
-              *(*modes.real_part)(column)      = *new_re(0);
-              *(*modes.imaginary_part)(column) = *new_im(0);
-              modes.residuals[j]               = residual;
-            }
-        }
-    }
-
-    /// Largest ratio of a residual to what is accepted: the tolerance or, where that is more, rounding errors of Kφ.
-    double excess(const QuadraticPencil &pencil, const QuadraticModes &modes, const QuadraticModesOptions &options)
-    {
-      if (modes.residuals.empty())
-        return 0.;
-      const double worst = *std::max_element(modes.residuals.begin(), modes.residuals.end());
-      if (worst <= options.tolerance)
-        return worst / options.tolerance;
-
-      // ‖φ‖ is one.
-      const double rounding = 10. * std::numeric_limits<double>::epsilon() * options.stiffness_norm;
-      MultiVector  product(*modes.real_part);
-      pencil.stiffness->apply(*modes.real_part, product);
-      const std::vector<double> real_norms = column_norms(product);
-      pencil.stiffness->apply(*modes.imaginary_part, product);
-      const std::vector<double> imaginary_norms = column_norms(product);
-      double                    largest         = 0.;
-      for (std::size_t j = 0; j < modes.residuals.size(); ++j)
-        largest =
-          std::max(largest, modes.residuals[j] / std::max(options.tolerance, rounding / std::hypot(real_norms[j], imaginary_norms[j])));
-      return largest;
-    }
-
     [[noreturn]] void throw_unconverged(const Convergence           &state,
                                         const double                 worst,
                                         const std::string           &reason,
@@ -399,7 +198,7 @@ namespace Squeal
       throw SolverError(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) +
                           " eigenvalues inside the radius converged; the worst residual is " + scientific(worst) + ", allowed is " +
                           scientific(options.tolerance) + ": " + reason,
-                        "complex modes up to " + scientific(options.largest_frequency) + " rad/s",
+                        "complex modes up to " + scientific(options.largest_circular_frequency) + " rad/s",
                         "raise the tolerance, the number of basis vectors or of restarts, or lower the largest frequency");
     }
 
@@ -408,8 +207,8 @@ namespace Squeal
       const auto refuse = [](const std::string &what, const std::string &change) {
         throw SolverError(what, "options of the complex modes", change);
       };
-      if (!(options.largest_frequency > 0.))
-        refuse("The largest frequency is " + scientific(options.largest_frequency) + " rad/s", "give a positive frequency");
+      if (!(options.largest_circular_frequency > 0.))
+        refuse("The largest frequency is " + scientific(options.largest_circular_frequency) + " rad/s", "give a positive frequency");
       if (!(options.shift >= 0.))
         refuse("The shift is " + scientific(options.shift) + " 1/s", "give a real shift that is not negative");
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
@@ -584,22 +383,4 @@ namespace Squeal
       }
   }
 
-  std::vector<double> residuals(const QuadraticPencil      &pencil,
-                                const std::vector<Complex> &values,
-                                const MultiVector          &real_part,
-                                const MultiVector          &imaginary_part)
-  {
-    constexpr int       chunk = 16;
-    const int           k     = static_cast<int>(values.size());
-    std::vector<double> result(k);
-    for (int first = 0; first < k; first += chunk)
-      {
-        const int                 width  = std::min(chunk, k - first);
-        const PencilImage         image  = apply_pencil(pencil, {values.begin() + first, values.begin() + first + width},
-                                                        view(real_part, first, width), view(imaginary_part, first, width));
-        const std::vector<double> ratios = image.residuals();
-        std::copy(ratios.begin(), ratios.end(), result.begin() + first);
-      }
-    return result;
-  }
 } // namespace Squeal

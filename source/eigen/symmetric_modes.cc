@@ -37,12 +37,8 @@ namespace Squeal
 
     RitzPairs rayleigh_ritz(const SparseMatrix &K, const SparseMatrix &M, const MultiVector &V)
     {
-      DenseMatrix S = gram(V, K * V);
-      RitzPairs   pairs;
-      pairs.values = symmetric_eigenvalues(S, gram(V, M * V));
-      agree(V.Comm(), S, pairs.values);
-      pairs.vectors.emplace(V * S);
-      return pairs;
+      const RealPairs reduced = agreed(V.Comm(), symmetric_eigenpairs(gram(V, K * V), gram(V, M * V)));
+      return {reduced.values, V * reduced.vectors};
     }
 
     /// Solution of one problem, step by step.
@@ -129,18 +125,14 @@ namespace Squeal
 
       RitzPairs dense()
       {
-        DenseMatrix A = to_dense(K);
-        RitzPairs   pairs;
-        pairs.values = symmetric_eigenvalues(A, to_dense(M));
-        agree(K.Comm(), A, pairs.values);
-        const int n_kept = std::min<int>(std::max(1, count.n_modes), pairs.values.size());
-        pairs.values.resize(n_kept);
-        pairs.vectors.emplace(K.DomainMap(), n_kept);
+        const RealPairs all    = agreed(K.Comm(), symmetric_eigenpairs(to_dense(K), to_dense(M)));
+        const int       n_kept = std::min<int>(std::max(1, count.n_modes), all.values.size());
+        MultiVector     vectors(K.DomainMap(), n_kept, false);
+        // Rows of an uncoupled part have numbers that are not those in its dense matrix
         const int first_row = LocalRows(K).first_row;
         for (int j = 0; j < n_kept; ++j)
-          for (int i = 0; i < pairs.vectors->MyLength(); ++i)
-            (*pairs.vectors)[j][i] = A(first_row + i, j);
-        return pairs;
+          std::copy_n(all.vectors.col(j).begin() + first_row, vectors.MyLength(), vectors[j]);
+        return {{all.values.begin(), all.values.begin() + n_kept}, vectors};
       }
 
       std::optional<MultiVector> krylov(const int                         n_wanted,

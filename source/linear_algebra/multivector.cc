@@ -1,5 +1,3 @@
-#include "blas.h"
-
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/multivector.h>
@@ -24,28 +22,20 @@ namespace Squeal
                           "this is a mistake in the program: please report it");
     }
 
-    /// Local values of a multivector, one column after the other; copied only if the columns are scattered.
-    class LocalValues
+    using Rows = Eigen::Map<const DenseMatrix, 0, Eigen::OuterStride<>>;
+
+    /// Local rows of a multivector of contiguous columns.
+    Rows local_rows(const MultiVector &X)
     {
-    public:
-      explicit LocalValues(const MultiVector &X)
-        : values(X.Values())
-        , stride(std::max(1, X.Stride()))
-      {
-        if (!X.ConstantStride())
-          {
-            copy   = std::make_unique<MultiVector>(X);
-            values = copy->Values();
-            stride = std::max(1, copy->Stride());
-          }
-      }
+      return {X.Values(), X.MyLength(), X.NumVectors(), Eigen::OuterStride<>(std::max(1, X.Stride()))};
+    }
 
-      const double *values;
-      int           stride;
-
-    private:
-      std::unique_ptr<MultiVector> copy;
-    };
+    /// Calls @p f with the local rows of X, copied only if its columns are scattered.
+    template <typename Function>
+    auto with_local_rows(const MultiVector &X, const Function &f)
+    {
+      return X.ConstantStride() ? f(local_rows(X)) : f(local_rows(MultiVector(X)));
+    }
 
     /// Mixes 64 bits (the finaliser of SplitMix64).
     std::uint64_t mix(std::uint64_t z)
@@ -62,35 +52,23 @@ namespace Squeal
       multiply_add(-1., Q, gram(Q, M * X), 1., X);
     }
 
-    /// Eigenvalues of a symmetric matrix, which is replaced by its eigenvectors, the same on all processes.
-    std::vector<double> common_eigenvalues(const Epetra_Comm &comm, DenseMatrix &A)
+    /// Eigenpairs of a symmetric matrix, the same on all processes.
+    RealPairs common_eigenpairs(const Epetra_Comm &comm, const DenseMatrix &A)
     {
-      std::vector<double> values = symmetric_eigenvalues(A);
-      agree(comm, A, values);
-      return values;
+      return agreed(comm, symmetric_eigenpairs(A));
     }
 
-    /// Columns of @p V that belong to the @p n largest of the ascending @p values, each divided by its root, largest first.
-    DenseMatrix largest_axes(const DenseMatrix &V, const std::vector<double> &values, const int n)
+    /// Eigenvectors of the @p n largest eigenvalues, each divided by the root of its value, largest first.
+    DenseMatrix largest_axes(const RealPairs &pairs, const int n)
     {
-      DenseMatrix S(V.n_rows(), n);
-      for (int j = 0; j < n; ++j)
-        {
-          const int column = V.n_columns() - 1 - j;
-          for (int i = 0; i < S.n_rows(); ++i)
-            S(i, j) = V(i, column) / std::sqrt(values[column]);
-        }
-      return S;
+      return pairs.vectors.rightCols(n).rowwise().reverse() *
+             as_column(pairs.values).tail(n).reverse().cwiseSqrt().cwiseInverse().asDiagonal();
     }
 
     /// V diag(1 / √values) Vᵀ.
-    DenseMatrix inverse_root(const DenseMatrix &V, const std::vector<double> &values)
+    DenseMatrix inverse_root(const RealPairs &pairs)
     {
-      DenseMatrix S = V;
-      for (int j = 0; j < S.n_columns(); ++j)
-        for (int i = 0; i < S.n_rows(); ++i)
-          S(i, j) /= std::sqrt(values[j]);
-      return multiply(S, V, false, true);
+      return pairs.vectors * as_column(pairs.values).cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors.transpose();
     }
   } // namespace
 
@@ -99,38 +77,35 @@ namespace Squeal
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y)
   {
     require(X.MyLength() == Y.MyLength(), "inner products");
-    const int   m = X.NumVectors(), n = Y.NumVectors();
-    DenseMatrix local(m, n), sum(m, n);
-    if (X.MyLength() > 0)
-      {
-        const LocalValues x(X), y(Y);
-        gemm(true, false, m, n, X.MyLength(), 1., x.values, x.stride, y.values, y.stride, 0., local.column(), m);
-      }
+    DenseMatrix local = with_local_rows(
+      X, [&Y](const Rows &x) { return with_local_rows(Y, [&x](const Rows &y) -> DenseMatrix { return x.transpose() * y; }); });
     if (X.Comm().NumProc() == 1)
       return local;
 
-    X.Comm().SumAll(local.column(), sum.column(), m * n);
+    DenseMatrix sum(local.rows(), local.cols());
+    X.Comm().SumAll(local.data(), sum.data(), local.size());
     // Decisions are taken on these numbers: the last bit must agree everywhere.
-    X.Comm().Broadcast(sum.column(), m * n, 0);
+    X.Comm().Broadcast(sum.data(), sum.size(), 0);
     return sum;
   }
 
 
 
-  void agree(const Epetra_Comm &comm, DenseMatrix &A, std::vector<double> &values)
+  RealPairs agreed(const Epetra_Comm &comm, RealPairs pairs)
   {
-    if (comm.NumProc() == 1)
-      return;
-    comm.Broadcast(A.column(), A.n_rows() * A.n_columns(), 0);
-    comm.Broadcast(values.data(), values.size(), 0);
+    if (comm.NumProc() > 1)
+      {
+        comm.Broadcast(pairs.vectors.data(), pairs.vectors.size(), 0);
+        comm.Broadcast(pairs.values.data(), pairs.values.size(), 0);
+      }
+    return pairs;
   }
 
 
 
   void multiply_add(const double alpha, const MultiVector &X, const DenseMatrix &S, const double beta, MultiVector &Y)
   {
-    require(X.MyLength() == Y.MyLength() && X.NumVectors() == S.n_rows() && Y.NumVectors() == S.n_columns(),
-            "linear combination of vectors");
+    require(X.MyLength() == Y.MyLength() && X.NumVectors() == S.rows() && Y.NumVectors() == S.cols(), "linear combination of vectors");
     if (Y.MyLength() == 0)
       return;
     if (!Y.ConstantStride())
@@ -140,16 +115,25 @@ namespace Squeal
         Y = contiguous;
         return;
       }
-    const LocalValues x(X);
-    gemm(false, false, Y.MyLength(), Y.NumVectors(), X.NumVectors(), alpha, x.values, x.stride, S.column(), S.n_rows(), beta, Y.Values(),
-         Y.Stride());
+    Eigen::Map<DenseMatrix, 0, Eigen::OuterStride<>> y(Y.Values(), Y.MyLength(), Y.NumVectors(),
+                                                       Eigen::OuterStride<>(std::max(1, Y.Stride())));
+    with_local_rows(X, [&](const Rows &x) {
+      if (beta == 0.)
+        y.noalias() = alpha * x * S;
+      else
+        {
+          if (beta != 1.)
+            y *= beta;
+          y.noalias() += alpha * x * S;
+        }
+    });
   }
 
 
 
   MultiVector operator*(const MultiVector &X, const DenseMatrix &S)
   {
-    MultiVector Y(X.Map(), S.n_columns(), false);
+    MultiVector Y(X.Map(), S.cols(), false);
     multiply_add(1., X, S, 0., Y);
     return Y;
   }
@@ -281,7 +265,7 @@ namespace Squeal
       std::optional<MultiVector> remaining;
       double                     largest = 0.;
       {
-        DenseMatrix         G = gram(X, M * X);
+        const DenseMatrix   G = gram(X, M * X);
         std::vector<double> scale;
         std::vector<int>    nonzero;
         for (int j = 0; j < X.NumVectors(); ++j)
@@ -298,15 +282,12 @@ namespace Squeal
         const int k = nonzero.size();
         if (k == 0)
           return {};
-        DenseMatrix S(X.NumVectors(), k), unit(k, k);
+        DenseMatrix S = DenseMatrix::Zero(X.NumVectors(), k);
         for (int j = 0; j < k; ++j)
-          {
-            S(nonzero[j], j) = scale[j];
-            for (int i = 0; i < k; ++i)
-              unit(i, j) = scale[i] * scale[j] * G(nonzero[i], nonzero[j]);
-          }
+          S(nonzero[j], j) = scale[j];
         remaining.emplace(X * S);
-        const std::vector<double> squares = common_eigenvalues(X.Comm(), unit);
+        const auto                scales  = as_column(scale).asDiagonal();
+        const std::vector<double> squares = common_eigenpairs(X.Comm(), scales * G(nonzero, nonzero) * scales).values;
         largest                           = squares.back();
         if (axes != nullptr)
           *axes = {{}, condition_number(squares)};
@@ -319,9 +300,9 @@ namespace Squeal
 
       while (remaining)
         {
-          DenseMatrix               V      = gram(*remaining, M * *remaining);
-          const std::vector<double> values = common_eigenvalues(X.Comm(), V);
-          const int                 k      = values.size();
+          const RealPairs            pairs  = common_eigenpairs(X.Comm(), gram(*remaining, M * *remaining));
+          const std::vector<double> &values = pairs.values;
+          const int                  k      = values.size();
 
           const double threshold = std::max(resolved * values.back(), smallest);
           int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
@@ -333,7 +314,7 @@ namespace Squeal
           if (!(values.back() > smallest) || n_rest == k)
             break;
 
-          MultiVector W = *remaining * largest_axes(V, values, k - n_rest);
+          MultiVector W = *remaining * largest_axes(pairs, k - n_rest);
           if (axes != nullptr)
             std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms),
                            [](const double x) { return std::sqrt(x); });
@@ -341,16 +322,14 @@ namespace Squeal
             {
               project(W);
               // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
-              DenseMatrix               U       = gram(W, M * W);
-              const std::vector<double> squares = common_eigenvalues(X.Comm(), U);
-              W                                 = W * inverse_root(U, squares);
+              W = W * inverse_root(common_eigenpairs(X.Comm(), gram(W, M * W)));
             }
           kept.push_back(std::move(W));
 
           // Rounding in V leaves a trace of the kept directions in the others, which the projection removes.
           if (n_rest > 0)
             {
-              remaining.emplace(*remaining * columns(V, 0, n_rest));
+              remaining.emplace(*remaining * pairs.vectors.leftCols(n_rest));
               project(*remaining);
               project(*remaining);
             }
@@ -415,6 +394,6 @@ namespace Squeal
 
   double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
   {
-    return max_norm(add(gram(X, M * X), identity(X.NumVectors()), -1.));
+    return max_norm(gram(X, M * X) - DenseMatrix::Identity(X.NumVectors(), X.NumVectors()));
   }
 } // namespace Squeal

@@ -171,11 +171,11 @@ namespace Squeal
   DenseMatrix to_dense(const SparseMatrix &A)
   {
     const LocalRows rows(A);
-    DenseMatrix     local(rows.n_rows, rows.n_columns), all(rows.n_rows, rows.n_columns);
+    DenseMatrix     local = DenseMatrix::Zero(rows.n_rows, rows.n_columns), all(rows.n_rows, rows.n_columns);
     for (std::size_t i = 0; i + 1 < rows.start.size(); ++i)
       for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
         local(rows.first_row + i, rows.column[k]) = rows.value[k];
-    A.Comm().SumAll(local.column(), all.column(), rows.n_rows * rows.n_columns);
+    A.Comm().SumAll(local.data(), all.data(), rows.n_rows * rows.n_columns);
     return all;
   }
 

@@ -24,7 +24,7 @@ namespace Squeal
   {
     /// First words of every archive; the number after them is the version of its format.
     const std::string title             = "squeal sweep";
-    constexpr int     version_of_format = 2;
+    constexpr int     version_of_format = 3;
 
     constexpr const char *csv_header =
       "line [-],mu [-],frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-]\n";
@@ -65,7 +65,7 @@ namespace Squeal
 
     bool is_block() const
     {
-      return block.n_columns() > 0;
+      return block.cols() > 0;
     }
 
     template <class Archive>
@@ -97,7 +97,7 @@ namespace Squeal
 
     void keep(const OperatingPoint &point, const ChartPoint &result) override
     {
-      checkpoint.on_root([&] { checkpoint.append({name, contents.n_blocks, {}, point.line, result}); });
+      checkpoint.on_root([&] { checkpoint.append({name, contents.n_blocks, DenseMatrix(), point.line, result}); });
     }
 
     std::vector<MultiVector> basis() const override

@@ -4,6 +4,21 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// Extends a matrix with Aᵀ = sign A, symmetric or skew, to the size of its new last columns, r × k.
+    void border(DenseMatrix &matrix, const DenseMatrix &new_columns, const double sign)
+    {
+      const Eigen::Index r = new_columns.rows(), old = r - new_columns.cols();
+      matrix.conservativeResize(r, r);
+      for (Eigen::Index j = old; j < r; ++j)
+        {
+          matrix.row(j).head(j)     = sign * new_columns.col(j - old).head(j).transpose();
+          matrix.col(j).head(j + 1) = new_columns.col(j - old).head(j + 1);
+        }
+    }
+  } // namespace
+
   ReducedModel::ReducedModel(const CoupledSystem &system)
     : system(&system)
     , matrices(system.terms.size())
@@ -19,8 +34,7 @@ namespace Squeal
         const Term &term = system->terms[k];
         if (term.matrix)
           {
-            const DenseMatrix columns = gram(*T, *term.matrix * vectors);
-            border(matrices[k], columns, term.symmetry == Symmetry::skew ? -1. : 1.);
+            border(matrices[k], gram(*T, *term.matrix * vectors), term.symmetry == Symmetry::skew ? -1. : 1.);
             if (term.matrix == system->mass)
               mass_matrix = matrices[k];
             if (term.matrix == system->stiffness)
@@ -31,13 +45,13 @@ namespace Squeal
           if (!std::exchange(is_extended[factor], true))
             factors[factor] = append_columns(factors[factor], factor->transpose_times(vectors));
         if (term.weights.empty())
-          matrices[k] = multiply(motions(*term.left), motions(*term.right), true);
+          matrices[k] = motions(*term.left).transpose() * motions(*term.right);
       }
   }
 
   int ReducedModel::size() const
   {
-    return mass_matrix.n_rows();
+    return mass_matrix.rows();
   }
 
   const MultiVector &ReducedModel::basis() const
@@ -79,14 +93,14 @@ namespace Squeal
         if (term.vanishes(values))
           continue;
         DenseMatrix &sum = sums[term.power];
-        if (sum.n_rows() == 0)
-          sum = DenseMatrix(size(), size());
+        if (sum.size() == 0)
+          sum = DenseMatrix::Zero(size(), size());
         if (term.weights.empty())
-          sum = add(sum, matrices[k], term.coefficient.at(values));
+          sum += term.coefficient.at(values) * matrices[k];
         else
-          sum = add(sum, multiply(motions(*term.left), term.weighted(motions(*term.right), values), true), term.coefficient.at(values));
+          sum += term.coefficient.at(values) * motions(*term.left).transpose() * term.weighted(motions(*term.right), values);
       }
-    const bool has_damping = sums[1].n_rows() > 0;
+    const bool has_damping = sums[1].size() > 0;
     return {std::move(sums[2]), std::move(sums[1]), std::move(sums[0]), has_damping};
   }
 } // namespace Squeal

@@ -1,3 +1,4 @@
+#include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/reduction/residual_products.h>
 
@@ -10,42 +11,13 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Copies @p part into @p matrix from entry (row, column) on.
-    void insert(DenseMatrix &matrix, const DenseMatrix &part, const int row, const int column)
-    {
-      for (int j = 0; j < part.n_columns(); ++j)
-        std::copy(part.column(j), part.column(j) + part.n_rows(), matrix.column(column + j) + row);
-    }
-
-    /// Rows [first, first + n).
-    DenseMatrix rows(const DenseMatrix &X, const int first, const int n)
-    {
-      DenseMatrix result(n, X.n_columns());
-      for (int j = 0; j < X.n_columns(); ++j)
-        std::copy(X.column(j) + first, X.column(j) + first + n, result.column(j));
-      return result;
-    }
-
-    MultiVector solve(const UpdatedInverse &inverse, const MultiVector &F)
-    {
-      MultiVector U(F.Map(), F.NumVectors());
-      inverse.apply_frictionless(F, U);
-      return U;
-    }
-
-    /// Diagonal of Xᴴ Y for matrices of real and imaginary halves.
+    /// Diagonal of Xᴴ Y for matrices of real and imaginary halves; rounding may leave the square of a vanishing residual negative.
     std::vector<double> hermitian_products(const DenseMatrix &X, const DenseMatrix &Y)
     {
-      const int           k = X.n_columns() / 2;
-      std::vector<double> result(k);
-      for (int j = 0; j < k; ++j)
-        for (const int column : {j, k + j})
-          for (int i = 0; i < X.n_rows(); ++i)
-            result[j] += X(i, column) * Y(i, column);
-      // Rounding may leave a residual of zero with a negative square
-      for (double &square : result)
-        square = std::max(square, 0.);
-      return result;
+      const Eigen::Index    k        = X.cols() / 2;
+      const Eigen::VectorXd products = X.cwiseProduct(Y).colwise().sum();
+      const Eigen::VectorXd result   = (products.head(k) + products.tail(k)).cwiseMax(0.);
+      return {result.begin(), result.end()};
     }
   } // namespace
 
@@ -88,7 +60,7 @@ namespace Squeal
       // The responses to friction forces are at hand
       factor_gram = append_columns(factor_gram, factor_products(f.factor == system.friction_forces.get() ?
                                                                   inverse.attachment_modes() :
-                                                                  solve(inverse, f.factor->columns(0, f.factor->rank()))));
+                                                                  inverse.solve_frictionless(f.factor->columns(0, f.factor->rank()))));
     clear();
   }
 
@@ -96,7 +68,7 @@ namespace Squeal
   {
     DenseMatrix result(n_left + n_shared + n_right, X.NumVectors());
     for (const Factor &f : factors)
-      insert(result, f.factor->transpose_times(X), f.first, 0);
+      result.middleRows(f.first, f.factor->rank()) = f.factor->transpose_times(X);
     return result;
   }
 
@@ -133,7 +105,7 @@ namespace Squeal
     std::vector<DenseMatrix> columns(n * n);
     for (std::size_t k = 0; k < n; ++k)
       {
-        const MultiVector U       = solve(inverse, *sparse[k].term->matrix * fresh);
+        const MultiVector U       = inverse.solve_frictionless(*sparse[k].term->matrix * fresh);
         sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
         for (std::size_t l = 0; l < n; ++l)
           {
@@ -146,9 +118,8 @@ namespace Squeal
       for (std::size_t l = 0; l < n; ++l)
         {
           DenseMatrix products(r, r);
-          insert(products, sparse[k].products[l], 0, 0);
-          insert(products, columns[l + n * k], 0, old);
-          insert(products, transpose(rows(columns[k + n * l], 0, old)), old, 0);
+          products << sparse[k].products[l], columns[l + n * k].topRows(old), columns[k + n * l].topRows(old).transpose(),
+            columns[l + n * k].bottomRows(r - old);
           sparse[k].products[l] = std::move(products);
         }
     assemble(model);
@@ -159,33 +130,31 @@ namespace Squeal
     const int n_sparse = static_cast<int>(sparse.size()) * r, size = n_sparse + n_left + n_shared + n_right;
 
     // Wᵀ S⁻¹ W and Tᵀ W
-    DenseMatrix G(size, size), H(r, size);
+    DenseMatrix G = DenseMatrix::Zero(size, size), H(r, size);
     for (const Factor &f : factors)
       {
         const int column = column_of(f), rank = f.factor->rank();
         for (const Factor &g : factors)
-          insert(G, rows(columns(factor_gram, f.first, rank), g.first, g.factor->rank()), column_of(g), column);
-        insert(H, transpose(motions.at(f.factor)), 0, column);
+          G.block(column_of(g), column, g.factor->rank(), rank) = factor_gram.block(g.first, f.first, g.factor->rank(), rank);
+        H.middleCols(column, rank) = motions.at(f.factor).transpose();
       }
     for (std::size_t k = 0; k < sparse.size(); ++k)
       {
         const int column = n_left + static_cast<int>(k) * r;
         for (std::size_t l = 0; l < sparse.size(); ++l)
-          insert(G, sparse[k].products[l], n_left + static_cast<int>(l) * r, column);
+          G.block(n_left + static_cast<int>(l) * r, column, r, r) = sparse[k].products[l];
         for (const Factor &f : factors)
           {
-            const DenseMatrix part = rows(sparse[k].factor_products, f.first, f.factor->rank());
-            insert(G, part, column_of(f), column);
-            insert(G, transpose(part), column, column_of(f));
+            const auto part                               = sparse[k].factor_products.middleRows(f.first, f.factor->rank());
+            G.block(column_of(f), column, part.rows(), r) = part;
+            G.block(column, column_of(f), r, part.rows()) = part.transpose();
           }
-        insert(H, model.projected(sparse[k].number), 0, column);
+        H.middleCols(column, r) = model.projected(sparse[k].number);
       }
 
-    DenseMatrix responses = H;
-    DenseLU(add(model.stiffness(), model.mass(), shift * shift), "stiffness of a reduced model").solve(responses);
-    const DenseMatrix remainder = add(G, multiply(H, responses, true), -1.);
-    left_columns                = columns(remainder, 0, size - n_right);
-    right_block                 = rows(columns(remainder, n_left, size - n_left), n_left, size - n_left);
+    G -= H.transpose() * regular_lu(model.stiffness() + shift * shift * model.mass(), "stiffness of a reduced model").solve(H);
+    left_columns = G.leftCols(size - n_right);
+    right_block  = G.bottomRightCorner(size - n_left, size - n_left);
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
@@ -193,28 +162,18 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  transposed) const
   {
-    const int   k     = static_cast<int>(lambda.size());
-    const int   first = transposed ? 0 : n_left; // column of W that belongs to the first row
-    DenseMatrix result(transposed ? left_columns.n_columns() : right_block.n_columns(), 2 * k);
-    const auto  theta = [&](const Term &term, const int j) {
-      return term.coefficient.at(values) * (term.power == 0 ? 1. : term.power == 1 ? lambda[j] : lambda[j] * lambda[j]);
-    };
-    const auto add_rows = [&](const ComplexDenseMatrix &part, const int row, const std::function<Complex(int)> &factor) {
+    const int          k        = static_cast<int>(lambda.size());
+    const int          first    = transposed ? 0 : n_left; // column of W that belongs to the first row
+    ComplexDenseMatrix result   = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), k);
+    const auto         add_rows = [&](const ComplexDenseMatrix &part, const int row, const std::function<Complex(int)> &factor) {
       for (int j = 0; j < k; ++j)
-        {
-          const Complex f = factor(j);
-          for (int i = 0; i < part.n_rows(); ++i)
-            {
-              const Complex value = f * part(i, j);
-              result(row + i, j) += value.real();
-              result(row + i, k + j) += value.imag();
-            }
-        }
+        result.col(j).segment(row, part.rows()) += factor(j) * part.col(j);
     };
 
     for (std::size_t s = 0; s < sparse.size(); ++s)
-      add_rows(vectors, n_left - first + static_cast<int>(s) * r,
-               [&](const int j) { return (transposed ? sparse[s].sign : 1.) * theta(*sparse[s].term, j) - sparse[s].sigma; });
+      add_rows(vectors, n_left - first + static_cast<int>(s) * r, [&](const int j) {
+        return (transposed ? sparse[s].sign : 1.) * sparse[s].term->factor(lambda[j], values) - sparse[s].sigma;
+      });
     std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
     for (const Term *term : low_rank)
       {
@@ -224,9 +183,10 @@ namespace Squeal
         if (moved.count(&source) == 0)
           moved[&source] = multiply(motions.at(&source), vectors);
         const auto factor = std::find_if(factors.begin(), factors.end(), [&target](const Factor &f) { return f.factor == &target; });
-        add_rows(term->weighted(moved.at(&source), values), column_of(*factor) - first, [&](const int j) { return theta(*term, j); });
+        add_rows(term->weighted(moved.at(&source), values), column_of(*factor) - first,
+                 [&](const int j) { return term->factor(lambda[j], values); });
       }
-    return result;
+    return halves(result);
   }
 
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
@@ -235,8 +195,8 @@ namespace Squeal
                                                 const ComplexDenseMatrix   &left) const
   {
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
-    const DenseMatrix Gy = multiply(right_block, y), Gz = multiply(left_columns, z);
-    return {from_halves(multiply(rows(Gz, n_left, y.n_rows()), y, true)), hermitian_products(y, Gy),
-            hermitian_products(z, rows(Gz, 0, z.n_rows()))};
+    const DenseMatrix Gy = right_block * y, Gz = left_columns * z;
+    return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),
+            hermitian_products(z, Gz.topRows(z.rows()))};
   }
 } // namespace Squeal

@@ -1,5 +1,7 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+#include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/sliding/contact_problem.h>
 
 #include <algorithm>
@@ -42,16 +44,10 @@ namespace Squeal
         : problem(problem)
         , G(problem.flexibility(mu))
       {
-        for (int i = 0; i < G.n_rows(); ++i)
-          unit += std::abs(G(i, i)) / G.n_rows();
-        for (int k = 0; k < problem.motions.n_columns(); ++k)
+        unit = G.diagonal().cwiseAbs().mean();
+        for (Eigen::Index k = 0; k < problem.motions.cols(); ++k)
           {
-            double motion = 0., force = 0.;
-            for (int c = 0; c < problem.motions.n_rows(); ++c)
-              {
-                motion = std::max(motion, std::abs(problem.motions(c, k)));
-                force  = std::max(force, std::abs(problem.balance(k, c)));
-              }
+            const double motion = max_norm(problem.motions.col(k)), force = max_norm(problem.balance.row(k));
             motion_sizes.push_back(motion > 0. ? motion : 1.);
             balance_sizes.push_back(force > 0. ? force : 1.);
           }
@@ -62,55 +58,40 @@ namespace Squeal
       {
         const int        n_z = problem.forces.size();
         std::vector<int> nodes;
-        for (int c = 0; c < G.n_rows(); ++c)
+        for (int c = 0; c < G.rows(); ++c)
           if (closed[c])
             nodes.push_back(c);
         const int n = nodes.size();
 
         // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
-        DenseMatrix A(n + n_z, n + n_z), b(n + n_z, 1);
-        for (int i = 0; i < n; ++i)
-          {
-            for (int j = 0; j < n; ++j)
-              A(i, j) = G(nodes[i], nodes[j]) / unit;
-            for (int k = 0; k < n_z; ++k)
-              {
-                A(i, n + k) = problem.motions(nodes[i], k) / motion_sizes[k];
-                A(n + k, i) = problem.balance(k, nodes[i]) / balance_sizes[k];
-              }
-            b(i, 0) = -problem.initial_gap[nodes[i]] / unit;
-          }
-        for (int k = 0; k < n_z; ++k)
-          b(n + k, 0) = problem.forces[k] / balance_sizes[k];
+        DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, 1);
+        A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::all) * as_column(motion_sizes).cwiseInverse().asDiagonal(),
+          as_column(balance_sizes).cwiseInverse().asDiagonal() * problem.balance(Eigen::all, nodes), DenseMatrix::Zero(n_z, n_z);
+        b << -as_column(problem.initial_gap)(nodes) / unit, as_column(problem.forces).cwiseQuotient(as_column(balance_sizes));
         for (const int k : problem.held)
           A(n + k, n + k) = 1.;
-        const DenseMatrix rhs = b;
-        const DenseLU     lu(A, "steady sliding, equations of the closed contact nodes");
-        lu.solve(b);
+        const RealLU lu = regular_lu(A, "steady sliding, equations of the closed contact nodes");
+        DenseMatrix  x  = lu.solve(b);
         // One step of refinement: the reactions are to balance the load to rounding.
-        DenseMatrix rest = add(rhs, multiply(A, b), -1.);
-        lu.solve(rest);
-        b = add(b, rest);
+        x += lu.solve(b - A * x);
 
-        Iterate result{{std::vector<double>(G.n_rows(), 0.), problem.initial_gap, {}, std::move(closed), 0}, {}, 0., 0.};
+        Iterate result{{std::vector<double>(G.rows(), 0.), problem.initial_gap, {}, std::move(closed), 0}, {}, 0., 0.};
         auto &[r, g, z, active, n_steps] = result.solution;
         for (int i = 0; i < n; ++i)
-          r[nodes[i]] = b(i, 0);
+          r[nodes[i]] = x(i, 0);
         for (int k = 0; k < n_z; ++k)
-          z.push_back(unit * b(n + k, 0) / motion_sizes[k]);
-        double largest_reaction = 0., largest_gap = 0.;
-        for (int c = 0; c < G.n_rows(); ++c)
+          z.push_back(unit * x(n + k, 0) / motion_sizes[k]);
+        const Eigen::VectorXd change           = problem.motions * as_column(z) + G * as_column(r);
+        double                largest_reaction = 0., largest_gap = 0.;
+        for (int c = 0; c < G.rows(); ++c)
           {
-            for (int k = 0; k < n_z; ++k)
-              g[c] += problem.motions(c, k) * z[k];
-            for (const int j : nodes)
-              g[c] += G(c, j) * r[j];
+            g[c] += change[c];
             if (active[c])
               g[c] = 0.;
             largest_reaction = std::max(largest_reaction, std::abs(r[c]));
             largest_gap      = std::max({largest_gap, std::abs(g[c]), unit * std::abs(r[c])});
           }
-        for (int c = 0; c < G.n_rows(); ++c)
+        for (int c = 0; c < G.rows(); ++c)
           {
             // Without any reaction or gap there is no violation: NaN does not exceed
             const bool pulls    = active[c] && tension.exceeded_by(r[c] / largest_reaction);
@@ -128,10 +109,10 @@ namespace Squeal
       /// A backplate without a closed node has nothing to press on: its node nearest to the disc is closed.
       void support_backplates(std::vector<bool> &closed, const std::vector<double> &gaps) const
       {
-        for (int k = 0; k < problem.balance.n_rows(); ++k)
+        for (int k = 0; k < problem.balance.rows(); ++k)
           {
             int nearest = -1;
-            for (int c = 0; c < problem.balance.n_columns(); ++c)
+            for (int c = 0; c < problem.balance.cols(); ++c)
               if (problem.balance(k, c) != 0.)
                 {
                   if (closed[c])
@@ -224,7 +205,7 @@ namespace Squeal
 
   DenseMatrix ContactProblem::flexibility(const double mu) const
   {
-    return add(normal_flexibility, tangential_flexibility, mu);
+    return normal_flexibility + mu * tangential_flexibility;
   }
 
   ContactSolution solve_contact(const ContactProblem &problem)
@@ -277,22 +258,13 @@ namespace Squeal
     const std::size_t n = problem.initial_gap.size();
     ContactUniqueness result{0., false, 0, false, {}};
 
-    double asymmetry = 0., scale = 0.;
-    for (int k = 0; k < problem.motions.n_columns(); ++k)
-      for (int c = 0; c < problem.motions.n_rows(); ++c)
-        {
-          asymmetry = std::max(asymmetry, std::abs(problem.motions(c, k) + problem.balance(k, c)));
-          scale     = std::max(scale, std::abs(problem.motions(c, k)));
-        }
+    const double asymmetry = max_norm(problem.motions + problem.balance.transpose()), scale = max_norm(problem.motions);
     if (scale == 0. || !asymmetry_of_motions.exceeded_by(asymmetry / scale))
       {
-        DenseMatrix S(n, n);
-        for (std::size_t i = 0; i < n; ++i)
-          for (std::size_t j = 0; j < n; ++j)
-            S(i, j) = -0.5 * (problem.tangential_flexibility(i, j) + problem.tangential_flexibility(j, i));
-        const double largest = symmetric_eigenvalues(S, problem.normal_flexibility).back();
-        result.unique_below  = largest > 0. ? 1. / largest : std::numeric_limits<double>::infinity();
-        result.is_certified  = problem.friction_coefficient < (1. - 1e-8) * result.unique_below;
+        const DenseMatrix S       = -0.5 * (problem.tangential_flexibility + problem.tangential_flexibility.transpose());
+        const double      largest = symmetric_eigenpairs(S, problem.normal_flexibility).values.back();
+        result.unique_below       = largest > 0. ? 1. / largest : std::numeric_limits<double>::infinity();
+        result.is_certified       = problem.friction_coefficient < (1. - 1e-8) * result.unique_below;
       }
     if (result.is_certified)
       return result;

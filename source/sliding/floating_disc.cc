@@ -23,7 +23,7 @@ namespace Squeal
       turning.Dot(*system.mass * turning, &norm);
       turning.Scale(1. / std::sqrt(norm));
       const DenseMatrix turned = gram(sliding, *system.mass * turning);
-      const double      others = sliding.NumVectors() - multiply(turned, turned, true)(0, 0);
+      const double      others = sliding.NumVectors() - turned.squaredNorm();
       if (motion_in_plane.exceeded_by(others))
         throw SolverError("nothing holds the disc in its plane against the friction forces", "steady sliding",
                           "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
@@ -34,15 +34,10 @@ namespace Squeal
     std::pair<DenseMatrix, std::vector<double>> unit_columns(DenseMatrix matrix)
     {
       std::vector<double> norms;
-      for (int k = 0; k < matrix.n_columns(); ++k)
+      for (auto column : matrix.colwise())
         {
-          double *column = matrix.column(k);
-          double  square = 0.;
-          for (int c = 0; c < matrix.n_rows(); ++c)
-            square += column[c] * column[c];
-          norms.push_back(std::sqrt(square));
-          for (int c = 0; c < matrix.n_rows(); ++c)
-            column[c] /= norms.back();
+          norms.push_back(column.norm());
+          column /= norms.back();
         }
       return {std::move(matrix), std::move(norms)};
     }
@@ -81,7 +76,7 @@ namespace Squeal
   {
     const auto [B, sizes]  = unit_columns(problem.motions);
     const auto [values, V] = singular_values(B); // descending
-    const int n            = B.n_columns();
+    const int n            = B.cols();
     if (static_cast<int>(values.size()) == n && gap_of_all_motions.exceeded_by(values.back() / values.front()))
       return;
     std::vector<double> y;
@@ -94,11 +89,8 @@ namespace Squeal
       if (std::abs(V(k, n - 1)) > std::abs(V(held, n - 1)))
         held = k;
     // The row of its balance becomes z = 0: it follows from the others
-    for (int c = 0; c < problem.motions.n_rows(); ++c)
-      {
-        problem.motions(c, held) = 0.;
-        problem.balance(held, c) = 0.;
-      }
+    problem.motions.col(held).setZero();
+    problem.balance.row(held).setZero();
     problem.held.push_back(held);
   }
 } // namespace Squeal

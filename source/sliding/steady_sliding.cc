@@ -149,13 +149,6 @@ namespace Squeal
         result = std::max(result, value);
       return result;
     }
-
-    MultiVector from_column(const std::vector<double> &values, const Epetra_Map &map)
-    {
-      DenseMatrix column(values.size(), 1);
-      std::copy(values.begin(), values.end(), column.column());
-      return distribute(column, map);
-    }
   } // namespace
 
   void check_sliding(const Model               &model,
@@ -224,14 +217,8 @@ namespace Squeal
     const auto         motions  = balanced_disc_motions(model, contact, system, response, mu);
     const int          n_plates = moves ? plates.n : 0, n_z = n_plates + (motions ? motions->NumVectors() : 0);
 
-    ContactProblem problem{replicate(*contact.normal * Psi_n),
-                           replicate(*contact.normal * Psi_t),
-                           mu,
-                           {},
-                           DenseMatrix(n_c, n_z),
-                           DenseMatrix(n_z, n_c),
-                           plates.loads,
-                           {}};
+    ContactProblem problem{replicate(*contact.normal * Psi_n), replicate(*contact.normal * Psi_t), mu,           {},
+                           DenseMatrix::Zero(n_c, n_z),        DenseMatrix::Zero(n_z, n_c),        plates.loads, {}};
     const auto     gaps = axial_gaps(model, interface, parameters);
     for (int c = 0; c < n_c; ++c)
       {
@@ -247,16 +234,10 @@ namespace Squeal
     if (motions)
       {
         const DenseMatrix B_n = replicate(*contact.normal * *motions), B_t = replicate(*contact.tangential * *motions);
-        for (int k = n_plates; k < n_z; ++k)
-          {
-            problem.forces.push_back(0.);
-            for (int c = 0; c < n_c; ++c)
-              {
-                // −L = (P_n + μ P_t) N: work of the contact forces on the motion
-                problem.motions(c, k) = B_n(c, k - n_plates);
-                problem.balance(k, c) = -B_n(c, k - n_plates) - mu * B_t(c, k - n_plates);
-              }
-          }
+        problem.forces.resize(n_z, 0.);
+        // −L = (P_n + μ P_t) N: work of the contact forces on the motion
+        problem.motions.rightCols(n_z - n_plates)  = B_n;
+        problem.balance.bottomRows(n_z - n_plates) = -(B_n + mu * B_t).transpose();
       }
 
     if (motions && moves)
@@ -274,17 +255,12 @@ namespace Squeal
                        solution.n_steps};
 
     // Displacements
-    const MultiVector r = from_column(state.reactions, contact.normal->RowMap());
-    DenseMatrix       r_dense(n_c, 1);
-    std::copy(state.reactions.begin(), state.reactions.end(), r_dense.column());
-    MultiVector u = Psi_n * r_dense;
+    const DenseMatrix r_dense = as_column(state.reactions);
+    const MultiVector r       = distribute(r_dense, contact.normal->RowMap());
+    MultiVector       u       = Psi_n * r_dense;
     multiply_add(mu, Psi_t, r_dense, 1., u);
     if (motions)
-      {
-        DenseMatrix q(motions->NumVectors(), 1);
-        std::copy(solution.motions.begin() + n_plates, solution.motions.end(), q.column());
-        multiply_add(1., *motions, q, 1., u);
-      }
+      multiply_add(1., *motions, as_column(solution.motions).tail(motions->NumVectors()), 1., u);
     for (int c = 0; c < n_c; ++c)
       state.approach[interface[c].pin] = moves ? solution.motions[plates.of_node[c]] : parameters.displacement;
     std::vector<double> side(model.component_names().size(), 0.);

@@ -2,8 +2,8 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/stability/krylov_modes.h>
-#include <squeal/stability/residual_iteration.h>
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/modes/krylov_modes.h>
 #include <squeal/studies/friction_modes.h>
 
 #include <algorithm>
@@ -77,10 +77,10 @@ namespace Squeal
     else
       {
         ResidualIterationOptions iteration;
-        iteration.largest_frequency = omega_max;
-        iteration.tolerance         = parameters.solvers.iteration_tolerance;
-        iteration.maximum_basis     = parameters.solvers.maximum_basis;
-        modes                       = residual_iteration(coupled, *frictionless.inverse, *real.vectors, mu, iteration, run.progress);
+        iteration.largest_circular_frequency = omega_max;
+        iteration.tolerance                  = parameters.solvers.iteration_tolerance;
+        iteration.maximum_basis              = parameters.solvers.maximum_basis;
+        modes = residual_iteration(coupled, *frictionless.inverse, *real.vectors, mu, iteration, run.progress);
       }
     if (modes.lambda.empty())
       throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");

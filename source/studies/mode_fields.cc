@@ -13,15 +13,14 @@ namespace Squeal
                        const MultiVector               &real_part,
                        const MultiVector               &imaginary_part)
   {
-    DenseMatrix reaction_re, reaction_im;
-    normal_reactions(system, {lambda}, real_part, imaginary_part, reaction_re, reaction_im);
+    const auto        reactions = normal_reactions(system, {lambda}, real_part, imaginary_part);
     const DenseMatrix re = replicate(*system.kernel * real_part), im = replicate(*system.kernel * imaginary_part);
 
     ModeField field{name, lambda, {}, std::vector<std::complex<double>>(scene.interface.size())};
-    for (int i = 0; i < re.n_rows(); ++i)
+    for (int i = 0; i < re.rows(); ++i)
       field.displacement.emplace_back(re(i, 0), im(i, 0));
-    for (int c = 0; c < reaction_re.n_rows(); ++c)
-      field.reactions[closed[c]] = {reaction_re(c, 0), reaction_im(c, 0)};
+    for (std::size_t c = 0; c < closed.size(); ++c)
+      field.reactions[closed[c]] = reactions(c, 0);
     return field;
   }
 } // namespace Squeal

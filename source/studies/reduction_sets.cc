@@ -1,7 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/stability/krylov_modes.h>
-#include <squeal/stability/residual_iteration.h>
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/modes/krylov_modes.h>
 #include <squeal/studies/reduction_sets.h>
 
 #include <algorithm>
@@ -159,12 +159,12 @@ namespace Squeal
   {
     run.progress.begin("Growing a basis");
     ResidualIterationOptions iteration;
-    iteration.largest_frequency = plan.largest_circular_frequency;
-    iteration.tolerance         = tolerance;
-    iteration.maximum_basis     = run.parameters.solvers.maximum_basis;
-    available.residuals         = compute(BasisSource::residuals, [&] {
+    iteration.largest_circular_frequency = plan.largest_circular_frequency;
+    iteration.tolerance                  = tolerance;
+    iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
+    available.residuals                  = compute(BasisSource::residuals, [&] {
       return grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration,
-                                         run.progress)
+                                                  run.progress)
         .model.basis();
     });
     run.progress.finish(text(available.residuals->NumVectors(), " vectors for an estimated error of ", tolerance));

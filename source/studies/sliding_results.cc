@@ -82,7 +82,7 @@ namespace Squeal
   void write_sliding_fields(const Scene &scene, const SlidingState &state, const OperationParameters &operation, const FieldWriter &writer)
   {
     const DenseMatrix u = replicate(*state.total_displacement);
-    writer.write_contact_state({std::vector<double>(u.column(), u.column() + u.n_rows()), state.approach, state.reactions, state.gaps,
+    writer.write_contact_state({std::vector<double>(u.col(0).begin(), u.col(0).end()), state.approach, state.reactions, state.gaps,
                                 radial_dissipation(scene.interface, state.reactions, operation),
                                 sliding_dissipation(state.reactions, operation)});
   }

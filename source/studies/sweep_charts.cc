@@ -106,8 +106,8 @@ namespace Squeal
       };
       run.progress.begin("Branches");
       ChartOptions options;
-      options.largest_frequency   = model.largest_circular_frequency;
-      options.threshold_tolerance = run.parameters.sweep.threshold_tolerance;
+      options.largest_circular_frequency = model.largest_circular_frequency;
+      options.threshold_tolerance        = run.parameters.sweep.threshold_tolerance;
       // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
       // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
       ChartOptions coarse        = options;

@@ -1,6 +1,6 @@
 #include <squeal/base/conventions.h>
-#include <squeal/stability/mode_links.h>
 #include <squeal/studies/sweep_model.h>
+#include <squeal/tracking/mode_links.h>
 
 #include <algorithm>
 #include <cmath>
@@ -74,8 +74,8 @@ namespace Squeal
 
   std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
   {
-    const ComplexDenseMatrix X = padded(selected_columns(point.right, modes), reduced->size());
-    return {reduced->reduced().basis() * real_part(X), reduced->reduced().basis() * imaginary_part(X)};
+    const ComplexDenseMatrix X = with_rows(ComplexDenseMatrix(point.right(Eigen::all, modes)), reduced->size());
+    return {reduced->reduced().basis() * DenseMatrix(X.real()), reduced->reduced().basis() * DenseMatrix(X.imag())};
   }
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const

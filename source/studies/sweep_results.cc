@@ -21,12 +21,11 @@ namespace Squeal
       for (std::size_t b = 0; b < main.chart.branches.size(); ++b)
         if (const int j = main.chart.branches[b].modes[nearest - points.begin()]; j >= 0)
           {
-            std::complex<double> product = 0.;
-            for (int row = 0; row < std::min(point.right.n_rows(), nearest->right.n_rows()); ++row)
-              product += std::conj(point.right(row, mode)) * nearest->right(row, j);
-            if (std::abs(product) > largest)
+            const auto   r       = std::min(point.right.rows(), nearest->right.rows());
+            const double overlap = std::abs(point.right.col(mode).head(r).dot(nearest->right.col(j).head(r)));
+            if (overlap > largest)
               {
-                largest = std::abs(product);
+                largest = overlap;
                 label   = main.labels[b];
               }
           }
@@ -85,10 +84,10 @@ namespace Squeal
         run.progress.begin("Argument principle");
         const CoupledSystem system = model.system_at(mu);
         ContourOptions      options;
-        options.largest_frequency  = omega_max;
-        options.lowest_frequency   = 1e-3 * omega_max;
-        options.largest_growth     = 0.1 * omega_max;
-        options.method             = contour_method(system);
+        options.largest_circular_frequency = omega_max;
+        options.lowest_frequency           = 1e-3 * omega_max;
+        options.largest_growth             = 0.1 * omega_max;
+        options.method                     = contour_method(system);
         options.real_modes         = real_modes_options(run.parameters.solvers, "real modes beyond the band", model.frictionless.shift);
         options.real_modes.inverse = &model.frictionless.inverse->frictionless(); // of the undamped system
         const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();

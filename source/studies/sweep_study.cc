@@ -3,6 +3,9 @@
 #include <squeal/base/version.h>
 #include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/sweep_tables.h>
+#include <squeal/tracking/branches.h>
+#include <squeal/tracking/error_controlled_sweep.h>
+#include <squeal/tracking/mode_links.h>
 
 #include <algorithm>
 #include <ostream>

@@ -30,10 +30,7 @@ namespace Squeal
   {
     if (full)
       return MultiVector(view(*full, first, n));
-    DenseMatrix units(rank(), n);
-    for (int j = 0; j < n; ++j)
-      units(first + j, j) = 1.;
-    return *this * units;
+    return *this * DenseMatrix(DenseMatrix::Identity(rank(), rank()).middleCols(first, n));
   }
 
   const std::shared_ptr<const SparseMatrix> &LowRankFactor::sparse_transpose() const

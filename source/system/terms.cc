@@ -137,8 +137,8 @@ namespace Squeal
             const LowRankFactor *target = &term->target(transposed);
             auto found = std::find_if(onto.begin(), onto.end(), [target](const auto &entry) { return entry.first == target; });
             if (found == onto.end())
-              found = onto.insert(found, {target, DenseMatrix(Y.n_rows(), Y.n_columns())});
-            found->second = add(found->second, Y, theta);
+              found = onto.insert(found, {target, DenseMatrix::Zero(Y.rows(), Y.cols())});
+            found->second += theta * Y;
           }
       }
     for (const auto &[factor, Y] : onto)

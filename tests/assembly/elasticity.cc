@@ -290,7 +290,7 @@ namespace
     const MultiVector u   = displacements(model, 1, shape);
     const DenseMatrix shares = gram(u, *system.mass * *modes.vectors);
     int               best   = 0;
-    for (int j = 0; j < shares.n_columns(); ++j)
+    for (int j = 0; j < shares.cols(); ++j)
       if (std::abs(shares(0, j)) > std::abs(shares(0, best)))
         best = j;
     EXPECT_GT(shares(0, best) * shares(0, best) / product(u, *system.mass, u), 0.95);

@@ -129,7 +129,7 @@ TEST(Rotation, IsThatOfLinearFields)
 
       // Skew and symmetric for whatever fields, and of the disc alone
       const DenseMatrix dense = to_dense(G);
-      EXPECT_LT(max_norm(add(dense, transpose(dense))), 1e-14 * max_norm(dense));
+      EXPECT_LT(max_norm(dense + dense.transpose()), 1e-14 * max_norm(dense));
       EXPECT_LT(symmetry_defect(N), 1e-14);
       const MultiVector pin = displacements(model, 1, [](const Point3 &p) { return p; });
       EXPECT_EQ(product(pin, N, pin), 0.);

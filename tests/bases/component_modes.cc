@@ -179,7 +179,7 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
       double            at_rest = 0.;
       for (const Node &node : s.model.nodes())
         for (const int dof : node.dofs)
-          for (int j = 0; j < u.n_columns() && node.component == 0; ++j)
+          for (int j = 0; j < u.cols() && node.component == 0; ++j)
             at_rest = std::max(at_rest, std::abs(u(dof, j)));
       EXPECT_EQ(at_rest, 0.);
       const double normal_motion = max_norm(replicate(*s.contact.normal * *modes.vectors)) / max_norm(u);

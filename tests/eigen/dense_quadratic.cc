@@ -16,7 +16,7 @@ namespace
   {
     std::mt19937                           generator(seed);
     std::uniform_real_distribution<double> entry(-1., 1.);
-    DenseMatrix                            A(n, n);
+    DenseMatrix                            A = DenseMatrix::Zero(n, n);
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i)
         A(i, j) = entry(generator);
@@ -27,8 +27,8 @@ namespace
   struct Pencil
   {
     explicit Pencil(const int n)
-      : M(add(identity(n), random_matrix(n, 1), 0.1 / n))
-      , C(multiply(columns(random_matrix(n, 2), 0, n / 4), columns(random_matrix(n, 2), 0, n / 4), false, true, 0.1 / n))
+      : M(DenseMatrix::Identity(n, n) + 0.1 / n * random_matrix(n, 1))
+      , C(0.1 / n * random_matrix(n, 2).leftCols(n / 4) * random_matrix(n, 2).leftCols(n / 4).transpose())
       , K(random_matrix(n, 3))
     {
       for (int i = 0; i < n; ++i)
@@ -41,9 +41,9 @@ namespace
   double backward_error(const Pencil &pencil, const bool damped, const DenseQuadraticModes &modes, const bool left)
   {
     const ComplexDenseMatrix &X     = left ? modes.left : modes.right;
-    const int                 n     = X.n_rows();
+    const int                 n     = X.rows();
     double                    worst = 0.;
-    for (int j = 0; j < X.n_columns(); ++j)
+    for (int j = 0; j < X.cols(); ++j)
       {
         const Complex lambda = modes.values[j];
         double        sum    = 0.;
@@ -93,14 +93,14 @@ TEST(DenseQuadratic, OscillatorsOverWideRange)
 {
   // λ² + 2 ζ ω λ + ω² = 0 with ω from 1 to 1e5: also the smallest keep ten digits.
   const int   n = 26;
-  DenseMatrix C(n, n), K(n, n);
+  DenseMatrix C = DenseMatrix::Zero(n, n), K = DenseMatrix::Zero(n, n);
   for (int i = 0; i < n; ++i)
     {
       const double omega = std::pow(10., 0.2 * i);
       K(i, i)            = omega * omega;
       C(i, i)            = 2. * 0.03 * omega;
     }
-  const auto modes = dense_quadratic_modes(identity(n), &C, K);
+  const auto modes = dense_quadratic_modes(DenseMatrix::Identity(n, n), &C, K);
   ASSERT_EQ(modes.values.size(), static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i)
     {
@@ -114,12 +114,12 @@ TEST(DenseQuadratic, OscillatorsOverWideRange)
 
 TEST(DenseQuadratic, FlutterPairsShareTheFrequency)
 {
-  DenseMatrix K(2, 2);
+  DenseMatrix K    = DenseMatrix::Zero(2, 2);
   K(0, 0)          = 2.;
   K(1, 1)          = 2.2;
   K(0, 1)          = 1.;
   K(1, 0)          = -0.5;
-  const auto modes = dense_quadratic_modes(identity(2), nullptr, K);
+  const auto modes = dense_quadratic_modes(DenseMatrix::Identity(2, 2), nullptr, K);
   ASSERT_EQ(modes.values.size(), 2u);
   EXPECT_NEAR(modes.values[0].imag(), modes.values[1].imag(), 1e-14);
   EXPECT_NEAR(modes.values[0].real(), -modes.values[1].real(), 1e-14);
@@ -128,11 +128,12 @@ TEST(DenseQuadratic, FlutterPairsShareTheFrequency)
 
 TEST(DenseQuadratic, OverdampedAndDivergentValuesAreReal)
 {
-  DenseMatrix C(2, 2), K(2, 2);
-  C(0, 0)           = 3.;
-  K(0, 0)           = 2.;
-  K(1, 1)           = -9.;
-  const auto damped = dense_quadratic_modes(identity(2), &C, K), undamped = dense_quadratic_modes(identity(2), nullptr, K);
+  DenseMatrix C = DenseMatrix::Zero(2, 2), K = DenseMatrix::Zero(2, 2);
+  C(0, 0)             = 3.;
+  K(0, 0)             = 2.;
+  K(1, 1)             = -9.;
+  const auto damped   = dense_quadratic_modes(DenseMatrix::Identity(2, 2), &C, K),
+             undamped = dense_quadratic_modes(DenseMatrix::Identity(2, 2), nullptr, K);
   ASSERT_EQ(damped.real_values.size(), 4u);
   EXPECT_NEAR(damped.real_values[0], -3., 1e-13);
   EXPECT_NEAR(damped.real_values[1], -2., 1e-13);
@@ -144,5 +145,5 @@ TEST(DenseQuadratic, OverdampedAndDivergentValuesAreReal)
 
 TEST(DenseQuadratic, SingularMassIsRefused)
 {
-  EXPECT_THROW(dense_quadratic_modes(DenseMatrix(2, 2), nullptr, identity(2)), SolverError);
+  EXPECT_THROW(dense_quadratic_modes(DenseMatrix::Zero(2, 2), nullptr, DenseMatrix::Identity(2, 2)), SolverError);
 }

@@ -1,5 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/quadratic_modes.h>
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+#include <squeal/linear_algebra/dense_lu.h>
 
 #include <Epetra_MpiComm.h>
 #include <gtest/gtest.h>
@@ -24,11 +26,11 @@ namespace
     void apply(const MultiVector &X, MultiVector &Y) const override
     {
       // All rows of X on every process: its Gram matrix with unit vectors.
-      MultiVector units(row_map, A.n_rows());
-      for (int i = 0; i < A.n_rows(); ++i)
+      MultiVector units(row_map, A.rows());
+      for (int i = 0; i < A.rows(); ++i)
         if (row_map.LID(i) >= 0)
           units[i][row_map.LID(i)] = 1.;
-      const DenseMatrix image = multiply(A, gram(units, X));
+      const DenseMatrix image = A * gram(units, X);
       for (int j = 0; j < X.NumVectors(); ++j)
         for (int i = 0; i < row_map.NumMyElements(); ++i)
           Y[j][i] = image(row_map.GID(i), j);
@@ -49,11 +51,11 @@ namespace
   {
     DensePencil(const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K, const double shift)
       : comm(MPI_COMM_WORLD)
-      , map(M.n_rows(), 0, comm)
+      , map(static_cast<int>(M.rows()), 0, comm)
       , mass(map, M)
-      , damping(map, C != nullptr ? *C : DenseMatrix(M.n_rows(), M.n_rows()))
+      , damping(map, C != nullptr ? *C : DenseMatrix::Zero(M.rows(), M.rows()))
       , stiffness(map, K)
-      , inverse(map, inverse_of(C != nullptr ? add(add(K, M, shift * shift), *C, shift) : add(K, M, shift * shift)))
+      , inverse(map, inverse_of(C != nullptr ? K + shift * shift * M + shift * *C : DenseMatrix(K + shift * shift * M)))
       , pencil{&mass, C != nullptr ? &damping : nullptr, &stiffness}
     {
       options.shift = shift;
@@ -61,14 +63,12 @@ namespace
 
     static DenseMatrix inverse_of(const DenseMatrix &A)
     {
-      DenseMatrix result = identity(A.n_rows());
-      DenseLU(A, "test matrix").solve(result);
-      return result;
+      return regular_lu(A, "test matrix").solve(DenseMatrix::Identity(A.rows(), A.rows()));
     }
 
-    QuadraticModes modes(const double largest_frequency)
+    QuadraticModes modes(const double largest_circular_frequency)
     {
-      options.largest_frequency = largest_frequency;
+      options.largest_circular_frequency = largest_circular_frequency;
       return quadratic_modes(pencil, inverse, options);
     }
 
@@ -81,10 +81,7 @@ namespace
 
   DenseMatrix diagonal(const std::vector<double> &values)
   {
-    DenseMatrix D(static_cast<int>(values.size()), static_cast<int>(values.size()));
-    for (int i = 0; i < D.n_rows(); ++i)
-      D(i, i) = values[i];
-    return D;
+    return as_column(values).asDiagonal();
   }
 
   DenseMatrix random_matrix(const int n, const unsigned int seed)
@@ -101,21 +98,10 @@ namespace
   /// All eigenvalues of the companion form with 0 < Im λ ≤ largest, ascending by Im.
   std::vector<Complex> companion_values(const DenseMatrix &M, const DenseMatrix &C, const DenseMatrix &K, const double largest)
   {
-    const int     n = M.n_rows();
-    const DenseLU factors(M, "mass");
-    DenseMatrix   a = K, b = C;
-    factors.solve(a);
-    factors.solve(b);
-    DenseMatrix companion(2 * n, 2 * n);
-    for (int i = 0; i < n; ++i)
-      {
-        companion(i, n + i) = 1.;
-        for (int j = 0; j < n; ++j)
-          {
-            companion(n + i, j)     = -a(i, j);
-            companion(n + i, n + j) = -b(i, j);
-          }
-      }
+    const int    n         = M.rows();
+    const RealLU factors   = regular_lu(M, "mass");
+    DenseMatrix  companion = DenseMatrix::Zero(2 * n, 2 * n);
+    companion << DenseMatrix::Zero(n, n), DenseMatrix::Identity(n, n), -factors.solve(K), -factors.solve(C);
     std::vector<Complex> values;
     for (const Complex &value : eigenpairs(companion).values)
       if (value.imag() > 1e-6 * std::abs(value) && value.imag() <= largest)
@@ -140,7 +126,7 @@ namespace
   /// A chain of masses and springs: a stiffness with spread eigenvalues.
   DenseMatrix chain(const int n)
   {
-    DenseMatrix K(n, n);
+    DenseMatrix K = DenseMatrix::Zero(n, n);
     for (int i = 0; i < n; ++i)
       {
         K(i, i) = 2.;
@@ -155,7 +141,7 @@ TEST(QuadraticModes, TwoDegreesOfFreedomFlutter)
 {
   // x'' + k11 x + (k12 - μ k_c) y = 0, y'' + k12 x + k22 y = 0: λ² = -(tr ± sqrt(tr² - 4 det)) / 2.
   const double k11 = 2., k22 = 2.2, k12 = -0.5, mu = 1.5;
-  DenseMatrix  M       = identity(2), K(2, 2);
+  DenseMatrix  M = DenseMatrix::Identity(2, 2), K = DenseMatrix::Zero(2, 2);
   K(0, 0)              = k11;
   K(1, 1)              = k22;
   K(0, 1)              = k12 + mu;
@@ -194,7 +180,7 @@ TEST(QuadraticModes, DampedOscillators)
   const DenseMatrix C = diagonal(damping);
   for (const double shift : {0., 3.})
     {
-      DensePencil pencil(identity(n), &C, diagonal(stiffness), shift);
+      DensePencil pencil(DenseMatrix::Identity(n, n), &C, diagonal(stiffness), shift);
       pencil.options.expected = 18;
       const auto modes        = pencil.modes(20.5);
       expect_same(modes.values, expected, 1e-10);
@@ -211,7 +197,7 @@ TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
   // Twelve equal chains: every eigenvalue has twelve members, the block has four vectors.
   const int         n = 20, n_copies = 12;
   const DenseMatrix part = chain(n);
-  DenseMatrix       K(n * n_copies, n * n_copies), C(n * n_copies, n * n_copies);
+  DenseMatrix       K = DenseMatrix::Zero(n * n_copies, n * n_copies), C = DenseMatrix::Zero(n * n_copies, n * n_copies);
   for (int copy = 0; copy < n_copies; ++copy)
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
@@ -232,26 +218,26 @@ TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
             damped.emplace_back(-zeta * omega, omega * std::sqrt(1. - zeta * zeta));
         }
     }
-  DensePencil without(identity(n * n_copies), nullptr, K, 0.);
+  DensePencil without(DenseMatrix::Identity(n * n_copies, n * n_copies), nullptr, K, 0.);
   without.options.expected = static_cast<int>(undamped.size());
   expect_same(without.modes(largest).values, undamped, 1e-10);
-  DensePencil with(identity(n * n_copies), &C, K, 0.);
+  DensePencil with(DenseMatrix::Identity(n * n_copies, n * n_copies), &C, K, 0.);
   with.options.expected = static_cast<int>(damped.size());
   expect_same(with.modes(largest).values, damped, 1e-10);
 }
 
 TEST(QuadraticModes, NonsymmetricAgreesWithTheCompanionForm)
 {
-  const int                  n = 120;
-  const DenseMatrix          R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
-  const DenseMatrix          M = add(identity(n), R, 0.01), C = add(multiply(S, S, true, false, 1e-3), T, 1e-3);
-  DenseMatrix                K        = add(diagonal([n] {
-                        std::vector<double> values(n);
-                        for (int i = 0; i < n; ++i)
-                          values[i] = std::pow(1. + 0.3 * i, 2);
-                        return values;
-                      }()),
-                                            T, 0.5);
+  const int         n = 120;
+  const DenseMatrix R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
+  const DenseMatrix M = DenseMatrix::Identity(n, n) + 0.01 * R, C = 1e-3 * S.transpose() * S + 1e-3 * T;
+  DenseMatrix       K = diagonal([n] {
+                    std::vector<double> values(n);
+                    for (int i = 0; i < n; ++i)
+                      values[i] = std::pow(1. + 0.3 * i, 2);
+                    return values;
+                  }()) +
+                  0.5 * T;
   const double               largest  = 12.;
   const std::vector<Complex> expected = companion_values(M, C, K, largest);
   ASSERT_GT(expected.size(), 30u);
@@ -276,7 +262,7 @@ TEST(QuadraticModes, NonsymmetricAgreesWithTheCompanionForm)
 TEST(QuadraticModes, RestartsGiveTheSameValues)
 {
   const int         n = 300;
-  const DenseMatrix K = chain(n), C = multiply(K, K, false, false, 0.01);
+  const DenseMatrix K = chain(n), C = 0.01 * K * K;
   for (const DenseMatrix *damping : {static_cast<const DenseMatrix *>(nullptr), &C})
     {
       const int            degree  = damping != nullptr ? 2 : 1;
@@ -290,7 +276,7 @@ TEST(QuadraticModes, RestartsGiveTheSameValues)
           if (omega <= largest)
             expected.emplace_back(-rate, omega);
         }
-      DensePencil pencil(identity(n), damping, K, 0.);
+      DensePencil pencil(DenseMatrix::Identity(n, n), damping, K, 0.);
       pencil.options.expected   = static_cast<int>(expected.size());
       pencil.options.block_size = 2;
       pencil.options.max_basis  = degree * (static_cast<int>(expected.size()) + 12);
@@ -303,10 +289,10 @@ TEST(QuadraticModes, RestartsGiveTheSameValues)
 TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
 {
   const int         n = 100;
-  DenseMatrix       K = multiply(chain(n), chain(n)), zero(n, n);
+  DenseMatrix       K = chain(n) * chain(n), zero = DenseMatrix::Zero(n, n);
   const DenseMatrix R = random_matrix(n, 9);
-  K                   = add(K, R, 1e-4);
-  DensePencil quadratic(identity(n), &zero, K, 0.), linear(identity(n), nullptr, K, 0.);
+  K += 1e-4 * R;
+  DensePencil quadratic(DenseMatrix::Identity(n, n), &zero, K, 0.), linear(DenseMatrix::Identity(n, n), nullptr, K, 0.);
   quadratic.options.expected = linear.options.expected = 20;
   const auto one = linear.modes(0.4), two = quadratic.modes(0.4);
   ASSERT_GT(one.values.size(), 15u);
@@ -320,7 +306,7 @@ TEST(QuadraticModes, FreeBodyNeedsAShift)
 {
   // Two free chains: K is singular, with one rigid-body mode for each.
   const int   n = 40;
-  DenseMatrix K(2 * n, 2 * n);
+  DenseMatrix K = DenseMatrix::Zero(2 * n, 2 * n);
   for (int part = 0; part < 2; ++part)
     for (int i = 0; i + 1 < n; ++i)
       {
@@ -330,7 +316,7 @@ TEST(QuadraticModes, FreeBodyNeedsAShift)
         K(a, b) -= 1.;
         K(b, a) -= 1.;
       }
-  const DenseMatrix    C       = multiply(K, identity(2 * n), false, false, 1e-3);
+  const DenseMatrix    C       = 1e-3 * K * DenseMatrix::Identity(2 * n, 2 * n);
   const double         largest = 0.8;
   std::vector<Complex> undamped, damped;
   for (int i = 1; i < n; ++i)
@@ -343,7 +329,7 @@ TEST(QuadraticModes, FreeBodyNeedsAShift)
             damped.emplace_back(-zeta * omega, omega * std::sqrt(1. - zeta * zeta));
           }
       }
-  DensePencil without(identity(2 * n), nullptr, K, 0.3), with(identity(2 * n), &C, K, 0.3);
+  DensePencil without(DenseMatrix::Identity(2 * n, 2 * n), nullptr, K, 0.3), with(DenseMatrix::Identity(2 * n, 2 * n), &C, K, 0.3);
   const auto  one = without.modes(largest), two = with.modes(largest);
   expect_same(one.values, undamped, 1e-10);
   expect_same(two.values, damped, 1e-10);
@@ -356,7 +342,7 @@ TEST(QuadraticModes, DivergenceIsReportedAsRealValues)
   std::vector<double> stiffness;
   for (int i = 0; i < 30; ++i)
     stiffness.push_back(i == 2 ? -4. : std::pow(1. + i, 2));
-  DensePencil pencil(identity(30), nullptr, diagonal(stiffness), 0.);
+  DensePencil pencil(DenseMatrix::Identity(30, 30), nullptr, diagonal(stiffness), 0.);
   const auto  modes = pencil.modes(8.5);
   EXPECT_EQ(modes.values.size(), 7u);
   ASSERT_EQ(modes.real_values.size(), 2u);
@@ -367,8 +353,8 @@ TEST(QuadraticModes, DivergenceIsReportedAsRealValues)
 TEST(QuadraticModes, VectorsAreNormalised)
 {
   const int         n = 50;
-  const DenseMatrix K = chain(n), C = multiply(K, K, false, false, 0.05);
-  DensePencil       pencil(identity(n), &C, K, 0.);
+  const DenseMatrix K = chain(n), C = 0.05 * K * K;
+  DensePencil       pencil(DenseMatrix::Identity(n, n), &C, K, 0.);
   const auto        modes = pencil.modes(0.7);
   const auto        real = column_norms(*modes.real_part), imaginary = column_norms(*modes.imaginary_part);
   const auto        recomputed = residuals(pencil.pencil, modes.values, *modes.real_part, *modes.imaginary_part);
@@ -383,7 +369,7 @@ TEST(QuadraticModes, NonConvergenceSaysHowFarItCame)
 {
   const int         n = 300;
   const DenseMatrix K = chain(n);
-  DensePencil       pencil(identity(n), nullptr, K, 0.);
+  DensePencil       pencil(DenseMatrix::Identity(n, n), nullptr, K, 0.);
   pencil.options.expected     = 20;
   pencil.options.block_size   = 2;
   pencil.options.max_basis    = 26;
@@ -404,14 +390,14 @@ TEST(QuadraticModes, NonConvergenceSaysHowFarItCame)
 TEST(QuadraticModes, RefusesAnImpossibleTolerance)
 {
   const int   n = 100;
-  DensePencil pencil(identity(n), nullptr, chain(n), 0.);
+  DensePencil pencil(DenseMatrix::Identity(n, n), nullptr, chain(n), 0.);
   pencil.options.tolerance = 1e-17;
   EXPECT_THROW(pencil.modes(0.3), SolverError);
 }
 
 TEST(QuadraticModes, RefusesANegativeShift)
 {
-  DensePencil pencil(identity(3), nullptr, chain(3), 0.);
+  DensePencil pencil(DenseMatrix::Identity(3, 3), nullptr, chain(3), 0.);
   pencil.options.shift = -1.;
   EXPECT_THROW(pencil.modes(1.), SolverError);
 }

@@ -1,4 +1,4 @@
-#include "stability/solutions.h"
+#include "solutions.h"
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
@@ -49,10 +49,9 @@ namespace
   }
 
   template <typename Number>
-  bool same_bits(const DenseMatrixOf<Number> &a, const DenseMatrixOf<Number> &b)
+  bool same_bits(const Eigen::MatrixX<Number> &a, const Eigen::MatrixX<Number> &b)
   {
-    return a.n_rows() == b.n_rows() && a.n_columns() == b.n_columns() &&
-           std::memcmp(a.column(), b.column(), sizeof(Number) * a.n_rows() * a.n_columns()) == 0;
+    return a.rows() == b.rows() && a.cols() == b.cols() && std::memcmp(a.data(), b.data(), sizeof(Number) * a.size()) == 0;
   }
 
   bool same_bits(const ChartPoint &a, const ChartPoint &b)
@@ -74,8 +73,8 @@ namespace
     for (ComplexDenseMatrix *matrix : {&point.right, &point.left, &point.corrections})
       {
         *matrix = ComplexDenseMatrix(matrix == &point.corrections ? 3 : 7, 3);
-        for (int j = 0; j < matrix->n_columns(); ++j)
-          for (int i = 0; i < matrix->n_rows(); ++i)
+        for (int j = 0; j < matrix->cols(); ++j)
+          for (int i = 0; i < matrix->rows(); ++i)
             (*matrix)(i, j) = {std::sin(1. + i + 10. * j + friction),
                                matrix == &point.left ? -0. : std::numeric_limits<double>::denorm_min()};
       }
@@ -297,11 +296,11 @@ TEST_F(ChartCheckpoints, KeepPartsApart)
 
 TEST_F(ChartCheckpoints, ShowWhatIsFound)
 {
-  const std::uintmax_t title = std::string("squeal sweep 2\n").size() + key.size() + 1;
+  const std::uintmax_t title = std::string("squeal sweep 3\n").size() + key.size() + 1;
   const auto           ends  = keep_some();
   alone([&] {
     EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(1, 1. / 3.) + csv_of(0, 0.2));
-    EXPECT_EQ(content(archive).substr(0, title), "squeal sweep 2\n" + key + '\0');
+    EXPECT_EQ(content(archive).substr(0, title), "squeal sweep 3\n" + key + '\0');
     EXPECT_EQ(ends.front(), title);
     // As if the run had been killed while it wrote
     std::ofstream(fs::path(folder) / "points.csv", std::ios::app) << "0,0.3,1";
@@ -346,7 +345,7 @@ TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
     stream.seekp(std::string("squeal sweep ").size());
     stream.put('9');
   });
-  EXPECT_NE(refusal([&] { checkpoint(); }).find("`squeal sweep 9` there, `squeal sweep 2` here"), std::string::npos);
+  EXPECT_NE(refusal([&] { checkpoint(); }).find("`squeal sweep 9` there, `squeal sweep 3` here"), std::string::npos);
 }
 
 

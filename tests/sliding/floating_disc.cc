@@ -21,7 +21,8 @@ namespace
     constexpr int  n = 6;
     std::mt19937   generator(seed);
     const auto     rounded = [&](const double x) { return x * (1. + 1e-15 * (static_cast<int>(generator() % 7) - 3)); };
-    ContactProblem problem{identity(n), DenseMatrix(n, n), 0., std::vector<double>(n, 0.), DenseMatrix(n, 3), DenseMatrix(3, n), loads, {}};
+    ContactProblem problem{DenseMatrix::Identity(n, n), DenseMatrix::Zero(n, n), 0.,    std::vector<double>(n, 0.),
+                           DenseMatrix::Zero(n, 3),     DenseMatrix::Zero(3, n), loads, {}};
     problem.forces.push_back(0.);
     for (int c = 0; c < n; ++c)
       {
@@ -81,17 +82,17 @@ TEST(ContactMotions, OfALevelDisc)
   std::uniform_real_distribution<double> uniform(-1., 1.);
   for (int turn = 0; turn < 20; ++turn)
     {
-      DenseMatrix S(6, 6);
+      DenseMatrix S = DenseMatrix::Zero(6, 6);
       for (int j = 0; j < 6; ++j)
         for (int i = 0; i <= j; ++i)
           S(i, j) = S(j, i) = uniform(generator);
-      symmetric_eigenvalues(S); // now orthogonal
-      const auto [pressing, sliding] = contact_motions(*s.contact.normal, *N * S);
+      const DenseMatrix orthogonal   = symmetric_eigenpairs(S).vectors;
+      const auto [pressing, sliding] = contact_motions(*s.contact.normal, *N * orthogonal);
       ASSERT_TRUE(pressing && sliding);
       EXPECT_EQ(pressing->NumVectors(), 3);
       EXPECT_EQ(sliding->NumVectors(), 3);
       EXPECT_LT(max_norm(replicate(*s.contact.normal * *sliding)), 1e-13);
-      EXPECT_LT(max_norm(add(gram(*sliding, *s.system.mass * *sliding), identity(3), -1.)), 1e-12);
+      EXPECT_LT(max_norm(gram(*sliding, *s.system.mass * *sliding) - DenseMatrix::Identity(3, 3)), 1e-12);
     }
 }
 

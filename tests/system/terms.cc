@@ -36,15 +36,14 @@ namespace
       for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 2; ++i)
           weighted(i, j) *= 1. + 0.5 * values.at("d")[i];
-      DenseMatrix result = multiply(to_dense(*L), weighted, true);
-      result             = add(result, to_dense(*S), 2. * 0.7 * 1.3 * 1.3);
-      return add(result, to_dense(*G), -3. * 0.7);
+      const DenseMatrix result = to_dense(*L).transpose() * weighted;
+      return result + 2. * 0.7 * 1.3 * 1.3 * to_dense(*S) - 3. * 0.7 * to_dense(*G);
     }
   };
 
   double deviation(const DenseMatrix &A, const DenseMatrix &B)
   {
-    return max_norm(add(A, B, -1.)) / max_norm(B);
+    return max_norm(A - B) / max_norm(B);
   }
 } // namespace
 
@@ -54,7 +53,7 @@ TEST(Terms, SumAndItsTransposeOnVectors)
 {
   const Terms t;
   EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
-  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), transpose(t.expected())), 1e-15);
+  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), t.expected().transpose()), 1e-15);
 }
 
 
@@ -116,5 +115,5 @@ TEST(Terms, FactorsAreTheSameSparseOrInFull)
   EXPECT_LT(deviation(full.transpose_times(X), t.left->transpose_times(X)), 1e-15);
   const DenseMatrix Y = t.left->transpose_times(X);
   EXPECT_LT(deviation(replicate(full * Y), replicate(*t.left * Y)), 1e-15);
-  EXPECT_EQ(max_norm(add(replicate(full.columns(1, 1)), replicate(t.left->columns(1, 1)), -1.)), 0.);
+  EXPECT_EQ(max_norm(replicate(full.columns(1, 1)) - replicate(t.left->columns(1, 1))), 0.);
 }

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <squeal/system/second_order_system.h>
 #include <squeal/bases/mode_labels.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/eigen/symmetric_modes.h>
+#include <squeal/system/second_order_system.h>
 
 namespace Squeal
 {

@@ -2,7 +2,7 @@
 
 #include <squeal/bases/mode_label.h>
 #include <squeal/contact/contact_interface.h>
-#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/linear_algebra/dense.h>
 #include <squeal/model/model.h>
 
 #include <vector>

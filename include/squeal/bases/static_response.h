@@ -1,8 +1,8 @@
 #pragma once
 
-#include <squeal/system/second_order_system.h>
 #include <squeal/bases/inertia_relief.h>
 #include <squeal/model/model.h>
+#include <squeal/system/second_order_system.h>
 
 namespace Squeal
 {

@@ -131,12 +131,10 @@ namespace Squeal
 
   /**
    * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
-   * contact reactions [N] (compression negative) of complex modes, n_c × k each part.
+   * contact reactions [N] (compression negative) of complex modes, n_c × k.
    */
-  void normal_reactions(const CoupledSystem                     &system,
-                        const std::vector<std::complex<double>> &lambda,
-                        const MultiVector                       &real_part,
-                        const MultiVector                       &imaginary_part,
-                        DenseMatrix                             &reaction_real,
-                        DenseMatrix                             &reaction_imaginary);
+  ComplexDenseMatrix normal_reactions(const CoupledSystem                     &system,
+                                      const std::vector<std::complex<double>> &lambda,
+                                      const MultiVector                       &real_part,
+                                      const MultiVector                       &imaginary_part);
 } // namespace Squeal

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/factorization.h>
 
 #include <memory>
+#include <optional>
 
 namespace Squeal
 {
@@ -31,8 +33,8 @@ namespace Squeal
     /// Y = Q(s)⁻¹ X.
     void apply(const MultiVector &X, MultiVector &Y) const override;
 
-    /// Y = S⁻¹ X: the frictionless inverse.
-    void apply_frictionless(const MultiVector &X, MultiVector &Y) const;
+    /// S⁻¹ X: the frictionless inverse.
+    MultiVector solve_frictionless(const MultiVector &X) const;
 
     const Epetra_Map &map() const override;
 
@@ -48,6 +50,6 @@ namespace Squeal
     std::unique_ptr<MultiVector>        X;
     DenseMatrix                         VX;
     double                              friction_coefficient = 0.;
-    std::unique_ptr<DenseLU>            correction;
+    std::optional<RealLU>               correction;
   };
 } // namespace Squeal

@@ -21,10 +21,10 @@ namespace Squeal
   /// What quadratic_modes() looks for, and how.
   struct QuadraticModesOptions
   {
-    double shift             = 0.; ///< s ≥ 0 [1/s]: the operator handed over is Q(s)⁻¹; s > 0 where K is singular
-    double largest_frequency = 0.; ///< wanted are the λ with 0 < Im λ ≤ this [rad/s] and the real ones
+    double shift                      = 0.; ///< s ≥ 0 [1/s]: the operator handed over is Q(s)⁻¹; s > 0 where K is singular
+    double largest_circular_frequency = 0.; ///< wanted are the λ with 0 < Im λ ≤ this [rad/s] and the real ones
 
-    /// ... that have |λ| ≤ ρ = hypot(1, this) largest_frequency, among them all with |Re λ| ≤ this times largest_frequency [-].
+    /// ... that have |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, among them all with |Re λ| ≤ this times largest_circular_frequency [-].
     double largest_damping = 0.1;
 
     int    expected  = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
@@ -49,7 +49,7 @@ namespace Squeal
   /// Eigenpairs Q(λ) φ = 0 in a band, and what they cost.
   struct QuadraticModes
   {
-    std::vector<std::complex<double>> values; ///< λ with 0 < Im λ ≤ largest_frequency, |λ| ≤ ρ [rad/s], ascending by Im, then Re
+    std::vector<std::complex<double>> values; ///< λ with 0 < Im λ ≤ largest_circular_frequency, |λ| ≤ ρ [rad/s], ascending by Im, then Re
 
     /// φ = real + i imaginary, n × k: ‖φ‖₂ = 1, the entry of largest modulus real and positive.
     std::shared_ptr<MultiVector> real_part, imaginary_part;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/linear_algebra/dense_eigenproblems.h>
 
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_Map.h>
@@ -21,11 +21,11 @@ namespace Squeal
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
   /**
-   * Replaces small dense results by those of process 0. Rounding of the same
+   * The small dense result of process 0, on all. Rounding of the same
    * LAPACK call may differ between processes, with the alignment of memory for
    * instance; eigenvectors of a multiple eigenvalue then differ altogether.
    */
-  void agree(const Epetra_Comm &comm, DenseMatrix &A, std::vector<double> &values);
+  RealPairs agreed(const Epetra_Comm &comm, RealPairs pairs);
 
   /// Y = alpha X S + beta Y; X and Y must not share memory.
   void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);

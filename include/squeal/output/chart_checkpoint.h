@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/output/record_archive.h>
-#include <squeal/stability/error_controlled_sweep.h>
+#include <squeal/tracking/error_controlled_sweep.h>
 
 #include <Epetra_Map.h>
 #include <mpi.h>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/contact/contact_interface.h>
-#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/linear_algebra/dense.h>
 #include <squeal/model/model.h>
 #include <squeal/output/result_folder.h>
 

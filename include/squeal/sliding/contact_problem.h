@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/linear_algebra/dense_matrix.h>
+#include <squeal/linear_algebra/dense.h>
 
 #include <string>
 #include <vector>

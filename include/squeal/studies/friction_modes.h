@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/stability/complex_modes.h>
+#include <squeal/modes/complex_modes.h>
 #include <squeal/studies/frictionless_modes.h>
 
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <squeal/bases/reduced_basis.h>
+#include <squeal/estimates/reduction_errors.h>
 #include <squeal/output/table.h>
-#include <squeal/stability/reduction_errors.h>
 
 #include <string>
 #include <vector>

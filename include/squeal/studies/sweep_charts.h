@@ -1,8 +1,8 @@
 #pragma once
 
 #include <squeal/output/chart_checkpoint.h>
-#include <squeal/stability/branches.h>
 #include <squeal/studies/sweep_model.h>
+#include <squeal/tracking/branches.h>
 
 #include <optional>
 #include <string>

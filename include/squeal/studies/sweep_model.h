@@ -1,8 +1,8 @@
 #pragma once
 
-#include <squeal/stability/error_controlled_sweep.h>
 #include <squeal/studies/frictionless_modes.h>
 #include <squeal/studies/sweep_plan.h>
+#include <squeal/tracking/error_controlled_sweep.h>
 
 #include <map>
 #include <memory>

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <squeal/stability/chart_model.h>
 #include <squeal/studies/scene.h>
+#include <squeal/tracking/chart_model.h>
 
 #include <memory>
 #include <optional>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/stability/contour_count.h>
+#include <squeal/counting/contour_count.h>
 #include <squeal/studies/sweep_charts.h>
 
 #include <optional>

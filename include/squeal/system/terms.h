@@ -45,6 +45,13 @@ namespace Squeal
     std::shared_ptr<const LowRankFactor> left, right;                    ///< L and R, n × m
     std::string                          weights;                        ///< parameter that lists d; empty: ones
 
+    /// θ(p) λ^p_k
+    template <typename Number>
+    Number factor(const Number lambda, const ParameterValues &values) const
+    {
+      return coefficient.at(values) * (power == 0 ? Number(1.) : power == 1 ? lambda : lambda * lambda);
+    }
+
     /// Whether nothing of the term is left at these values.
     bool vanishes(const ParameterValues &values) const;
 
@@ -85,10 +92,9 @@ namespace Squeal
     if (weights.empty())
       return Y;
     const std::vector<double> &d = values.at(weights);
-    for (int j = 0; j < Y.n_columns(); ++j)
-      for (int i = 0; i < Y.n_rows(); ++i)
-        Y(i, j) *= d.empty() ? 0. : d[i];
-    return Y;
+    if (d.empty())
+      return Matrix::Zero(Y.rows(), Y.cols());
+    return as_column(d).asDiagonal() * Y;
   }
 
   /// Σ θ_k A_k X, or Σ θ_k A_kᵀ X, of the terms with λ to this power.

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+#include <squeal/modes/complex_modes.h>
+#include <squeal/modes/reduced_modes.h>
+#include <squeal/reduction/residual_products.h>
+
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /// Whether a mode grows.
+  enum class Verdict
+  {
+    stable,
+    unstable,
+    undecided ///< at the accuracy of the reduction
+  };
+
+  template <>
+  inline constexpr EnumName<Verdict> enum_table<Verdict>[] = {{Verdict::stable, "stable"},
+                                                              {Verdict::unstable, "unstable"},
+                                                              {Verdict::undecided, "undecided"}};
+
+  /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
+  struct EigenvalueEstimates
+  {
+    std::vector<std::complex<double>> corrections;   ///< δλ: λ + δλ is the better value [rad/s]
+    std::vector<double>               errors;        ///< |δλ| / |λ| [-]
+    std::vector<double>               conditions;    ///< κ [-]
+    std::vector<bool>                 claimed;       ///< no coalescence within reach: δλ means something
+    std::vector<double>               uncertainties; ///< |δλ| and what close modes add to it [rad/s]
+    std::vector<Verdict>              verdicts;
+    std::vector<double>               energy_residuals; ///< ε_res of φ, eq. (16) [-]
+    std::vector<double>               left_residuals;   ///< ε_res of ψ [-]
+    ComplexDenseMatrix                couplings;        ///< D, k × k: D_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i [rad/s]
+  };
+
+  /// Residuals of reduced eigentriples at full order, n × 2k: real, then imaginary parts.
+  struct ResidualVectors
+  {
+    MultiVector right_forces, left_forces;               ///< R_F and L_F
+    MultiVector right_displacements, left_displacements; ///< K_c⁻¹ R_F and K_c⁻¹ L_F
+
+    ResidualProducts products() const;
+  };
+
+  ResidualVectors residual_vectors(const CoupledSystem  &system,
+                                   const UpdatedInverse &inverse,
+                                   const ReducedModel   &model,
+                                   const ReducedModes   &modes);
+
+  /**
+   * Errors of reduced eigenvalues from right and left residuals, R_F = Q(λ)φ and
+   * L_F = Q(λ)ᵀψ with φ = T φ_r, ψ = T ψ_r: the next Galerkin step changes λ by
+   *
+   *   ψᵀQ'(λ)φ δλ + ψᵀMφ δλ² = L_Fᵀ K_c⁻¹ R_F,
+   *
+   * of which the smaller root is taken.
+   *
+   * The condition number of an eigenvalue,
+   *
+   *   κ = 2 |λ| ‖ψ‖_M ‖φ‖_M / |ψᵀQ'(λ)φ|,
+   *
+   * is one for a symmetric problem and infinite at a coalescence: a relative
+   * change ε of the matrices moves λ by κ ε/2 |λ| at most. Two modes may coalesce
+   * within the error of the reduction if
+   *
+   *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
+   *
+   * with a safety factor s = 3. An estimate is not claimed where that is so or
+   * where κ > 1000. The uncertainty of λ_i is |δλ_i| + Σ |g_ij| over the modes j
+   * that may coalesce with it (Gershgorin's bound).
+   *
+   * The verdict compares the growth rate with s times the uncertainty. It is
+   * open where κ > 1000. Without damping Re λ = 0 cannot change but by a
+   * coalescence: such a mode is stable unless one is within reach, as above or
+   * because s |δλ_i − δλ_j| ≥ |λ_i − λ_j|. Growth of less than 10⁻⁸ per radian
+   * counts as none.
+   *
+   * Where the inverse has a shift, its stiffness stands for K_c.
+   */
+  EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products);
+
+  /// The same with the products of residual_vectors().
+  EigenvalueEstimates estimate_eigenvalues(const CoupledSystem  &system,
+                                           const UpdatedInverse &inverse,
+                                           const ReducedModel   &model,
+                                           const ReducedModes   &modes);
+
+  /// Right and left vectors at full order, with their residuals; @p estimates may be null.
+  ComplexModes full_order_modes(const CoupledSystem       &system,
+                                const UpdatedInverse      &inverse,
+                                const ReducedModel        &model,
+                                const ReducedModes        &modes,
+                                const EigenvalueEstimates *estimates);
+} // namespace Squeal

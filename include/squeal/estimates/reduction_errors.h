@@ -1,0 +1,91 @@
+#pragma once
+
+#include <squeal/bases/mode_label.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/estimates/eigenvalue_estimates.h>
+
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Errors of one reduced mode against its reference mode, section 3.2 of the paper.
+  struct ModeError
+  {
+    std::complex<double> reference, reduced; ///< λ and λ̂ [rad/s]
+    int                  match;              ///< number of the reduced mode
+
+    double residual;   ///< ε_res, eq. (16) [-]
+    double shape;      ///< ε_mac, eq. (19) [-]
+    double frequency;  ///< ε_frq, eq. (20) [-]
+    double divergence; ///< ε_div, eq. (21) [-]
+    double eigenvalue; ///< |λ̂ − λ| / |λ| [-]
+
+    int    cluster_size; ///< reference modes with nearly the same λ, itself included
+    double subspace;     ///< sin² of the largest angle between the cluster and its reduced modes; ε_mac for a single mode [-]
+
+    std::complex<double> corrected;       ///< λ̂ + δλ [rad/s]
+    double               corrected_error; ///< |λ̂ + δλ − λ| / |λ| [-]
+    double               estimated_error; ///< |δλ| / |λ̂| [-]
+    double               estimate_ratio;  ///< |δλ| / |λ̂ − λ| [-]; infinite where λ̂ is exact
+    double               condition;       ///< κ of λ̂ [-]
+    bool                 claimed;         ///< whether the estimate means something
+    Verdict              verdict;
+  };
+
+  /// Which reference modes belong together.
+  struct ErrorOptions
+  {
+    double cluster_tolerance = 1e-3; ///< |λ_i − λ_j| / |λ_i| within a cluster [-]
+  };
+
+  /// Real modes as complex ones, λ = iω, without those of rigid-body motions.
+  ComplexModes undamped_modes(const SymmetricModes &modes);
+
+  /**
+   * Errors of reduced modes, one entry for each of the @p reference modes. Their
+   * counterparts are found by the mass-weighted criterion
+   *
+   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eqs (17), (18),
+   *
+   * each reduced mode serving once, so that the sum of MAC-M is largest. Where
+   * λ of several reference modes lie within the tolerance of each other, in
+   * chains, MAC-M of single modes says little. There a reduced mode counts by its
+   * share in the span of the cluster first, and the angles between the
+   * subspaces are given beside ε_mac, all in the complex M-inner product. A mode
+   * of which a poor basis has no image gets the likest within 30 % of its λ.
+   *
+   * @param system    the frictionless problem: undamped()
+   * @param inverse   factor of K_c (or of the shifted stiffness, which then stands for it)
+   * @param modes     with BandEnd::open, or modes near the end of the band may lack counterparts
+   * @param reference undamped_modes() for the frictionless problem
+   *
+   * Throws SolverError if there are fewer reduced than reference modes.
+   */
+  std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
+                                          const UpdatedInverse &inverse,
+                                          const ReducedModel   &model,
+                                          const ReducedModes   &modes,
+                                          const ComplexModes   &reference,
+                                          const ErrorOptions   &options = {});
+
+  /// Groups of the frictionless problem: `disc`, or family and rank of the pin mode (`F1`, `T1`); `unnamed`.
+  std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels);
+
+  /// Groups with friction: `disc`, `unstable pins`, `other pins`; `unnamed`.
+  std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable);
+
+  /// Largest errors of a group of modes.
+  struct GroupError
+  {
+    std::string group;
+    int         n_modes;
+    double      residual, shape, frequency, divergence, eigenvalue, subspace, corrected_error; ///< as in ModeError
+    double      estimated_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ̂)| [-]
+    double      corrected_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ)| [-]
+  };
+
+  /// Maxima of each group, in the order in which the groups first appear.
+  std::vector<GroupError> largest_errors(const std::vector<ModeError> &errors, const std::vector<std::string> &groups);
+} // namespace Squeal

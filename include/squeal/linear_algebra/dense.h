@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /// Small dense matrices, the same on every process: reduced quantities and contact nodes, never n × n.
+  using DenseMatrix        = Eigen::MatrixXd;
+  using ComplexDenseMatrix = Eigen::MatrixXcd;
+
+  /// Numbers as a column; a view.
+  template <typename Number>
+  Eigen::Map<const Eigen::Matrix<Number, Eigen::Dynamic, 1>> as_column(const std::vector<Number> &values)
+  {
+    return {values.data(), static_cast<Eigen::Index>(values.size())};
+  }
+
+  /// Largest absolute entry; 0 for an empty matrix, NaN if there is one.
+  template <typename Derived>
+  double max_norm(const Eigen::MatrixBase<Derived> &A)
+  {
+    return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
+  }
+
+  /// A X of a real and a complex matrix: two real products.
+  ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
+
+  /// [Re X, Im X].
+  DenseMatrix halves(const ComplexDenseMatrix &X);
+
+  /// X from [Re X, Im X].
+  ComplexDenseMatrix from_halves(const DenseMatrix &halves);
+
+  /// XᵀY, no conjugate, from [Re X, Im X]ᵀ [Re Y, Im Y].
+  ComplexDenseMatrix product_of_halves(const DenseMatrix &products);
+
+  /// [X Y]; X may be empty.
+  DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
+
+  /// The matrix with rows of zeros appended, or its last rows left out.
+  template <typename Matrix>
+  Matrix with_rows(Matrix A, const Eigen::Index n_rows)
+  {
+    A.conservativeResizeLike(Matrix::Zero(n_rows, A.cols()));
+    return A;
+  }
+} // namespace Squeal

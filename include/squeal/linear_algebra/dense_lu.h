@@ -1,0 +1,51 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense.h>
+
+#include <Eigen/LU>
+
+namespace Squeal
+{
+  /// LU factors of a small square matrix, singular ones included, with an estimate of ‖A⁻¹‖₁.
+  template <typename Matrix>
+  class DenseLU
+  {
+  public:
+    explicit DenseLU(const Matrix &A);
+
+    /// A⁻¹ B, and A⁻ᵀ B; only if the reciprocal condition is not zero.
+    [[nodiscard]] Matrix solve(const Matrix &B) const
+    {
+      return factors.solve(B);
+    }
+    [[nodiscard]] Matrix solve_transposed(const Matrix &B) const
+    {
+      return factors.transpose().solve(B);
+    }
+
+    /// Estimated 1 / (‖A‖₁ ‖A⁻¹‖₁); 0 for a zero pivot and for entries that are not finite.
+    double reciprocal_condition() const
+    {
+      return rcond;
+    }
+
+    /// Estimate of ‖A⁻¹‖₁; infinite if A is singular to working precision.
+    double inverse_norm() const;
+
+    /// A logarithm of det A: the sum of those of the pivots, its imaginary part in (−π, π]; −∞ for a zero pivot.
+    std::complex<double> log_determinant() const;
+
+  private:
+    Eigen::PartialPivLU<Matrix> factors;
+    double                      norm, rcond = 0.;
+  };
+
+  using RealLU    = DenseLU<DenseMatrix>;
+  using ComplexLU = DenseLU<ComplexDenseMatrix>;
+
+  /// Factors of a matrix that has to be regular. Throws SolverError naming @p what if it is singular to working precision.
+  RealLU regular_lu(const DenseMatrix &A, const char *what);
+
+  /// S⁻¹ A S with a positive diagonal S that brings its norm down: row and column of an index of the same norm (Osborne).
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A);
+} // namespace Squeal

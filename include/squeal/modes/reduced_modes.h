@@ -1,0 +1,59 @@
+#pragma once
+
+#include <squeal/reduction/reduced_model.h>
+
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /// Oscillating modes of a reduced model, eq. (12) of the paper, right and left, in the coordinates of its basis.
+  struct ReducedModes
+  {
+    ParameterValues values;          ///< of the parameters of the system
+    ReducedPencil   pencil;          ///< there
+    DenseMatrix     mass, stiffness; ///< TᵀM_cT and TᵀK_cT: the norms
+
+    std::vector<std::complex<double>> lambda; ///< Im λ > 0, ascending by Im, then Re [rad/s]
+    ComplexDenseMatrix                right;  ///< φ_r, r × k
+    ComplexDenseMatrix                left;   ///< ψ_r, r × k: ψ_rᵀ Q_r(λ) = 0, no conjugate
+
+    std::vector<double> real_values; ///< real λ but zero, ascending [1/s]
+    int                 n_zeros = 0; ///< λ = 0: two for each rigid-body mode without damping
+  };
+
+  /// Whether modes beyond the end of the band are left out.
+  enum class BandEnd
+  {
+    cut,
+    open ///< reduced modes are kept whatever their frequency: counterparts of reference modes lie among them
+  };
+
+  /**
+   * All modes of @p model at friction coefficient @p mu. Real λ and zeros,
+   * those of rigid-body motions, are told apart from oscillating modes by
+   * parts of @p largest_circular_frequency [rad/s], the end of the band.
+   */
+  ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
+
+  /**
+   * The same at any values of the parameters, on this process alone: vectors of a
+   * multiple eigenvalue may differ from those that another process finds.
+   */
+  ReducedModes local_reduced_modes(const ReducedModel    &model,
+                                   const ParameterValues &values,
+                                   double                 largest_circular_frequency,
+                                   BandEnd                end = BandEnd::cut);
+
+  /**
+   * The real eigenvalues of @p model with their vectors, zeros excluded, |λ| ≤ @p radius [1/s]: static divergence and
+   * overdamped motions. Without damping that with λ > 0 stands for both of ±λ.
+   */
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_circular_frequency, double radius);
+
+  /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
+  ReducedModes reduced_real_modes(const ReducedModel &model, double largest_circular_frequency, BandEnd end = BandEnd::cut);
+
+  /// Some of the modes, in the order of @p chosen.
+  ReducedModes selected(const ReducedModes &modes, const std::vector<int> &chosen);
+} // namespace Squeal

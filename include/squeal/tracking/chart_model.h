@@ -1,0 +1,95 @@
+#pragma once
+
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/tracking/chart_point.h>
+
+#include <memory>
+
+namespace Squeal
+{
+  /// Where a chart is evaluated.
+  struct OperatingPoint
+  {
+    double          friction_coefficient = 0.;
+    ParameterValues values;   ///< of other parameters of the system, where they differ from its own
+    int             line = 0; ///< of the chart: points of one line differ in the friction coefficient, with all that follows from it
+  };
+
+  /**
+   * A two-sided reduced model that serves every operating point of a chart: what
+   * it says of a mode comes with the residuals of that mode at full order, and it
+   * grows where they are too large (grow_residual_basis() says how).
+   */
+  class ChartModel
+  {
+  public:
+    /**
+     * Starts from real modes Φ_R and their responses of first order, see starting_model().
+     *
+     * @param system            with parameters as they are somewhere on the chart: no term may vanish that the chart has elsewhere
+     * @param inverse           factor of K_c, or of K_c + s² M_c without damping if the @p shift s [rad/s] is positive
+     * @param real_modes        M_c-orthonormal, somewhat beyond the band
+     * @param largest_circular_frequency end of the band [rad/s]
+     * @param margin            modes are followed up to (1 + margin) times the end of the band
+     *
+     * @p system, @p inverse and @p real_modes must outlive it.
+     */
+    ChartModel(const CoupledSystem  &system,
+               const UpdatedInverse &inverse,
+               double                shift,
+               const MultiVector    &real_modes,
+               double                largest_circular_frequency,
+               double                margin);
+
+    /// Vectors in the basis.
+    int size() const;
+
+    /// Real modes among them.
+    int n_real_modes() const;
+
+    const ReducedModel &reduced() const;
+
+    /// Modes with their estimates. Only this process works, and no other need.
+    ChartPoint evaluate(const OperatingPoint &point) const;
+
+    /// Largest estimated |δλ| / |λ| of the modes inside the band.
+    double largest_error(const ChartPoint &point) const;
+
+    /// Modes of @p chart in the band whose errors exceed @p tolerance.
+    std::vector<int> inaccurate_modes(const ChartPoint &chart, double tolerance) const;
+
+    /// Some modes of a result at an operating point.
+    struct ModesAt
+    {
+      OperatingPoint    point;
+      const ChartPoint *chart;
+      std::vector<int>  modes;
+    };
+
+    /// New vectors from the residuals of modes; nothing if they lie in the basis. All processes must call.
+    std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
+
+    /// Extends the basis. All processes must call.
+    void extend(const MultiVector &vectors);
+
+    /**
+     * A smaller basis for about the same: the real modes, and the principal axes in the
+     * K_c-norm of what modes of the @p charts, right and left, of unit
+     * strain energy, have outside of them. Axes are left out whose squares are below
+     * @p tolerance; errors of λ are products of those of right and left vectors.
+     * All processes must call.
+     */
+    MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance) const;
+
+    /// Begins anew with another basis. All processes must call.
+    void restart(const MultiVector &vectors);
+
+  private:
+    const CoupledSystem  &system;
+    const UpdatedInverse &inverse;
+    const MultiVector    &real_modes;
+    double                shift, largest_circular_frequency, margin;
+    ReducedModel          model;
+    ProjectedResiduals    residuals;
+  };
+} // namespace Squeal

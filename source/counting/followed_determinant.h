@@ -1,0 +1,217 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+#include <squeal/linear_algebra/dense_lu.h>
+#include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_determinant.h>
+
+#include <Epetra_Comm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace Squeal
+{
+  /// What a step to another point of the contour would be.
+  struct Step
+  {
+    double size;               ///< acceptable up to 1, and about proportional to the length
+    double phase;              ///< of the determinant [rad]
+    double largest_phase = 0.; ///< of its parts
+  };
+
+  /// A determinant that is followed along the contour.
+  class FollowedDeterminant
+  {
+  public:
+    virtual ~FollowedDeterminant() = default;
+
+    virtual void start(std::complex<double> lambda)   = 0;
+    virtual Step attempt(std::complex<double> lambda) = 0;
+
+    /// Goes to the point of the last attempt.
+    virtual void accept() = 0;
+
+    /// What must not be exceeded whatever the size of the step turns out to be [rad/s].
+    virtual double longest_step(const std::complex<double>) const
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+
+    int n_points = 0;
+  };
+
+
+
+  /// ‖F‖_F of a step. Between its ends F may exceed it, but must stay below 1.
+  constexpr double largest_change = 0.5;
+
+  /// The determinant of a small matrix.
+  class FollowedDense : public FollowedDeterminant
+  {
+  public:
+    /// The matrix A at a point and, of use for a bound of errors, what multiplies its inverse there.
+    struct Sample
+    {
+      ComplexDenseMatrix                matrix;
+      std::vector<std::complex<double>> scaling;     ///< diagonal B; empty: I
+      double                            offset = 0.; ///< the error is bounded by offset + factor ‖A⁻¹ B‖
+      double                            factor = 0.;
+    };
+    using Function = std::function<Sample(std::complex<double>)>;
+
+    /// @p poles of the matrix on the positive imaginary axis, to which steps are kept short
+    FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, const Epetra_Comm &comm)
+      : function(std::move(function))
+      , poles(std::move(poles))
+      , largest_phase_step(largest_phase_step)
+      , comm(comm)
+    {}
+
+    void start(const std::complex<double> lambda) override
+    {
+      set_next(evaluate(lambda));
+      accept();
+    }
+
+    Step attempt(const std::complex<double> lambda) override
+    {
+      Sample             sample = evaluate(lambda);
+      ComplexDenseMatrix F      = sample.matrix;
+      F = current.factors->solve(F);
+      F.diagonal().array() -= 1.;
+      const std::complex<double> trace = F.trace();
+      // A NaN must not reach LAPACK.
+      const double        norm   = F.norm();
+      std::vector<double> agreed = {std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag()};
+      agree_on(agreed);
+      const double infinity = std::numeric_limits<double>::infinity();
+      Step         step{std::isfinite(agreed[0]) ? agreed[0] / largest_change : infinity, 0.};
+      if (step.size > 1.)
+        return step;
+
+      set_next(std::move(sample));
+      step.phase = next.argument - current.argument;
+      step.phase += 2. * M_PI * std::round((agreed[1] - step.phase) / (2. * M_PI));
+      step.largest_phase = std::abs(step.phase);
+      // Farther from the trace than the bound: rounding has spoilt one of the two.
+      if (!(std::abs(step.phase - agreed[1]) <= -std::log(1. - agreed[0]) - agreed[0] + 1e-6))
+        return {infinity, 0.};
+      step.size = std::max(step.size, step.largest_phase / largest_phase_step);
+      return step;
+    }
+
+    void accept() override
+    {
+      current = std::move(next);
+      error   = std::max(error, current.error);
+    }
+
+    double longest_step(const std::complex<double> lambda) const override
+    {
+      double distance = std::numeric_limits<double>::infinity();
+      for (const double omega : poles)
+        distance =
+          std::min({distance, std::abs(lambda - std::complex<double>(0., omega)), std::abs(lambda + std::complex<double>(0., omega))});
+      return 0.5 * distance;
+    }
+
+    double error = 0.; ///< largest bound so far
+
+  private:
+    struct Point
+    {
+      std::optional<ComplexLU> factors;
+      double                   argument = 0., error = 0.;
+    };
+
+    Sample evaluate(const std::complex<double> lambda)
+    {
+      ++n_points;
+      return function(lambda);
+    }
+
+    void set_next(Sample sample)
+    {
+      next.factors.emplace(sample.matrix);
+      double norm = std::sqrt(sample.matrix.rows()) * next.factors->inverse_norm();
+      if (!sample.scaling.empty() && std::isfinite(norm))
+        norm = next.factors->solve(as_column(sample.scaling).asDiagonal()).norm();
+      std::vector<double> agreed = {next.factors->log_determinant().imag(), sample.offset + sample.factor * norm};
+      agree_on(agreed);
+      next.argument = agreed[0];
+      next.error    = agreed[1];
+    }
+
+    /// Every process computes the same; steps are decided upon what process 0 found.
+    void agree_on(std::vector<double> &values) const
+    {
+      values = agreed(comm, {std::move(values), {}}).values;
+    }
+
+    const Function            function;
+    const std::vector<double> poles;
+    const double              largest_phase_step;
+    const Epetra_Comm        &comm;
+    Point                     current, next;
+  };
+
+
+
+  /// det Q.
+  class FollowedSparse : public FollowedDeterminant
+  {
+  public:
+    FollowedSparse(const SparseDeterminant &determinant, const double largest_phase_step)
+      : determinant(determinant)
+      , largest_phase_step(largest_phase_step)
+    {}
+
+    void start(const std::complex<double> lambda) override
+    {
+      next = {lambda, evaluate(lambda)};
+      accept();
+    }
+
+    Step attempt(const std::complex<double> lambda) override
+    {
+      const std::complex<double> middle = evaluate(0.5 * (current.lambda + lambda));
+      next                              = {lambda, evaluate(lambda)};
+      const std::complex<double> first = change(current.logarithm, middle), second = change(middle, next.logarithm);
+      const double               largest = std::max(std::abs(first), std::abs(second));
+      return {std::isfinite(largest) ? largest / largest_phase_step : std::numeric_limits<double>::infinity(), first.imag() + second.imag(),
+              std::max(std::abs(first.imag()), std::abs(second.imag()))};
+    }
+
+    void accept() override
+    {
+      current = next;
+    }
+
+  private:
+    struct Point
+    {
+      std::complex<double> lambda, logarithm;
+    };
+
+    std::complex<double> evaluate(const std::complex<double> lambda)
+    {
+      ++n_points;
+      return determinant.logarithm(lambda);
+    }
+
+    static std::complex<double> change(const std::complex<double> from, const std::complex<double> to)
+    {
+      return {to.real() - from.real(), std::remainder(to.imag() - from.imag(), 2. * M_PI)};
+    }
+
+    const SparseDeterminant &determinant;
+    const double             largest_phase_step;
+    Point                    current, next;
+  };
+} // namespace Squeal

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <squeal/base/conventions.h>
+#include <squeal/eigen/quadratic_modes.h>
+
+#include <cmath>
+#include <complex>
+#include <limits>
+
+namespace Squeal
+{
+  /**
+   * S and its eigenvalues: the only place where λ becomes θ and ν. In units
+   * of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ = ρ² θ̂ with
+   * λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
+   */
+  class InverseAtShift
+  {
+  public:
+    InverseAtShift(const QuadraticPencil &pencil, const LinearOperator &inverse, const QuadraticModesOptions &options)
+      : pencil(pencil)
+      , inverse(inverse)
+      , s(options.shift)
+      , degree(pencil.damping != nullptr ? 2 : 1)
+    {
+      // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² hold every wanted λ. Of degree one the last to be reached is the
+      // corner with the largest Im λ, of degree two it is -ρ.
+      const std::complex<double> corner(-options.largest_damping * options.largest_circular_frequency, options.largest_circular_frequency);
+      largest_modulus = std::abs(corner);
+      radius          = degree == 2 ? largest_modulus + s : std::sqrt(std::abs(corner * corner - s * s));
+    }
+
+    /// Upper part of S x for the states x = [u v] (degree two) or [u] (degree one).
+    void apply(const MultiVector &states, MultiVector &image) const
+    {
+      const int         b = image.NumVectors();
+      const MultiVector u = view(states, 0, b);
+      MultiVector       force(image.Map(), b, false);
+      if (degree == 1)
+        {
+          pencil.mass->apply(u, force);
+          force.Scale(-radius * radius);
+        }
+      else
+        {
+          // ρ (C + 2 s M) u + ρ² M v = ρ C u + M (2 ρ s u + ρ² v)
+          MultiVector combined(image.Map(), b, false);
+          combined.Update(2. * radius * s, u, radius * radius, view(states, b, b), 0.);
+          pencil.mass->apply(combined, force);
+          MultiVector damped(image.Map(), b, false);
+          pencil.damping->apply(u, damped);
+          force.Update(-radius, damped, -1.);
+        }
+      inverse.apply(force, image);
+      n_solves += b;
+    }
+
+    /// λ of ν; of the two for degree one, the one with Im λ ≥ 0, and Re λ ≥ 0 if it is real.
+    std::complex<double> value(const std::complex<double> nu) const
+    {
+      const double               tiny  = std::numeric_limits<double>::min();
+      const std::complex<double> theta = std::abs(nu) > tiny ? 1. / nu : std::complex<double>(1. / tiny);
+      if (degree == 2)
+        return s + radius * theta;
+      const std::complex<double> square = s * s + radius * radius * theta;
+      // A negative square must not depend on the sign of a zero.
+      const std::complex<double> root =
+        square.imag() == 0. && square.real() < 0. ? std::complex<double>(0., std::sqrt(-square.real())) : std::sqrt(square);
+      return root.imag() < 0. ? -root : root;
+    }
+
+    bool inside(const std::complex<double> nu) const
+    {
+      return std::abs(nu) >= 1.;
+    }
+
+    /**
+     * Estimate of ‖Q(λ)φ‖/‖Kφ‖ for φ = upper part of S x and ‖S x - ν x‖ = ε.
+     * With S x = ν x + [r_0; r_1], Q(λ)φ = θ (C + 2 s M) r_0 + θ² M r_0 + ρ θ M r_1
+     * (degree two) or θ M r_0 (degree one): no stiffness enters. Compared
+     * with |λ²| |ν| ‖M u‖ for uniform masses; the residuals proper decide.
+     */
+    double residual_estimate(const std::complex<double> nu, const double epsilon) const
+    {
+      const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
+      const double lambda = std::abs(value(nu)) / radius;
+      if (lambda < zero_frequency)
+        return epsilon * theta;
+      if (degree == 1)
+        return epsilon * theta * theta / (lambda * lambda);
+      return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
+    }
+
+    const QuadraticPencil &pencil;
+    const LinearOperator  &inverse;
+    double                 s, radius;
+    double                 largest_modulus; ///< ρ: of the wanted λ
+    int                    degree;
+    mutable int            n_solves = 0;
+  };
+} // namespace Squeal

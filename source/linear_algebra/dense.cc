@@ -1,0 +1,43 @@
+#include <squeal/linear_algebra/dense.h>
+
+namespace Squeal
+{
+  ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X)
+  {
+    return from_halves(A * halves(X));
+  }
+
+  DenseMatrix halves(const ComplexDenseMatrix &X)
+  {
+    DenseMatrix result(X.rows(), 2 * X.cols());
+    result << X.real(), X.imag();
+    return result;
+  }
+
+  ComplexDenseMatrix from_halves(const DenseMatrix &halves)
+  {
+    const Eigen::Index k = halves.cols() / 2;
+    ComplexDenseMatrix X(halves.rows(), k);
+    X.real() = halves.leftCols(k);
+    X.imag() = halves.rightCols(k);
+    return X;
+  }
+
+  ComplexDenseMatrix product_of_halves(const DenseMatrix &products)
+  {
+    const Eigen::Index m = products.rows() / 2, n = products.cols() / 2;
+    ComplexDenseMatrix result(m, n);
+    result.real() = products.topLeftCorner(m, n) - products.bottomRightCorner(m, n);
+    result.imag() = products.topRightCorner(m, n) + products.bottomLeftCorner(m, n);
+    return result;
+  }
+
+  DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y)
+  {
+    if (X.cols() == 0)
+      return Y;
+    DenseMatrix result(Y.rows(), X.cols() + Y.cols());
+    result << X, Y;
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,83 @@
+#include <squeal/base/decision.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/dense_lu.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// A matrix that is singular leaves 10⁻¹⁷ to 10⁻¹⁵.
+    const Decision regular("reciprocal condition number of a dense matrix", 1e-14);
+    /// Of Q(λ), which is nearly singular close to an eigenvalue.
+    const Decision complex_regular("reciprocal condition number of a dense complex matrix", 1e-16);
+  } // namespace
+
+  template <typename Matrix>
+  DenseLU<Matrix>::DenseLU(const Matrix &A)
+    : norm(A.size() == 0 ? 0. : A.cwiseAbs().colwise().sum().template maxCoeff<Eigen::PropagateNaN>())
+  {
+    // LAPACK's factors of what is not finite are not defined.
+    if (!std::isfinite(norm))
+      return;
+    factors.compute(A);
+    if (A.size() == 0)
+      rcond = 1.;
+    else if ((factors.matrixLU().diagonal().array() != 0.).all())
+      rcond = factors.rcond();
+  }
+
+  template <typename Matrix>
+  double DenseLU<Matrix>::inverse_norm() const
+  {
+    if (factors.rows() == 0 && norm == 0.)
+      return 0.;
+    return complex_regular.exceeded_by(rcond) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
+  }
+
+  template <typename Matrix>
+  std::complex<double> DenseLU<Matrix>::log_determinant() const
+  {
+    double modulus = 0., argument = factors.permutationP().determinant() < 0 ? M_PI : 0.;
+    for (const auto &pivot : factors.matrixLU().diagonal())
+      {
+        modulus += std::log(std::abs(pivot));
+        argument += std::arg(pivot);
+      }
+    return {modulus, std::remainder(argument, 2. * M_PI)};
+  }
+
+  template class DenseLU<DenseMatrix>;
+  template class DenseLU<ComplexDenseMatrix>;
+
+  RealLU regular_lu(const DenseMatrix &A, const char *what)
+  {
+    RealLU factors(A);
+    if (!regular.exceeded_by(factors.reciprocal_condition()))
+      throw SolverError("a dense matrix of size " + std::to_string(A.rows()) + " is singular to working precision", what,
+                        "check for linearly dependent vectors or a parameter value at which the problem degenerates");
+    return factors;
+  }
+
+  ComplexDenseMatrix balanced(ComplexDenseMatrix A)
+  {
+    // A few sweeps do: nobody asks for the very minimum.
+    for (int sweep = 0; sweep < 5; ++sweep)
+      for (Eigen::Index k = 0; k < A.rows(); ++k)
+        {
+          const std::complex<double> diagonal = A(k, k);
+          A(k, k)                             = 0.;
+          const double scale                  = std::sqrt(A.row(k).norm() / A.col(k).norm());
+          if (scale > 0. && std::isfinite(scale))
+            {
+              A.col(k) *= scale;
+              A.row(k) /= scale;
+            }
+          A(k, k) = diagonal;
+        }
+    return A;
+  }
+} // namespace Squeal

@@ -1,0 +1,170 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
+#include <squeal/eigen/dense_quadratic.h>
+#include <squeal/modes/reduced_modes.h>
+
+#include <Epetra_Comm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// A defective double zero splits into ± √(rounding).
+    const Decision nonzero("|lambda| of a reduced mode / end of the band", zero_frequency);
+    /// A multiple real λ splits into pairs by rounding.
+    const Decision oscillating("Im lambda of a reduced mode / end of the band", 1e-7);
+
+    bool is_real(const Complex lambda, const double largest_circular_frequency)
+    {
+      return !oscillating.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
+    }
+
+    /**
+     * Leaves only oscillating modes: real values of rounding join the others
+     * of their kind, zeros, those of rigid-body motions, are counted.
+     */
+    void separate_real(ReducedModes &modes, const double largest_circular_frequency)
+    {
+      // What holds for an oscillating value holds for its conjugate, too
+      std::vector<int> others;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        if (const Complex l = modes.lambda[j]; !nonzero.exceeded_by(std::abs(l) / largest_circular_frequency))
+          modes.n_zeros += 2;
+        else if (is_real(l, largest_circular_frequency))
+          modes.real_values.insert(modes.real_values.end(), 2, l.real());
+        else
+          others.push_back(static_cast<int>(j));
+      if (others.size() < modes.lambda.size())
+        modes = selected(modes, others);
+
+      auto      &values = modes.real_values;
+      const auto end    = std::remove_if(values.begin(), values.end(),
+                                         [&](const double l) { return !nonzero.exceeded_by(std::abs(l) / largest_circular_frequency); });
+      modes.n_zeros += static_cast<int>(values.end() - end);
+      values.erase(end, values.end());
+      std::sort(values.begin(), values.end());
+    }
+
+    /// Replaces the modes by those of process 0: vectors of a multiple eigenvalue may differ between processes.
+    void agree_on_modes(const Epetra_Comm &comm, ReducedModes &modes)
+    {
+      if (comm.NumProc() == 1)
+        return;
+      const int r         = modes.mass.rows();
+      int       counts[3] = {static_cast<int>(modes.lambda.size()), static_cast<int>(modes.real_values.size()), modes.n_zeros};
+      comm.Broadcast(counts, 3, 0);
+      const int k = counts[0];
+      modes.lambda.resize(k);
+      modes.real_values.resize(counts[1]);
+      modes.n_zeros = counts[2];
+      if (modes.right.cols() != k)
+        modes.right = modes.left = ComplexDenseMatrix(r, k);
+      const auto broadcast = [&](Complex *values, const int n) { comm.Broadcast(reinterpret_cast<double *>(values), 2 * n, 0); };
+      broadcast(modes.lambda.data(), k);
+      broadcast(modes.right.data(), r * k);
+      broadcast(modes.left.data(), r * k);
+      comm.Broadcast(modes.real_values.data(), counts[1], 0);
+    }
+
+    /// Every eigenvalue that dense_quadratic_modes() gives.
+    ReducedModes all_modes(const ReducedModel    &model,
+                           const ParameterValues &values,
+                           const double           largest_circular_frequency,
+                           const RealVectors      real_vectors)
+    {
+      ReducedModes modes;
+      modes.values    = values;
+      modes.pencil    = model.at(values);
+      modes.mass      = model.mass();
+      modes.stiffness = model.stiffness();
+
+      DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
+                                                        modes.pencil.stiffness, largest_circular_frequency, real_vectors);
+      modes.lambda              = std::move(found.values);
+      modes.right               = std::move(found.right);
+      modes.left                = std::move(found.left);
+      modes.real_values         = std::move(found.real_values);
+      return modes;
+    }
+
+    double band_limit(const double largest_circular_frequency, const BandEnd end)
+    {
+      return end == BandEnd::cut ? largest_circular_frequency : std::numeric_limits<double>::infinity();
+    }
+
+  } // namespace
+
+  ReducedModes local_reduced_modes(const ReducedModel    &model,
+                                   const ParameterValues &values,
+                                   const double           largest_circular_frequency,
+                                   const BandEnd          end)
+  {
+    ReducedModes modes = all_modes(model, values, band_limit(largest_circular_frequency, end), RealVectors::none);
+    separate_real(modes, largest_circular_frequency);
+    return modes;
+  }
+
+  ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_circular_frequency, const BandEnd end)
+  {
+    ReducedModes modes = local_reduced_modes(model, model.full_order().at(mu), largest_circular_frequency, end);
+    agree_on_modes(model.basis().Comm(), modes);
+    return modes;
+  }
+
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model,
+                                     const double        mu,
+                                     const double        largest_circular_frequency,
+                                     const double        radius)
+  {
+    ReducedModes     modes = all_modes(model, model.full_order().at(mu), largest_circular_frequency, RealVectors::wanted);
+    std::vector<int> real;
+    for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+      if (const double size = std::abs(modes.lambda[j]);
+          is_real(modes.lambda[j], largest_circular_frequency) && size > zero_frequency * largest_circular_frequency && size <= radius)
+        real.push_back(static_cast<int>(j));
+    modes = selected(modes, real);
+    agree_on_modes(model.basis().Comm(), modes);
+    return modes;
+  }
+
+  ReducedModes reduced_real_modes(const ReducedModel &model, const double largest_circular_frequency, const BandEnd end)
+  {
+    ReducedModes modes;
+    modes.values    = model.full_order().values;
+    modes.mass      = model.mass();
+    modes.stiffness = model.stiffness();
+    modes.pencil    = {modes.mass, DenseMatrix(), modes.stiffness, false};
+
+    const auto [squares, vectors] = symmetric_eigenpairs(modes.stiffness, modes.mass);
+    const double     limit        = band_limit(largest_circular_frequency, end);
+    std::vector<int> kept;
+    for (std::size_t j = 0; j < squares.size(); ++j)
+      if (!nonzero.exceeded_by(std::sqrt(std::max(squares[j], 0.)) / largest_circular_frequency))
+        modes.n_zeros += 2;
+      else if (squares[j] <= limit * limit)
+        {
+          kept.push_back(static_cast<int>(j));
+          modes.lambda.emplace_back(0., std::sqrt(squares[j]));
+        }
+    modes.right = modes.left = vectors(Eigen::all, kept).cast<Complex>();
+    agree_on_modes(model.basis().Comm(), modes);
+    return modes;
+  }
+
+  ReducedModes selected(const ReducedModes &modes, const std::vector<int> &chosen)
+  {
+    ReducedModes result = modes;
+    result.lambda.clear();
+    for (const int j : chosen)
+      result.lambda.push_back(modes.lambda[j]);
+    result.right = modes.right(Eigen::all, chosen);
+    result.left  = modes.left(Eigen::all, chosen);
+    return result;
+  }
+} // namespace Squeal

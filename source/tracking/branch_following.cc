@@ -1,0 +1,181 @@
+#include "tracked_modes.h"
+
+#include <squeal/base/assignment.h>
+#include <squeal/base/decision.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// Of modes of nearly the same λ, of which only rounding errors count.
+    const Decision just_divergent("divergence rate of a mode among others of nearly the same lambda", 1e-11);
+    /// Weight of closeness of λ beside overlaps of vectors.
+    constexpr double closeness_weight = 0.01;
+
+    /// −1: decays, 0: neutral, 1: grows.
+    int growth_class(const Complex &lambda)
+    {
+      return !just_divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag()) ? 0 : lambda.real() > 0. ? 1 : -1;
+    }
+
+    /// Vectors of the modes at a point; within a multiple λ those nearest to the vectors of the branches before.
+    struct Carried
+    {
+      ComplexDenseMatrix   right, left;
+      std::vector<Complex> lambda; ///< at the last point where it was not multiple
+    };
+
+
+    void begin_branch(TrackedModes &modes, const int k, const int mode)
+    {
+      modes.branch_of[k].resize(modes.points[k].lambda.size(), -1);
+      modes.branch_of[k][mode] = static_cast<int>(modes.branches.size());
+      modes.branches.push_back({std::vector<int>(modes.points.size(), -1)});
+      modes.branches.back().modes[k] = mode;
+    }
+
+    /// λ at point k + 1 from the points before.
+    Complex extrapolated(const TrackedModes &modes, const int k, const int mode)
+    {
+      const Complex here   = modes.points[k].lambda[mode];
+      const int     before = k > 0 ? modes.branches[modes.branch_of[k][mode]].modes[k - 1] : -1;
+      // The slope of a much shorter step says nothing about this one
+      if (before < 0 || modes.width(k - 1) < 0.1 * modes.width(k))
+        return here;
+      return here + (here - modes.points[k - 1].lambda[before]) * (modes.width(k) / modes.width(k - 1));
+    }
+
+    std::vector<int> match_in_block(const TrackedModes &modes, const int k, const ModeBlock &block, const Carried &carried)
+    {
+      const std::vector<Complex> &lambda = modes.points[k + 1].lambda;
+      const int                   n      = static_cast<int>(block.first.size());
+      if (n == 1)
+        return {0};
+      if (n == 2)
+        {
+          const Complex a1 = carried.lambda[block.first[0]], a2 = carried.lambda[block.first[1]];
+          const Complex b1 = lambda[block.second[0]], b2 = lambda[block.second[1]];
+          if (const int before = pair_sign(a1, a2), after = pair_sign(b1, b2); before * after < 0)
+            {
+              const auto first_comes_first = [](const Complex &x, const Complex &y, const int sign) {
+                return sign < 0 ? x.imag() < y.imag() : x.real() > y.real();
+              };
+              return first_comes_first(a1, a2, before) == first_comes_first(b1, b2, after) ? std::vector<int>{0, 1} :
+                                                                                             std::vector<int>{1, 0};
+            }
+        }
+
+      // Vectors where they say who is who, else λ that would lie on a smooth curve
+      const int            r        = std::max(carried.right.rows(), modes.points[k + 1].right.rows());
+      DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
+      std::vector<Complex> predicted;
+      double               farthest = 0.;
+      for (const int i : block.first)
+        predicted.push_back(extrapolated(modes, k, i));
+      for (const Complex &x : predicted)
+        for (const int j : block.second)
+          farthest = std::max(farthest, std::abs(x - lambda[j]));
+      const auto add_overlaps = [&](const ComplexDenseMatrix &before, const ComplexDenseMatrix &after) {
+        overlaps += 0.5 * (columns(before, block.first, r).adjoint() * columns(after, block.second, r)).cwiseAbs2();
+      };
+      add_overlaps(carried.right, modes.points[k + 1].right);
+      add_overlaps(carried.left, modes.points[k + 1].left);
+      // Among modes that nothing else tells apart the growing ones stay growing, however slowly they do
+      const auto   grow_alike = [](const Complex &x, const Complex &y) { return growth_class(x) == growth_class(y); };
+      const double weight     = block.resolved ? closeness_weight : 1.;
+      return best_assignment(n, n, [&](const int i, const int j) {
+        const Complex before = modes.points[k].lambda[block.first[i]], after = lambda[block.second[j]];
+        const double  distance = std::abs(predicted[i] - after);
+        return overlaps(i, j) - (farthest > 0. ? weight * distance / farthest : 0.) + (grow_alike(before, after) ? n : 0.);
+      });
+    }
+
+    /// The mode at point k + 1 of each mode at point k, or -1.
+    std::vector<int> images(const TrackedModes &modes, const int k, const Carried &carried)
+    {
+      std::vector<int> image(modes.points[k].lambda.size(), -1);
+      for (const ModeBlock &block : modes.intervals[k].links->blocks)
+        {
+          const std::vector<int> match = match_in_block(modes, k, block, carried);
+          for (std::size_t i = 0; i < match.size(); ++i)
+            image[block.first[i]] = block.second[match[i]];
+        }
+      return image;
+    }
+
+    /// Columns @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
+    void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, ComplexDenseMatrix &Y, const std::vector<int> &to)
+    {
+      const Eigen::Index       r = std::max(vectors.rows(), X.rows());
+      const ComplexDenseMatrix Q = orthonormal_basis(with_rows(vectors, r)).Q;
+      const ComplexDenseMatrix P = Q * (Q.adjoint() * with_rows(X, r));
+      for (std::size_t j = 0; j < to.size(); ++j)
+        if (const double norm = P.col(j).norm(); norm > 0.)
+          Y.col(to[j]) = P.col(j).head(Y.rows()) / norm;
+    }
+
+    /// Carries vectors from point k to the next.
+    void carry(const TrackedModes &modes, const int k, const std::vector<int> &image, Carried &carried)
+    {
+      const ChartPoint             &next    = modes.points[k + 1];
+      const std::vector<int>        cluster = mode_clusters(next.lambda);
+      std::vector<std::vector<int>> members(next.lambda.size());
+      std::vector<int>              origin(next.lambda.size(), -1);
+      for (std::size_t i = 0; i < image.size(); ++i)
+        if (image[i] >= 0)
+          origin[image[i]] = static_cast<int>(i);
+      for (std::size_t j = 0; j < cluster.size(); ++j)
+        members[cluster[j]].push_back(static_cast<int>(j));
+
+      Carried result{next.right, next.left, next.lambda};
+      for (const std::vector<int> &all : members)
+        {
+          std::vector<int> from, to;
+          for (const int j : all)
+            if (all.size() > 1 && origin[j] >= 0)
+              {
+                from.push_back(origin[j]);
+                to.push_back(j);
+                result.lambda[j] = carried.lambda[origin[j]];
+              }
+          if (!to.empty())
+            {
+              project(next.right(Eigen::all, all), carried.right(Eigen::all, from), result.right, to);
+              project(next.left(Eigen::all, all), carried.left(Eigen::all, from), result.left, to);
+            }
+        }
+      carried = std::move(result);
+    }
+  } // namespace
+
+  void follow_branches(TrackedModes &modes)
+  {
+    modes.branches.clear();
+    modes.branch_of.assign(modes.points.size(), {});
+    if (modes.points.empty())
+      return;
+    Carried carried{modes.points[0].right, modes.points[0].left, modes.points[0].lambda};
+    for (std::size_t j = 0; j < modes.points[0].lambda.size(); ++j)
+      begin_branch(modes, 0, static_cast<int>(j));
+    for (int k = 0; k + 1 < modes.n_points(); ++k)
+      {
+        const std::vector<int> image = images(modes, k, carried);
+        modes.branch_of[k + 1].assign(modes.points[k + 1].lambda.size(), -1);
+        for (std::size_t i = 0; i < image.size(); ++i)
+          if (image[i] >= 0)
+            {
+              modes.branches[modes.branch_of[k][i]].modes[k + 1] = image[i];
+              modes.branch_of[k + 1][image[i]]                   = modes.branch_of[k][i];
+            }
+        for (std::size_t j = 0; j < modes.branch_of[k + 1].size(); ++j)
+          if (modes.branch_of[k + 1][j] < 0)
+            begin_branch(modes, k + 1, static_cast<int>(j));
+        carry(modes, k, image, carried);
+      }
+  }
+} // namespace Squeal

@@ -1,0 +1,98 @@
+#include "tracked_modes.h"
+
+#include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
+#include <squeal/base/exceptions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    const Decision divergent("divergence rate of a mode of a chart", negligible_divergence);
+
+    void insert(TrackedModes &modes, const EvaluateChart &evaluate, const std::vector<double> &values, const bool refines)
+    {
+      if (values.empty())
+        return;
+      std::vector<ChartPoint> found = evaluate(values);
+      if (found.size() != values.size())
+        throw SolverError(std::to_string(found.size()) + " sets of modes instead of " + std::to_string(values.size()),
+                          "modes over the friction coefficient", "this is a mistake in the program: please report it");
+      for (std::size_t i = 0; i < values.size(); ++i)
+        {
+          found[i].friction_coefficient = values[i];
+          const int k                   = std::lower_bound(modes.points.begin(), modes.points.end(), values[i],
+                                                           [](const ChartPoint &p, const double value) { return p.friction_coefficient < value; }) -
+                        modes.points.begin();
+          modes.points.insert(modes.points.begin() + k, std::move(found[i]));
+          modes.is_refinement.insert(modes.is_refinement.begin() + k, refines);
+          if (k > 0 && k + 1 < modes.n_points())
+            {
+              const int  stalls      = modes.intervals[k - 1].stalls + 1;
+              const bool left_halved = modes.width(k - 1) <= modes.width(k);
+              modes.intervals[k - 1] = {std::nullopt, left_halved ? 0 : stalls};
+              modes.intervals.insert(modes.intervals.begin() + k, {std::nullopt, left_halved ? stalls : 0});
+            }
+          else if (modes.n_points() > 1)
+            modes.intervals.emplace_back();
+        }
+      if (refines)
+        modes.n_refinements += static_cast<int>(values.size());
+      for (std::size_t k = 0; k < modes.intervals.size(); ++k)
+        if (!modes.intervals[k].links)
+          modes.intervals[k].links = link_modes(modes.points[k], modes.points[k + 1], modes.options.largest_circular_frequency);
+    }
+  } // namespace
+
+  double TrackedModes::tolerance(const int k) const
+  {
+    return std::max(options.threshold_tolerance,
+                    8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
+  }
+
+  bool is_neutral(const std::complex<double> &lambda)
+  {
+    return !divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag());
+  }
+
+  ComplexDenseMatrix columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen, const Eigen::Index n_rows)
+  {
+    return with_rows(ComplexDenseMatrix(X(Eigen::all, chosen)), n_rows);
+  }
+
+  bool is_growing(const std::complex<double> &lambda)
+  {
+    return lambda.real() > 0. && divergent.exceeded_by(lambda.real() / lambda.imag());
+  }
+
+  StabilityChart stability_chart(const std::vector<double> &grid, const EvaluateChart &evaluate, const ChartOptions &options)
+  {
+    for (std::size_t i = 1; i < grid.size(); ++i)
+      if (!(grid[i] > grid[i - 1]))
+        throw Error("friction coefficient " + std::to_string(grid[i]) + " follows " + std::to_string(grid[i - 1]),
+                    "modes over the friction coefficient", "give friction coefficients in ascending order, each once");
+    for (const auto &[quantity, name] : {std::make_pair(options.largest_circular_frequency, "end of the band"),
+                                         {options.threshold_tolerance, "tolerance of thresholds"},
+                                         {options.smallest_step, "smallest step"}})
+      if (!(quantity > 0.))
+        throw Error("the " + std::string(name) + " is " + std::to_string(quantity), "modes over the friction coefficient",
+                    "give a positive value");
+
+    TrackedModes tracked{options, {}, {}, {}, {}, {}};
+    insert(tracked, evaluate, grid, false);
+    for (;;)
+      {
+        follow_branches(tracked);
+        const std::vector<EventSearch> searches = find_events(tracked);
+        const std::vector<double>      wanted   = refinement_requests(tracked, searches);
+        if (wanted.empty())
+          return finished_chart(std::move(tracked), searches);
+        insert(tracked, evaluate, wanted, true);
+      }
+  }
+} // namespace Squeal

@@ -1,0 +1,205 @@
+#include "tracked_modes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// |λ_1 − λ_2| / |λ_1| of modes that may meet within a step.
+    constexpr double nearby = 0.1;
+    /// Part of δ², or of Re λ, that an approach must leave to be worth a look.
+    constexpr double remaining = 0.3;
+    /// Steps of a search that may halve less than the interval before it is halved.
+    constexpr int patience = 2;
+
+    bool decays(const Complex &lambda)
+    {
+      return lambda.real() < 0. && !is_neutral(lambda);
+    }
+
+    bool located(const TrackedModes &modes, const EventSearch &search)
+    {
+      return search.multiple || modes.width(search.interval) <= modes.tolerance(search.interval) ||
+             (search.at_once && grows_at_once(modes, search));
+    }
+
+    /// Where to look next for a zero.
+    double proposal(const TrackedModes &modes, const EventSearch &search)
+    {
+      const int    k = search.interval;
+      const double l = modes.mu(k), r = modes.mu(k + 1), middle = 0.5 * (l + r);
+      const auto   fl = search_value(modes, search, k), fr = search_value(modes, search, k + 1);
+      if (search.at_once || !fl || !fr || !(*fl * *fr <= 0.) || *fl == *fr || modes.intervals[k].stalls >= patience)
+        return middle;
+
+      double x = l - *fl * (r - l) / (*fr - *fl);
+      // The nearer neighbour as a third point of inverse quadratic interpolation
+      const auto before = search_value(modes, search, k - 1), after = search_value(modes, search, k + 2);
+      const bool left = before && (!after || modes.width(k - 1) < modes.width(k + 1));
+      if (const auto fc = left ? before : after; fc && *fc != *fl && *fc != *fr)
+        {
+          const double c = left ? modes.mu(k - 1) : modes.mu(k + 2);
+          const double q = l * *fr * *fc / ((*fl - *fr) * (*fl - *fc)) + r * *fl * *fc / ((*fr - *fl) * (*fr - *fc)) +
+                           c * *fl * *fr / ((*fc - *fl) * (*fc - *fr));
+          if (q > l && q < r)
+            x = q;
+        }
+      // Beyond the zero, seen from the nearer end: the interval closes, and no point lies on a coalescence, where vectors are lost
+      const double margin = 0.5 * std::min(modes.tolerance(k), r - l);
+      return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
+    }
+
+    /**
+     * Where branches that change places in a step would meet if they interact.
+     * With λ_a diagonal and B = X Λ_b X⁻¹ for Φ_b = Φ_a X, the 2 × 2 problem is linear
+     * between; at the meeting point t its δ² is 4 t² B_12 B_21.
+     */
+    std::vector<double> interactions(const TrackedModes &modes, const int k)
+    {
+      std::vector<double> result;
+      const ChartPoint   &a = modes.points[k], &b = modes.points[k + 1];
+      const int           r = std::max(a.right.rows(), b.right.rows());
+      for (std::size_t p = 0; p < modes.branches.size(); ++p)
+        for (std::size_t q = 0; q < p; ++q)
+          {
+            if (modes.mode(p, k) < 0 || modes.mode(q, k) < 0 || modes.mode(p, k + 1) < 0 || modes.mode(q, k + 1) < 0)
+              continue;
+            const Complex before = modes.lambda(p, k) - modes.lambda(q, k), after = modes.lambda(p, k + 1) - modes.lambda(q, k + 1);
+            const double  size = std::abs(modes.lambda(p, k)), least = indistinguishable * size;
+            if (before.imag() * after.imag() >= 0. || std::min(std::abs(before), std::abs(after)) <= least)
+              continue;
+            const auto X = transformation(columns(a.right, {modes.mode(p, k), modes.mode(q, k)}, r),
+                                          columns(b.right, {modes.mode(p, k + 1), modes.mode(q, k + 1)}, r));
+            if (!X.exists)
+              continue;
+            const double  t            = before.imag() / (before.imag() - after.imag());
+            const Complex product      = -X.X(0, 0) * X.inverse(0, 1) * X.X(1, 1) * X.inverse(1, 0) * after * after;
+            const Complex discriminant = 4. * t * t * product;
+            const double  gap          = std::sqrt(std::abs(discriminant));
+            // Frequencies that only repel each other do so over gap / slope
+            const bool   repel  = discriminant.real() < 0. && is_neutral(modes.lambda(p, k)) && is_neutral(modes.lambda(q, k));
+            const double extent = gap * modes.width(k) / std::abs(after.imag() - before.imag());
+            if (gap > least && !(repel && extent < modes.options.smallest_step))
+              {
+                const double x = modes.mu(k) + t * modes.width(k), margin = 0.25 * modes.options.smallest_step;
+                result.push_back(std::clamp(x, modes.mu(k) + margin, modes.mu(k + 1) - margin));
+              }
+          }
+      return result;
+    }
+
+    /// Where a negative function comes close to zero within a step, closer than at its ends.
+    std::optional<double> peak_within(const TrackedModes &modes, const EventSearch &search)
+    {
+      const int           k = search.interval;
+      std::vector<double> x, f;
+      for (int point = k - 1; point <= k + 2; ++point)
+        if (const auto y = search_value(modes, search, point))
+          {
+            // Differences over much shorter steps are rounding errors here
+            if ((point < k && (modes.width(point) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k))) ||
+                (point > k + 1 && (modes.width(point - 1) < 0.1 * modes.width(k) || *y > *search_value(modes, search, k + 1))))
+              continue;
+            x.push_back(modes.mu(point));
+            f.push_back(*y);
+          }
+      const double ends = std::max(*search_value(modes, search, k), *search_value(modes, search, k + 1));
+      if (x.size() < 3 || ends >= 0.)
+        return std::nullopt;
+
+      double                peak = remaining * ends;
+      std::optional<double> result;
+      constexpr int         n_samples = 16;
+      for (int i = 1; i < n_samples; ++i)
+        {
+          const double t   = modes.mu(k) + modes.width(k) * i / n_samples;
+          double       sum = 0.;
+          for (std::size_t a = 0; a < x.size(); ++a)
+            {
+              double term = f[a];
+              for (std::size_t b = 0; b < x.size(); ++b)
+                if (a != b)
+                  term *= (t - x[b]) / (x[a] - x[b]);
+              sum += term;
+            }
+          if (sum > peak)
+            {
+              peak   = sum;
+              result = t;
+            }
+        }
+      return result;
+    }
+
+    /**
+     * Where something may have happened that neither end of a step shows: Re λ of a
+     * decaying mode, or δ² of two modes at some distance, is about to reach zero
+     * according to the polynomial through the points around.
+     */
+    std::vector<double> approaches(const TrackedModes &modes, const int k)
+    {
+      std::vector<double> result;
+      const auto          look = [&](const EventSearch &search) {
+        if (const auto peak = peak_within(modes, search))
+          result.push_back(*peak);
+      };
+      const int n = static_cast<int>(modes.branches.size());
+      for (int p = 0; p < n; ++p)
+        {
+          if (modes.mode(p, k) < 0 || modes.mode(p, k + 1) < 0)
+            continue;
+          const Complex before = modes.lambda(p, k), after = modes.lambda(p, k + 1);
+          if (decays(before) && decays(after))
+            look({EventSearch::growth, k, p, -1, true});
+          for (int q = 0; q < p; ++q)
+            if (modes.mode(q, k) >= 0 && modes.mode(q, k + 1) >= 0)
+              {
+                const double x = before.imag() - modes.lambda(q, k).imag(), y = after.imag() - modes.lambda(q, k + 1).imag(),
+                             size = before.imag();
+                if (x * y > 0. && std::max(std::abs(x), std::abs(y)) < nearby * size &&
+                    std::min(std::abs(x), std::abs(y)) > indistinguishable * size)
+                  look({EventSearch::coalescence, k, p, q, true});
+              }
+        }
+      return result;
+    }
+  } // namespace
+
+  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches)
+  {
+    std::vector<double> wanted;
+    for (const EventSearch &search : searches)
+      if (!located(modes, search))
+        wanted.push_back(proposal(modes, search));
+    for (int k = 0; k + 1 < modes.n_points(); ++k)
+      if (modes.width(k) > modes.options.smallest_step)
+        {
+          if (!modes.intervals[k].links->resolved)
+            wanted.push_back(0.5 * (modes.mu(k) + modes.mu(k + 1)));
+          else
+            for (const auto &suspicions : {interactions(modes, k), approaches(modes, k)})
+              wanted.insert(wanted.end(), suspicions.begin(), suspicions.end());
+        }
+    std::sort(wanted.begin(), wanted.end());
+
+    // Two searches may want nearly the same
+    std::vector<double> result;
+    for (const double value : wanted)
+      if (result.empty() || value - result.back() > 0.25 * modes.options.threshold_tolerance)
+        result.push_back(value);
+
+    // The last evaluations are spread over the range
+    const std::size_t left = std::max(0, modes.options.maximum_refinements - modes.n_refinements);
+    if (result.size() > left)
+      {
+        for (std::size_t i = 0; i < left; ++i)
+          result[i] = result[i * result.size() / left];
+        result.resize(left);
+      }
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,317 @@
+#include "solutions.h"
+
+#include <squeal/bases/rigid_body.h>
+#include <squeal/geometry/generate_mesh.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double mu = 0.6;
+
+  Scene scene(const RadialDissipation      dissipation  = RadialDissipation::none,
+              const std::vector<PolarPin> &pins         = skewed_pins,
+              const Rotation               rotation     = Rotation::positive,
+              const MPI_Comm               communicator = MPI_COMM_WORLD)
+  {
+    return Scene(mesh_of(pins), mounted(), operating(dissipation, rotation), 1, communicator);
+  }
+
+  /// Where energy is lost: in the contact, in the bodies.
+  struct Losses
+  {
+    RadialDissipation  contact;
+    MaterialParameters bodies;
+  };
+  const std::vector<Losses> all_losses = {{RadialDissipation::none, mounted()},
+                                          {RadialDissipation::consistent, mounted()},
+                                          {RadialDissipation::consistent, damped(mounted())}};
+
+  Scene scene(const Losses &losses)
+  {
+    return Scene(mesh_of(skewed_pins), losses.bodies, operating(losses.contact));
+  }
+} // namespace
+
+
+
+TEST(ComplexModes, WithoutFrictionTheyAreTheRealOnes)
+{
+  const Scene s    = scene();
+  const auto  real = real_modes(s.coupled);
+  ASSERT_GT(real.eigenvalues.size(), 8u);
+  for (const ComplexModes &modes : {krylov(s.coupled, 0.), iterated(s.coupled, 0., 1e-10)})
+    {
+      ASSERT_EQ(modes.lambda.size(), real.eigenvalues.size());
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        {
+          const double omega = std::sqrt(real.eigenvalues[j]);
+          EXPECT_NEAR(modes.lambda[j].imag() / omega, 1., 1e-9);
+          EXPECT_LT(std::abs(modes.lambda[j].real()), 1e-9 * omega);
+        }
+    }
+}
+
+
+
+TEST(ComplexModes, DampingAloneOnlyDampens)
+{
+  const Scene s        = scene(RadialDissipation::consistent);
+  const auto  modes    = krylov(s.coupled, 0.);
+  int         n_damped = 0;
+  for (const Complex &l : modes.lambda)
+    {
+      EXPECT_LT(l.real(), 1e-9 * l.imag());
+      n_damped += l.real() < -1e-6 * l.imag();
+    }
+  EXPECT_GT(n_damped, 5);
+}
+
+
+
+TEST(ComplexModes, NormalisedSortedAndWithTheirResiduals)
+{
+  for (const Losses &losses : all_losses)
+    {
+      const Scene s = scene(losses);
+      for (const ComplexModes &modes : {krylov(s.coupled, mu), iterated(s.coupled, mu, 1e-8)})
+        {
+          const auto       &M    = *s.coupled.mass;
+          const MultiVector M_re = M * *modes.real_part, M_im = M * *modes.imaginary_part;
+          const MultiVector R = force_residuals(s.coupled, s.coupled.at(mu), modes.lambda, *modes.real_part, *modes.imaginary_part);
+
+          // Q(λ)φ with the sparse matrices at this μ
+          const SecondOrderSystem matrices = with_friction(s.coupled, mu);
+          for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+            {
+              const MultiVector re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
+              EXPECT_NEAR(gram(re, view(M_re, j, 1))(0, 0) + gram(im, view(M_im, j, 1))(0, 0), 1., 1e-12);
+              EXPECT_LE(modes.lambda[j > 0 ? j - 1 : 0].imag(), modes.lambda[j].imag() * (1. + 1e-9));
+
+              const Complex l = modes.lambda[j], l2 = l * l;
+              MultiVector   Q_re = *matrices.stiffness * re, Q_im = *matrices.stiffness * im;
+              const double  size = std::hypot(column_norms(*s.coupled.stiffness * re)[0], column_norms(*s.coupled.stiffness * im)[0]);
+              Q_re.Update(l2.real(), *matrices.mass * re, -l2.imag(), *matrices.mass * im, 1.);
+              Q_im.Update(l2.real(), *matrices.mass * im, l2.imag(), *matrices.mass * re, 1.);
+              if (const auto &C = matrices.damping)
+                {
+                  Q_re.Update(l.real(), *C * re, -l.imag(), *C * im, 1.);
+                  Q_im.Update(l.real(), *C * im, l.imag(), *C * re, 1.);
+                }
+              EXPECT_NEAR(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, modes.residuals[j],
+                          1e-12 + 0.01 * modes.residuals[j]);
+              Q_re.Update(-1., view(R, j, 1), 1.);
+              Q_im.Update(-1., view(R, modes.lambda.size() + j, 1), 1.);
+              EXPECT_LT(std::hypot(column_norms(Q_re)[0], column_norms(Q_im)[0]) / size, 1e-11);
+
+              // An entry of largest modulus (there may be several) is real and positive.
+              const DenseMatrix x = replicate(re), y = replicate(im);
+              double            modulus = 0., defect = 1.;
+              for (int i = 0; i < x.rows(); ++i)
+                modulus = std::max(modulus, std::hypot(x(i, 0), y(i, 0)));
+              for (int i = 0; i < x.rows(); ++i)
+                defect = std::min(defect, std::hypot(x(i, 0) - modulus, y(i, 0)) / modulus);
+              EXPECT_LT(defect, 1e-12);
+              EXPECT_GE(modes.energy_residuals[j], 0.);
+            }
+          EXPECT_TRUE(modes.real_values.empty());
+          EXPECT_EQ(modes.n_rigid_body, 0);
+        }
+    }
+}
+
+
+
+TEST(ComplexModes, BothInversesGiveTheSame)
+{
+  for (const Losses &losses : all_losses)
+    {
+      const Scene s = scene(losses);
+      EXPECT_LT(largest(distances(krylov(s.coupled, mu).lambda, krylov(s.coupled, mu, 1e-11, ShiftInverse::sparse_lu).lambda)), 1e-10);
+    }
+}
+
+
+
+TEST(ComplexModes, ResidualIterationKeepsItsPromise)
+{
+  for (const Losses &losses : all_losses)
+    {
+      const Scene s         = scene(losses);
+      const auto  reference = krylov(s.coupled, mu);
+      ASSERT_GT(n_unstable(reference), 0);
+      for (const double tolerance : {1e-4, 1e-7})
+        {
+          const auto modes  = iterated(s.coupled, mu, tolerance);
+          const auto errors = distances(modes.lambda, reference.lambda);
+          ASSERT_EQ(errors.size(), modes.estimated_errors.size());
+          EXPECT_LT(largest(errors), 2. * tolerance);
+          // The estimate is one of the error, not a bound far above or below it; on the small basis the next
+          // Galerkin step, which it looks at, need not be the last.
+          const double factor     = tolerance > 1e-6 ? 20. : 10.;
+          int          n_compared = 0;
+          for (std::size_t j = 0; j < errors.size(); ++j)
+            {
+              EXPECT_LE(modes.estimated_errors[j], tolerance);
+              if (errors[j] > 1e-10)
+                {
+                  ++n_compared;
+                  EXPECT_GT(modes.estimated_errors[j], errors[j] / factor) << "mode " << j;
+                  EXPECT_LT(modes.estimated_errors[j], errors[j] * factor) << "mode " << j;
+                }
+            }
+          EXPECT_GT(n_compared, 3);
+        }
+    }
+}
+
+
+
+TEST(ComplexModes, UndampedSpectrumIsSymmetric)
+{
+  // λ → -λ; with a damping matrix of zeros, so that the solver cannot know
+  Scene      s       = scene();
+  const auto without = krylov(s.coupled, mu);
+  auto       zero    = std::make_shared<SparseMatrix>(*s.coupled.mass);
+  zero->PutScalar(0.);
+  s.coupled.terms.push_back(sparse_term("zeros", 1, {}, zero));
+  const auto modes = krylov(s.coupled, mu);
+  ASSERT_GT(n_unstable(modes), 0);
+  std::vector<Complex> reflected;
+  for (const Complex &l : modes.lambda)
+    reflected.push_back(-std::conj(l));
+  EXPECT_LT(largest(distances(reflected, modes.lambda)), 1e-9);
+  EXPECT_LT(largest(distances(without.lambda, modes.lambda)), 1e-9);
+}
+
+
+
+TEST(ComplexModes, MirrorImageTurnsTheOtherWay)
+{
+  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+    {
+      const HexMesh mesh = mesh_of(skewed_pins);
+      const Scene   original(mesh, mounted(), operating(dissipation, Rotation::positive));
+      const Scene   image(mirrored(mesh), mounted(), operating(dissipation, Rotation::negative));
+      const auto    modes = krylov(original.coupled, mu);
+      ASSERT_GT(n_unstable(modes), 0);
+      EXPECT_LT(largest(distances(modes.lambda, krylov(image.coupled, mu).lambda)), 1e-9);
+    }
+}
+
+
+
+TEST(ComplexModes, SenseOfRotation)
+{
+  const auto spectra_distance = [](const std::vector<PolarPin> &pins) {
+    const auto positive = krylov(scene(RadialDissipation::none, pins, Rotation::positive).coupled, mu);
+    const auto negative = krylov(scene(RadialDissipation::none, pins, Rotation::negative).coupled, mu);
+    EXPECT_GT(n_unstable(positive), 0);
+    return largest(distances(positive.lambda, negative.lambda));
+  };
+  EXPECT_LT(spectra_distance(symmetric_pins), 1e-9);
+  EXPECT_GT(spectra_distance(skewed_pins), 1e-3);
+}
+
+
+
+TEST(ComplexModes, GrowthIsThePowerBalance)
+{
+  // φᴴ Q(λ) φ = 0: m λ² + c λ + k = p, p = μ φᴴ A r_n; its imaginary part over ω: 2 R m + c = Im p / ω
+  for (const Losses &losses : all_losses)
+    {
+      const Scene       s         = scene(losses);
+      const auto        modes     = krylov(s.coupled, mu);
+      const auto        r         = normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part);
+      const DenseMatrix a_re      = s.coupled.friction_forces->transpose_times(*modes.real_part);
+      const DenseMatrix a_im      = s.coupled.friction_forces->transpose_times(*modes.imaginary_part);
+      int               n_checked = 0;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        if (const Complex l = modes.lambda[j]; std::abs(l.real()) > 1e-4 * l.imag())
+          {
+            ++n_checked;
+            Complex p = 0.;
+            for (int c = 0; c < a_re.rows(); ++c)
+              p += mu * std::conj(Complex(a_re(c, j), a_im(c, j))) * r(c, j);
+            const MultiVector re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
+            double            c = 0.;
+            if (const auto &C = with_friction(s.coupled, 0.).damping)
+              c = product(re, *C, re) + product(im, *C, im);
+            EXPECT_NEAR((p.imag() / l.imag() - c) / (2. * l.real()), 1., 1e-6) << "mode " << j;
+          }
+      EXPECT_GT(n_checked, 0);
+      ASSERT_GT(n_unstable(modes), 0);
+    }
+}
+
+
+
+TEST(ComplexModes, AllProcessesFindWhatOneFinds)
+{
+  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
+    {
+      const Scene together = scene(dissipation);
+      const Scene alone    = scene(dissipation, skewed_pins, Rotation::positive, MPI_COMM_SELF);
+      EXPECT_LT(largest(distances(krylov(together.coupled, mu).lambda, krylov(alone.coupled, mu).lambda)), 1e-9);
+      EXPECT_LT(largest(distances(iterated(together.coupled, mu, 1e-10).lambda, iterated(alone.coupled, mu, 1e-10).lambda)), 1e-9);
+      for (const RealSolver solver : {RealSolver::anasazi, RealSolver::arpack})
+        {
+          const auto real = real_modes(together.coupled, solver), real_alone = real_modes(alone.coupled, solver);
+          ASSERT_EQ(real.eigenvalues.size(), real_alone.eigenvalues.size());
+          for (std::size_t j = 0; j < real.eigenvalues.size(); ++j)
+            EXPECT_NEAR(real.eigenvalues[j] / real_alone.eigenvalues[j], 1., 1e-9);
+        }
+    }
+}
+
+
+
+TEST(ComplexModes, RoundPinsOfAMeshFromGmsh)
+{
+  // Pins that are not opposite, curved in degree 2: both solvers agree, and all modes fulfil the power balance.
+  GeometryParameters geometry = layers(1, 1);
+  geometry.element_size       = 0.04;
+  geometry.nodes_per_pin_face = 7;
+  geometry.top                = {{0.2}, {-10.}};
+  geometry.bottom             = {{0.25}, {25.}};
+  const HexMesh mesh          = generate_mesh(geometry, {"disc_bore"});
+  for (const unsigned int degree : {1u, 2u})
+    {
+      const Scene s(mesh, mounted(), operating(RadialDissipation::consistent), degree);
+      EXPECT_EQ(s.interface.size(), degree == 1 ? 14u : 38u);
+      const auto modes = krylov(s.coupled, mu, 1e-9);
+      EXPECT_GT(modes.lambda.size(), 10u);
+      EXPECT_LT(largest(distances(iterated(s.coupled, mu, 1e-7).lambda, modes.lambda)), 2e-7);
+    }
+}
+
+
+
+TEST(ComplexModes, ADiscThatMovesFreely)
+{
+  // No mount: the disc can translate in its plane and turn, λ = 0, and everything else is found alike.
+  const Scene  s(mesh_of(skewed_pins), mounted({}), operating());
+  const double shift = stabilizing_shift(s.model, s.coupled, omega_max);
+  ASSERT_GT(shift, 0.);
+  SymmetricModesOptions real_options;
+  real_options.shift = shift * shift;
+  const auto real    = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
+  EXPECT_EQ(real.n_rigid_body, 3);
+
+  SolverParameters solvers;
+  solvers.complex_tolerance = 1e-10;
+  UpdatedInverse inverse(s.coupled, shift, FactorizationLibrary::automatic);
+  Progress       progress;
+  const auto     reference = krylov_modes(s.coupled, inverse, shift, mu, omega_max, real.eigenvalues.size(), solvers, progress);
+  EXPECT_EQ(reference.n_rigid_body, 3);
+
+  ResidualIterationOptions options;
+  options.largest_circular_frequency = omega_max;
+  options.tolerance                  = 1e-7;
+  const auto modes                   = residual_iteration(s.coupled, inverse, *real.vectors, mu, options, progress);
+  EXPECT_LT(largest(distances(modes.lambda, reference.lambda)), 2e-7);
+  EXPECT_EQ(modes.n_rigid_body, 3);
+}

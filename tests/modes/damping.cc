@@ -1,0 +1,415 @@
+#include "solutions.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+#include <squeal/linear_algebra/dense_lu.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double mu = 0.6;
+
+  /// The disc held at its rim like the pins at their outer faces.
+  HexMesh with_clamped_rim(HexMesh mesh)
+  {
+    const auto number = [&](const char *name) {
+      return static_cast<unsigned int>(std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin());
+    };
+    for (auto &quadrilateral : mesh.quadrilaterals)
+      if (quadrilateral.surface == number(PhysicalNames::disc_rim))
+        quadrilateral.surface = number(PhysicalNames::pin_clamp);
+    return mesh;
+  }
+
+  /// Disc and pins of one material with C = α M + β K.
+  MaterialParameters proportional(const double alpha, const double beta, const std::vector<ElasticMount> &mounts = {})
+  {
+    MaterialParameters materials  = mounted(mounts);
+    materials.disc.rayleigh_alpha = alpha;
+    materials.disc.rayleigh_beta  = beta;
+    materials.pin                 = materials.disc;
+    return materials;
+  }
+
+  /// ζ of the tests with modal damping: between 1 and 4 % within the band.
+  double ratio_at(const double omega)
+  {
+    return 0.01 + 0.03 * omega / omega_max;
+  }
+
+  std::vector<double> ratios_of(const SymmetricModes &real)
+  {
+    std::vector<double> ratios;
+    for (const double eigenvalue : real.eigenvalues)
+      ratios.push_back(ratio_at(std::sqrt(eigenvalue)));
+    return ratios;
+  }
+
+  /// The system with damping of its real modes.
+  CoupledSystem with_modal_damping(CoupledSystem system, const SymmetricModes &real)
+  {
+    add_modal_damping(system, *real.vectors, real.eigenvalues, ratios_of(real));
+    return system;
+  }
+
+  /// C_m X of a system to which modal damping was added last.
+  MultiVector modal_forces(const CoupledSystem &system, const MultiVector &X)
+  {
+    return times({system.terms.back()}, system.values, 1, X);
+  }
+
+  /// λ with Im λ > 0 of real modes, each damped by itself: λ² + c(ω) λ + ω² = 0.
+  std::vector<Complex> damped_oscillators(const SymmetricModes &real, const std::function<double(double)> &c)
+  {
+    std::vector<Complex> result;
+    for (std::size_t j = real.n_rigid_body; j < real.eigenvalues.size(); ++j)
+      {
+        const double half = 0.5 * c(std::sqrt(real.eigenvalues[j]));
+        result.emplace_back(-half, std::sqrt(real.eigenvalues[j] - half * half));
+      }
+    return result;
+  }
+
+  /**
+   * A body below (dof 0, along n) and one above (dofs 1 along n, 2 along t), pressed
+   * upon each other; friction moves the upper one. With P_n and P_t as they stand in
+   * the equations, so that nothing but couple() makes the coupled matrices.
+   */
+  struct TwoBodies
+  {
+    Epetra_Map        map = rows(3), nodes = rows(1), coordinates = rows(2);
+    ContactOperators  contact;
+    SecondOrderSystem system;
+
+    TwoBodies()
+    {
+      const auto symmetric = [this](const double a00, const double a11, const double a12, const double a22) {
+        return sparse(map, map, [=](const int i) {
+          return i == 0 ? Row{{0, a00}} : i == 1 ? Row{{1, a11}, {2, a12}} : Row{{1, a12}, {2, a22}};
+        });
+      };
+      system             = {symmetric(1.2, 0.9, 0.05, 1.), symmetric(0.02, 0.06, 0.01, 0.03), symmetric(1., 4., 0.8, 2.3)};
+      contact.normal     = sparse(nodes, map, [](int) { return Row{{0, 1.}, {1, -1.}}; });
+      contact.tangential = sparse(nodes, map, [](int) { return Row{{2, -1.}}; });
+      contact.radial     = sparse(nodes, map, [](int) { return Row{}; });
+      contact.kernel     = sparse(map, coordinates, [](const int i) { return Row{{i == 2 ? 1 : 0, 1.}}; });
+    }
+
+    /// A − μ/2 P_tᵀ P_n A between the columns of T_c.
+    DenseMatrix with_friction(const SparseMatrix &matrix, const double mu) const
+    {
+      const DenseMatrix A = to_dense(matrix), T = to_dense(*contact.kernel);
+      const DenseMatrix friction = to_dense(*contact.tangential).transpose() * to_dense(*contact.normal) * A;
+      return T.transpose() * (A - 0.5 * mu * friction) * T;
+    }
+
+    /// Eigenvalues with Im λ > 0 of [0 I; −M̃⁻¹K̃ −M̃⁻¹C̃].
+    std::vector<Complex> lambda(const double mu) const
+    {
+      const RealLU M         = regular_lu(with_friction(*system.mass, mu), "mass");
+      const int    n         = system.mass->NumGlobalRows() - contact.normal->NumGlobalRows();
+      DenseMatrix  companion = DenseMatrix::Zero(2 * n, 2 * n);
+      companion << DenseMatrix::Zero(n, n), DenseMatrix::Identity(n, n), -M.solve(with_friction(*system.stiffness, mu)),
+        -M.solve(with_friction(*system.damping, mu));
+      std::vector<Complex> result;
+      for (const Complex &l : eigenpairs(companion).values)
+        if (l.imag() > 0.)
+          result.push_back(l);
+      return result;
+    }
+  };
+} // namespace
+
+
+
+TEST(RayleighDamping, ProportionalDampingOfEveryMode)
+{
+  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); the elastic mount, which has no damping, allows α only.
+  struct Case
+  {
+    HexMesh                   mesh;
+    double                    alpha, beta;
+    std::vector<ElasticMount> mounts;
+  };
+  const HexMesh mesh      = mesh_of(skewed_pins);
+  int           n_growing = 0;
+  for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}}, Case{with_clamped_rim(mesh), 0., 5e-6, {}},
+                                                  Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
+    {
+      const Scene s(mesh, proportional(alpha, beta, mounts), operating());
+      const auto  real = real_modes(s.coupled);
+      const auto  expected =
+        damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
+      ASSERT_GT(expected.size(), 3u);
+      EXPECT_LT(largest(distances(krylov(s.coupled, 0.).lambda, expected)), 1e-9);
+      EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
+
+      // With friction C̃ = α M̃ + β K̃: each undamped λ_0, of either growth, becomes the root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
+      const auto           growing = krylov(undamped(s.coupled), mu);
+      std::vector<Complex> shifted;
+      for (const Complex &l : growing.lambda)
+        {
+          const Complex kappa = -l * l, half = 0.5 * (alpha + beta * kappa), root = std::sqrt(half * half - kappa);
+          shifted.push_back(-half + (root.imag() > 0. ? root : -root));
+        }
+      n_growing += n_unstable(growing);
+      EXPECT_LT(largest(distances(krylov(s.coupled, mu).lambda, shifted)), 1e-8);
+    }
+  EXPECT_GT(n_growing, 0);
+}
+
+
+
+TEST(RayleighDamping, ADiscThatMovesFreely)
+{
+  // The same about a shift, with damping in the factor and in the reactions: λ = 0 and −α besides.
+  constexpr double alpha = 20., beta = 1e-6;
+  const Scene      s(mesh_of(skewed_pins), proportional(alpha, beta), operating());
+  const double     shift = stabilizing_shift(s.model, s.coupled, omega_max);
+  ASSERT_GT(shift, 0.);
+  SymmetricModesOptions real_options;
+  real_options.shift = shift * shift;
+  const auto real    = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
+  ASSERT_EQ(real.n_rigid_body, 3);
+  const auto expected = damped_oscillators(real, [](const double omega) { return alpha + beta * omega * omega; });
+
+  SolverParameters solvers;
+  solvers.complex_tolerance = 1e-10;
+  ResidualIterationOptions options;
+  options.largest_circular_frequency = omega_max;
+  options.tolerance                  = 1e-9;
+  UpdatedInverse inverse(s.coupled, shift, FactorizationLibrary::automatic);
+  Progress       progress;
+  for (const double friction : {0., mu})
+    {
+      const auto modes = krylov_modes(s.coupled, inverse, shift, friction, omega_max, real.eigenvalues.size(), solvers, progress);
+      const auto other = residual_iteration(s.coupled, inverse, *real.vectors, friction, options, progress);
+      EXPECT_LT(largest(distances(other.lambda, modes.lambda)), 2e-9);
+      for (const ComplexModes &found : {modes, other})
+        {
+          ASSERT_EQ(found.real_values.size(), 3u);
+          for (const double l : found.real_values)
+            EXPECT_NEAR(l, -alpha, 1e-6);
+        }
+      if (friction == 0.)
+        {
+          EXPECT_LT(largest(distances(modes.lambda, expected)), 1e-9);
+        }
+    }
+}
+
+
+
+TEST(RayleighDamping, TwoBodiesFromTheEquations)
+{
+  const TwoBodies two;
+  CoupledSystem   coupled = couple(two.system, two.contact);
+  bool            stable = false, unstable = false;
+  for (const double friction : {0., 0.3, 0.9, 1.5})
+    {
+      const auto expected         = two.lambda(friction);
+      const bool grows            = std::any_of(expected.begin(), expected.end(), [](const Complex &l) { return l.real() > 0.01; });
+      (grows ? unstable : stable) = true;
+      for (const auto &values : solutions(coupled, friction))
+        EXPECT_LT(largest(distances(values, expected)), 1e-12) << "mu " << friction;
+    }
+  EXPECT_TRUE(stable && unstable);
+
+  // The reaction to the damping matters.
+  auto &terms = coupled.terms;
+  terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.name == "friction, damping of the bodies"; }),
+              terms.end());
+  EXPECT_GT(largest(distances(solutions(coupled, 0.9).front(), two.lambda(0.9))), 1e-3);
+}
+
+
+
+TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
+{
+  const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent));
+  const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
+  const MultiVector          X = random_vectors(s.coupled.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
+  const MultiVector          L        = force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, true);
+  const auto                 matrices = with_friction(s.coupled, mu);
+  const MultiVector          K = transpose_times(*matrices.stiffness, X), C = transpose_times(*matrices.damping, X),
+                    M = transpose_times(*matrices.mass, X);
+  for (int j = 0; j < 2; ++j)
+    for (const double part : {0., 1.})
+      {
+        // Re and Im of K x + λ C x + λ² M x
+        const Complex unit = part == 0. ? Complex(1., 0.) : Complex(0., -1.), l = unit * lambda[j], l2 = unit * lambda[j] * lambda[j];
+        MultiVector   expected(X.Map(), 1);
+        expected.Update(unit.real(), view(K, j, 1), -unit.imag(), view(K, 2 + j, 1), 0.);
+        expected.Update(l.real(), view(C, j, 1), -l.imag(), view(C, 2 + j, 1), 1.);
+        expected.Update(l2.real(), view(M, j, 1), -l2.imag(), view(M, 2 + j, 1), 1.);
+        const double size = column_norms(expected)[0];
+        expected.Update(-1., view(L, part == 0. ? j : 2 + j, 1), 1.);
+        EXPECT_LT(column_norms(expected)[0], 1e-13 * size);
+      }
+}
+
+
+
+TEST(SpeedDependentFriction, MassOnASpring)
+{
+  // m ẍ + c ẋ + k x = μ(w_0 - ẋ) N on a belt: about the steady state m ẍ + (c + μ'N) ẋ + k x = 0, and x grows if -μ'N > c.
+  const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
+  const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
+  const double falling  = -0.5 * std::exp(-w_0 / 0.4);
+  EXPECT_NEAR((friction(w_0 + 1e-5) - friction(w_0 - 1e-5)) / 2e-5, falling, 1e-9);
+
+  // The belt is no dof: P_t u = 0 - x, and nothing moves along n and b.
+  const Epetra_Map map = rows(1), nodes = rows(1);
+  const auto       one  = [&](const double value) { return Testing::diagonal(map, [value](int) { return value; }); };
+  const auto       none = sparse(nodes, map, [](int) { return Row{}; });
+  ContactOperators contact;
+  contact.normal     = none;
+  contact.tangential = sparse(nodes, map, [](int) { return Row{{0, -1.}}; });
+  contact.radial     = none;
+  contact.kernel     = one(1.);
+  const SecondOrderSystem system{one(m), one(c), one(k)};
+  for (const double slope : {falling, -1.001 * c / N, -0.999 * c / N, 0., 0.4})
+    {
+      const double        R       = -0.5 * (c + slope * N) / m;
+      const CoupledSystem coupled = couple(system, contact, {{0.}, {slope * N}});
+      for (const auto &values : solutions(coupled, friction(w_0)))
+        {
+          ASSERT_EQ(values.size(), 1u);
+          EXPECT_LT(std::abs(values[0] - Complex(R, std::sqrt(k / m - R * R))), 1e-13);
+          EXPECT_EQ(values[0].real() > 0., -slope * N > c);
+        }
+    }
+}
+
+
+
+TEST(ModalDamping, IsDiagonalInTheModes)
+{
+  const Scene       s(mesh_of(skewed_pins), mounted(), operating());
+  const auto        real   = real_modes(s.coupled);
+  const MultiVector Phi    = *real.vectors;
+  const auto        system = with_modal_damping(s.coupled, real);
+  DenseMatrix       D      = gram(Phi, modal_forces(system, Phi));
+  double            size   = 0.;
+  for (int j = 0; j < D.cols(); ++j)
+    {
+      const double omega = std::sqrt(real.eigenvalues[j]), expected = 2. * ratio_at(omega) * omega;
+      D(j, j) -= expected;
+      size = std::max(size, expected);
+    }
+  EXPECT_LT(max_norm(D), 1e-11 * size);
+
+  // Symmetric, and without effect on what is M-orthogonal to the modes
+  const MultiVector X = random_vectors(system.map(), 3);
+  const DenseMatrix S = gram(X, modal_forces(system, X));
+  EXPECT_LT(max_norm(S - S.transpose()), 1e-13 * max_norm(S));
+  const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
+  EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * size);
+
+  // Rigid-body modes get none; no ratios, no damping.
+  std::vector<double> eigenvalues = real.eigenvalues;
+  eigenvalues.front()             = 0.;
+  CoupledSystem free = s.coupled, none = s.coupled;
+  add_modal_damping(free, Phi, eigenvalues, ratios_of(real));
+  EXPECT_LT(column_norms(modal_forces(free, view(Phi, 0, 1)))[0], 1e-10 * column_norms(modal_forces(free, view(Phi, 1, 1)))[0]);
+  add_modal_damping(none, Phi, real.eigenvalues, std::vector<double>(eigenvalues.size(), 0.));
+  EXPECT_FALSE(none.has_damping());
+  EXPECT_FALSE(s.coupled.has_damping());
+}
+
+
+
+TEST(ModalDamping, GivesEachModeItsRatio)
+{
+  // λ = −ζ ω ± i ω √(1 − ζ²)
+  const Scene s(mesh_of(skewed_pins), mounted(), operating());
+  const auto  real     = real_modes(s.coupled);
+  const auto  system   = with_modal_damping(s.coupled, real);
+  const auto  expected = damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; });
+  EXPECT_LT(largest(distances(krylov(system, 0.).lambda, expected)), 1e-10);
+  EXPECT_LT(largest(distances(krylov(system, 0., 1e-11, ShiftInverse::sparse_lu).lambda, expected)), 1e-10);
+  EXPECT_LT(largest(distances(iterated(system, 0., 1e-11).lambda, expected)), 1e-10);
+}
+
+
+
+TEST(ModalDamping, BothSolversAgreeWithFriction)
+{
+  // By itself, and with every other damping
+  for (const bool others : {false, true})
+    {
+      const Scene               s(mesh_of(skewed_pins), others ? damped(mounted()) : mounted(), operating());
+      const std::vector<double> c_b(s.interface.size(), others ? 50. : 0.), c_t(s.interface.size(), others ? -20. : 0.);
+      const CoupledSystem       bare      = couple(s.system, s.contact, {c_b, c_t});
+      const auto                system    = with_modal_damping(bare, real_modes(bare));
+      const auto                reference = krylov(system, mu);
+      for (const double tolerance : {1e-4, 1e-8})
+        EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
+      EXPECT_LT(largest(reference.residuals), 1e-11);
+      // It matters.
+      EXPECT_GT(largest(distances(krylov(bare, mu).lambda, reference.lambda)), 1e-3);
+    }
+}
+
+
+
+TEST(ModalDamping, AddsItsForcesOnBothSides)
+{
+  const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating());
+  const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
+  const std::vector<Complex> lambda = {{-300., 9000.}};
+  const MultiVector          X = random_vectors(system.map(), 2), re = view(X, 0, 1), im = view(X, 1, 1);
+  const MultiVector          C = modal_forces(system, X);
+  for (const bool left : {false, true})
+    {
+      MultiVector  difference = force_residuals(system, system.at(mu), lambda, re, im, left);
+      const double size       = column_norms(difference)[0];
+      difference.Update(-1., force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, left), 1.);
+      MultiVector expected(C);
+      expected(0)->Update(-lambda[0].imag(), *C(1), lambda[0].real());
+      expected(1)->Update(lambda[0].imag(), *C(0), lambda[0].real());
+      EXPECT_GT(column_norms(expected)[0], 1e-9 * size);
+      expected.Update(-1., difference, 1.);
+      EXPECT_LT(column_norms(expected)[0], 1e-14 * size);
+    }
+}
+
+
+
+TEST(ModalDamping, OfADiscThatMovesFreely)
+{
+  // The Krylov solver has no inverse at a shift then, the residual iteration needs none.
+  const Scene           s(mesh_of(skewed_pins), mounted({}), operating());
+  const double          shift = stabilizing_shift(s.model, s.coupled, omega_max);
+  SymmetricModesOptions real_options;
+  real_options.shift    = shift * shift;
+  const auto     real   = symmetric_modes(*s.coupled.stiffness, *s.coupled.mass, omega_max * omega_max, real_options);
+  const auto     system = with_modal_damping(s.coupled, real);
+  UpdatedInverse inverse(system, shift, FactorizationLibrary::automatic);
+  Progress       progress;
+
+  ResidualIterationOptions options;
+  options.largest_circular_frequency = omega_max;
+  options.tolerance                  = 1e-10;
+  const auto modes                   = residual_iteration(system, inverse, *real.vectors, 0., options, progress);
+  EXPECT_EQ(modes.n_rigid_body, 3);
+  EXPECT_LT(largest(distances(modes.lambda, damped_oscillators(real, [](const double omega) { return 2. * ratio_at(omega) * omega; }))),
+            1e-9);
+
+  try
+    {
+      krylov_modes(system, inverse, shift, 0., omega_max, real.eigenvalues.size(), SolverParameters(), progress);
+      FAIL() << "accepted modal damping with a shift";
+    }
+  catch (const SolverError &error)
+    {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("modal damping"), std::string::npos) << message;
+      EXPECT_NE(message.find("Complex modes/Solver = residual iteration"), std::string::npos) << message;
+    }
+}

@@ -1,0 +1,151 @@
+#pragma once
+
+#include "matrices.h"
+#include "scenes.h"
+
+#include <squeal/base/conventions.h>
+#include <squeal/eigen/dense_quadratic.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/modes/krylov_modes.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <complex>
+#include <limits>
+#include <vector>
+
+namespace Squeal::Testing
+{
+  using Complex = std::complex<double>;
+
+  // ------------------------------------------------------------------ scenes
+
+  /// End of the band of the scenes [rad/s].
+  inline const double omega_max = circular_frequency(6000.);
+
+  // Two pins above, two below; the same with its mirror image about the x axis, and skewed.
+  inline const std::vector<PolarPin> symmetric_pins = {{Plan::Side::top, -1, 2, 1, 1},
+                                                       {Plan::Side::top, 4, 2, 0, 1},
+                                                       {Plan::Side::top, -6, 2, 0, 1},
+                                                       {Plan::Side::bottom, -1, 2, 1, 1}};
+  inline const std::vector<PolarPin> skewed_pins    = {{Plan::Side::top, -1, 2, 1, 1},
+                                                       {Plan::Side::top, 3, 2, 0, 1},
+                                                       {Plan::Side::bottom, 0, 2, 1, 1}};
+
+  inline HexMesh mesh_of(const std::vector<PolarPin> &pins)
+  {
+    return extrude(polar_plan(0.1505, 0.3155, 3, 18, pins), layers(1, 2));
+  }
+
+  // --------------------------------------------------------------- solutions
+
+  inline SymmetricModes real_modes(const CoupledSystem &system, const RealSolver solver = RealSolver::anasazi)
+  {
+    SymmetricModesOptions options;
+    options.solver    = solver;
+    options.tolerance = 1e-12;
+    return symmetric_modes(*system.stiffness, *system.mass, omega_max * omega_max, options);
+  }
+
+  inline ComplexModes krylov(const CoupledSystem &system,
+                             const double         friction,
+                             const double         tolerance = 1e-11,
+                             const ShiftInverse   how       = ShiftInverse::updated_cholesky)
+  {
+    SolverParameters solvers;
+    solvers.complex_tolerance = tolerance;
+    solvers.shift_inverse     = how;
+    UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
+    Progress       progress;
+    return krylov_modes(system, inverse, 0., friction, omega_max, 20, solvers, progress);
+  }
+
+  inline ComplexModes iterated(const CoupledSystem &system, const double friction, const double tolerance)
+  {
+    UpdatedInverse           inverse(system, 0., FactorizationLibrary::automatic);
+    ResidualIterationOptions options;
+    options.largest_circular_frequency = omega_max;
+    options.tolerance                  = tolerance;
+    Progress progress;
+    return residual_iteration(system, inverse, *real_modes(system).vectors, friction, options, progress);
+  }
+
+  /// λ of a small system with all frequencies below 10 rad/s, by each of the three solvers.
+  inline std::vector<std::vector<Complex>> solutions(const CoupledSystem &system, const double mu)
+  {
+    const int        n = system.map().NumGlobalElements();
+    Progress         progress;
+    UpdatedInverse   inverse(system, 0., FactorizationLibrary::automatic);
+    SolverParameters solvers;
+    solvers.complex_tolerance = 1e-13;
+    const auto krylov         = krylov_modes(system, inverse, 0., mu, 10., n, solvers, progress);
+
+    ResidualIterationOptions options;
+    options.largest_circular_frequency = 10.;
+    options.tolerance                  = 1e-12;
+    MultiVector units(system.map(), n);
+    for (int i = 0; i < units.MyLength(); ++i)
+      units.ReplaceMyValue(i, system.map().GID(i), 1.);
+    const auto iterated = residual_iteration(system, inverse, units, mu, options, progress);
+
+    const SecondOrderSystem matrices = with_friction(system, mu);
+    DenseMatrix             C;
+    if (matrices.damping)
+      C = to_dense(*matrices.damping);
+    const auto dense = dense_quadratic_modes(to_dense(*matrices.mass), matrices.damping ? &C : nullptr, to_dense(*matrices.stiffness));
+    return {krylov.lambda, iterated.lambda, dense.values};
+  }
+
+  /**
+   * A system with friction at some contact nodes from its matrices, of which that of damping may be null.
+   *
+   * @param tangential Aᵀ, n_c × n
+   * @param V_K, V_C   reactions to stiffness and damping, n_c × n; those to mass vanish
+   */
+  inline CoupledSystem system_of(const SecondOrderSystem                   &matrices,
+                                 const std::shared_ptr<const SparseMatrix> &tangential,
+                                 const std::shared_ptr<const SparseMatrix> &V_K,
+                                 const std::shared_ptr<const SparseMatrix> &V_C = nullptr)
+  {
+    const Epetra_Map        &map    = matrices.mass->RowMap();
+    std::vector<CoupledTerm> bodies = {{sparse_term("stiffness", 0, {}, matrices.stiffness), V_K},
+                                       {sparse_term("mass", 2, {}, matrices.mass), nullptr}};
+    if (matrices.damping)
+      bodies.push_back({sparse_term("damping of the bodies", 1, {}, matrices.damping), V_C});
+    CoupledSystem result = coupled_system(bodies, tangential, sparse(tangential->RowMap(), map, [](int) { return Row{}; }));
+    result.kernel        = diagonal(map, [](int) { return 1.; });
+    return result;
+  }
+
+  // ------------------------------------------------------------- comparisons
+
+  /// For each of @p values the relative distance to its own neighbour in @p others; as many must there be.
+  inline std::vector<double> distances(const std::vector<Complex> &values, std::vector<Complex> others)
+  {
+    EXPECT_EQ(values.size(), others.size());
+    std::vector<double> result;
+    if (values.size() != others.size())
+      return result;
+    for (const Complex &value : values)
+      {
+        const auto nearest = std::min_element(
+          others.begin(), others.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - value) < std::abs(b - value); });
+        result.push_back(std::abs(*nearest - value) / std::abs(value));
+        others.erase(nearest);
+      }
+    return result;
+  }
+
+  inline double largest(const std::vector<double> &values)
+  {
+    return values.empty() ? std::numeric_limits<double>::infinity() : *std::max_element(values.begin(), values.end());
+  }
+
+  inline int n_unstable(const ComplexModes &modes)
+  {
+    return std::count_if(modes.lambda.begin(), modes.lambda.end(), [](const Complex &l) { return l.real() > 1e-8 * l.imag(); });
+  }
+} // namespace Squeal::Testing

@@ -1,0 +1,689 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/eigen/dense_quadratic.h>
+#include <squeal/tracking/branches.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+using namespace Squeal;
+
+namespace
+{
+  using Complex = std::complex<double>;
+
+  /// A family of small systems with M = 1.
+  struct Family
+  {
+    std::function<DenseMatrix(double)> stiffness;
+    std::function<DenseMatrix(double)> damping = nullptr;
+
+    double                                                last        = std::numeric_limits<double>::infinity(); ///< frequency in the list
+    std::function<ComplexDenseMatrix(const ChartPoint &)> corrections = nullptr;
+    std::function<void(ChartPoint &)>                     disturb     = nullptr;
+
+    ChartPoint at(const double mu) const
+    {
+      const DenseMatrix   K = stiffness(mu), C = damping ? damping(mu) : DenseMatrix();
+      DenseQuadraticModes modes = dense_quadratic_modes(DenseMatrix::Identity(K.rows(), K.rows()), damping ? &C : nullptr, K, last);
+      ChartPoint          point;
+      point.friction_coefficient = mu;
+      point.lambda               = modes.values;
+      point.right                = modes.right;
+      point.left                 = modes.left;
+      const int k                = modes.values.size();
+      point.errors.assign(k, 0.);
+      point.uncertainties.assign(k, 0.);
+      point.verdicts.assign(k, Verdict::stable);
+      point.real_values = modes.real_values;
+      point.corrections = corrections ? corrections(point) : ComplexDenseMatrix::Zero(k, k);
+      if (disturb)
+        disturb(point);
+      return point;
+    }
+
+    StabilityChart chart(const std::vector<double> &grid, const ChartOptions &options)
+    {
+      return stability_chart(
+        grid,
+        [this](const std::vector<double> &values) {
+          std::vector<ChartPoint> points;
+          for (const double mu : values)
+            points.push_back(at(mu));
+          return points;
+        },
+        options);
+    }
+  };
+
+  DenseMatrix matrix(const std::vector<std::vector<double>> &rows)
+  {
+    DenseMatrix A = DenseMatrix::Zero(rows.size(), rows.front().size());
+    for (int i = 0; i < A.rows(); ++i)
+      for (int j = 0; j < A.cols(); ++j)
+        A(i, j) = rows[i][j];
+    return A;
+  }
+
+  std::vector<double> uniform_grid(const double first, const double last, const int n_steps)
+  {
+    std::vector<double> grid;
+    for (int i = 0; i <= n_steps; ++i)
+      grid.push_back(first + (last - first) * i / n_steps);
+    return grid;
+  }
+
+  ChartOptions precise(const double largest_circular_frequency = 100., const double tolerance = 1e-12)
+  {
+    ChartOptions options;
+    options.largest_circular_frequency = largest_circular_frequency;
+    options.threshold_tolerance        = tolerance;
+    return options;
+  }
+
+  /// λ of a branch at point k.
+  Complex value(const StabilityChart &chart, const int branch, const int k)
+  {
+    return chart.points[k].lambda.at(chart.branches[branch].modes[k]);
+  }
+
+  /// |φᴴφ'| of a branch at two points.
+  double overlap(const StabilityChart &chart, const int branch, const int k, const int l)
+  {
+    const ComplexDenseMatrix &X = chart.points[k].right, &Y = chart.points[l].right;
+    Complex                   sum = 0.;
+    for (int i = 0; i < X.rows(); ++i)
+      sum += std::conj(X(i, chart.branches[branch].modes[k])) * Y(i, chart.branches[branch].modes[l]);
+    return std::abs(sum);
+  }
+
+  void expect_counts(const StabilityChart &chart)
+  {
+    for (const ChartCount &count : chart.counts)
+      EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
+  }
+
+  /// Whether two charts of the same family agree at the points of the grid of the first, and on thresholds.
+  void expect_same(const StabilityChart &coarse, const StabilityChart &fine, const double tolerance)
+  {
+    ASSERT_EQ(coarse.thresholds.size(), fine.thresholds.size());
+    for (std::size_t t = 0; t < fine.thresholds.size(); ++t)
+      {
+        EXPECT_NEAR(coarse.thresholds[t].friction_coefficient, fine.thresholds[t].friction_coefficient, tolerance);
+        EXPECT_EQ(coarse.thresholds[t].event, fine.thresholds[t].event);
+        EXPECT_EQ(coarse.thresholds[t].mechanism, fine.thresholds[t].mechanism);
+        EXPECT_LT(std::abs(coarse.thresholds[t].lambda - fine.thresholds[t].lambda), 1e-5);
+      }
+    ASSERT_EQ(coarse.crossings.size(), fine.crossings.size());
+    for (std::size_t c = 0; c < fine.crossings.size(); ++c)
+      {
+        EXPECT_NEAR(coarse.crossings[c].friction_coefficient, fine.crossings[c].friction_coefficient, tolerance);
+        EXPECT_EQ(coarse.crossings[c].branch, fine.crossings[c].branch);
+        EXPECT_EQ(coarse.crossings[c].enters, fine.crossings[c].enters);
+      }
+
+    // Modes of a multiple λ at the first point may be numbered anyhow: branches are compared as sets of curves
+    const auto curves = [&coarse](const StabilityChart &chart) {
+      std::vector<std::vector<Complex>> result;
+      for (const Branch &branch : chart.branches)
+        if (branch.modes[0] >= 0)
+          {
+            std::vector<Complex> curve;
+            for (std::size_t k = 0, l = 0; k < coarse.points.size(); ++k)
+              if (!coarse.is_refinement[k])
+                {
+                  while (chart.points[l].friction_coefficient < coarse.points[k].friction_coefficient - 1e-12)
+                    ++l;
+                  curve.push_back(branch.modes[l] >= 0 ? chart.points[l].lambda[branch.modes[l]] : Complex());
+                }
+            result.push_back(curve);
+          }
+      return result;
+    };
+    const auto first = curves(coarse), second = curves(fine);
+    ASSERT_EQ(first.size(), second.size());
+    for (std::size_t b = 0; b < first.size(); ++b)
+      {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto &other : second)
+          {
+            double farthest = 0.;
+            for (std::size_t k = 0; k < other.size(); ++k)
+              farthest = std::max(farthest, std::abs(first[b][k] - other[k]));
+            nearest = std::min(nearest, farthest);
+          }
+        EXPECT_LT(nearest, 1e-6) << "branch " << b;
+      }
+  }
+
+  /// N. Hoffmann et al. (2002): (k11 − k22)² + 4 k12 (k12 − μ k_c) = 0 at the coalescence.
+  struct Flutter
+  {
+    double k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, d1 = 0., d2 = 0.;
+
+    double coalescence() const
+    {
+      return ((k11 - k22) * (k11 - k22) / (4. * k12) + k12) / k_c;
+    }
+
+    /// a1 (a3 a2 - a1) = a3² a0 (Hurwitz) of λ⁴ + a3 λ³ + a2 λ² + a1 λ + a0.
+    double threshold() const
+    {
+      const double a3 = d1 + d2, a2 = k11 + k22 + d1 * d2, a1 = d1 * k22 + d2 * k11;
+      const double a0 = a1 * (a3 * a2 - a1) / (a3 * a3);
+      return (k12 - (k11 * k22 - a0) / k12) / k_c;
+    }
+
+    Family family() const
+    {
+      Family result;
+      result.stiffness = [f = *this](const double mu) { return matrix({{f.k11, f.k12 - mu * f.k_c}, {f.k12, f.k22}}); };
+      if (d1 != 0. || d2 != 0.)
+        result.damping = [f = *this](double) { return matrix({{f.d1, 0.}, {0., f.d2}}); };
+      return result;
+    }
+  };
+} // namespace
+
+
+
+TEST(Branches, CoalescenceInClosedForm)
+{
+  for (const double k22 : {2., 2.3, 2.7, 3.2, 4.})
+    {
+      Flutter flutter;
+      flutter.k22                 = k22;
+      Family               family = flutter.family();
+      const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
+      ASSERT_EQ(chart.thresholds.size(), 1u);
+      const Threshold &threshold = chart.thresholds.front();
+      EXPECT_NEAR(threshold.friction_coefficient, flutter.coalescence(), 1e-10);
+      EXPECT_LT(threshold.uncertainty, 1e-10);
+      EXPECT_EQ(threshold.event, ThresholdEvent::onset);
+      EXPECT_EQ(threshold.mechanism, ThresholdMechanism::coalescence);
+      EXPECT_LT(std::abs(threshold.lambda - Complex(0., std::sqrt(0.5 * (flutter.k11 + k22)))), 1e-6);
+      // The lower branch goes on as the growing one
+      EXPECT_LT(value(chart, threshold.branch, 0).imag(), value(chart, threshold.partner, 0).imag());
+      EXPECT_GT(value(chart, threshold.branch, chart.points.size() - 1).real(), 0.);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+      expect_counts(chart);
+    }
+}
+
+
+
+TEST(Branches, RestabilisationInClosedForm)
+{
+  // δ(κ)² = (k11 − k22)² − 4 a b with a b = μ (p − μ): negative between two values of μ
+  for (const double gap : {0.5, 1., 1.5})
+    for (const double p : {2.5, 3., 4.})
+      {
+        Family family;
+        family.stiffness           = [=](const double mu) { return matrix({{10. + gap, mu}, {mu - p, 10.}}); };
+        const double         root  = std::sqrt(p * p - gap * gap);
+        const StabilityChart chart = family.chart(uniform_grid(-0.1, 4.1, 15), precise());
+        ASSERT_EQ(chart.thresholds.size(), 2u);
+        EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.5 * (p - root), 1e-10);
+        EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.5 * (p + root), 1e-10);
+        EXPECT_EQ(chart.thresholds[0].event, ThresholdEvent::onset);
+        EXPECT_EQ(chart.thresholds[1].event, ThresholdEvent::restabilisation);
+        EXPECT_EQ(chart.thresholds[0].branch, chart.thresholds[1].branch);
+        EXPECT_EQ(chart.branches.size(), 2u);
+        EXPECT_EQ(chart.n_doubtful_steps, 0);
+      }
+}
+
+
+
+TEST(Branches, DampedThresholdInClosedForm)
+{
+  for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}, {0.001, 0.003}, {0.2, 0.1}, {1e-5, 1e-5}})
+    {
+      Flutter flutter;
+      flutter.d1                  = d1;
+      flutter.d2                  = d2;
+      Family               family = flutter.family();
+      const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
+      ASSERT_EQ(chart.thresholds.size(), 1u);
+      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, flutter.threshold(), 1e-10);
+      EXPECT_EQ(chart.thresholds[0].mechanism, ThresholdMechanism::zero_growth);
+      EXPECT_EQ(chart.thresholds[0].partner, -1);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+      EXPECT_EQ(chart.branches.size(), 2u);
+    }
+}
+
+
+
+TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
+{
+  Family family;
+  family.stiffness = [](const double mu) { return matrix({{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}); };
+  // The last grid meets a crossing exactly: vectors are arbitrary there
+  const double crossing = (6. - (4.5 - std::sqrt(0.29))) / 2.;
+  for (const auto &grid : {uniform_grid(0., 2., 4), uniform_grid(0., 2., 37), std::vector<double>{0., crossing, 2.}})
+    {
+      const StabilityChart chart = family.chart(grid, precise());
+      EXPECT_TRUE(chart.thresholds.empty());
+      EXPECT_EQ(chart.points.size(), grid.size()); // no reason to refine
+      ASSERT_EQ(chart.branches.size(), 3u);
+      const int last = chart.points.size() - 1;
+      for (int branch = 0; branch < 3; ++branch)
+        EXPECT_NEAR(overlap(chart, branch, 0, last), 1., 1e-10);
+      EXPECT_EQ(chart.branches[2].modes[last], 0);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+    }
+}
+
+
+
+TEST(Branches, VeeringsAreRefined)
+{
+  // Branches keep their order and exchange vectors, within |μ − 1| ~ the coupling
+  for (const double coupling : {1e-1, 1e-2, 1e-3, 1e-4})
+    {
+      Family family;
+      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {coupling, 6. - mu}}); };
+      const StabilityChart chart = family.chart(uniform_grid(0., 2., 5), precise());
+      EXPECT_TRUE(chart.thresholds.empty());
+      ASSERT_EQ(chart.branches.size(), 2u);
+      const int last = chart.points.size() - 1;
+      EXPECT_LT(overlap(chart, 0, 0, last), 0.2);
+      for (int k = 0; k <= last; ++k)
+        EXPECT_LT(value(chart, 0, k).imag(), value(chart, 1, k).imag());
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+    }
+}
+
+
+
+TEST(Branches, NarrowWindowsOfInstabilityAreFound)
+{
+  // 4 + μ and 6 − μ meet at μ = 1; coupling c and −c makes them grow while |μ − 1| < c
+  for (const double coupling : {1e-1, 1e-3, 1e-5})
+    {
+      Family family;
+      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {-coupling, 6. - mu}}); };
+      const StabilityChart chart = family.chart(uniform_grid(0., 2., 7), precise());
+      ASSERT_EQ(chart.thresholds.size(), 2u);
+      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 1. - coupling, 1e-10);
+      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 1. + coupling, 1e-10);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+    }
+}
+
+
+
+TEST(Branches, MultipleModesAreFollowedAcrossOthers)
+{
+  // A twelvefold λ² = −5 whose vectors are mixed anew at each point; two others cross it, one of them veering with a third
+  std::mt19937                     generator(7);
+  std::normal_distribution<double> normal;
+  Family                           family;
+  family.stiffness = [](const double mu) {
+    DenseMatrix K = DenseMatrix::Zero(15, 15);
+    for (int i = 0; i < 12; ++i)
+      K(i, i) = 5.;
+    K(12, 12) = 4. + 2. * mu;
+    K(13, 13) = 6. - 2. * mu;
+    K(14, 14) = 5.4;
+    K(13, 14) = K(14, 13) = 0.1;
+    return K;
+  };
+  family.disturb = [&](ChartPoint &point) {
+    std::vector<int> multiple;
+    for (std::size_t j = 0; j < point.lambda.size(); ++j)
+      if (std::abs(point.lambda[j] - Complex(0., std::sqrt(5.))) < 1e-9)
+        multiple.push_back(j);
+    for (auto *vectors : {&point.right, &point.left})
+      for (std::size_t pass = 0; pass < multiple.size(); ++pass)
+        for (const int i : multiple)
+          for (const int j : multiple)
+            if (i < j)
+              {
+                const double angle = normal(generator), c = std::cos(angle), s = std::sin(angle);
+                for (int row = 0; row < vectors->rows(); ++row)
+                  {
+                    const Complex x = (*vectors)(row, i), y = (*vectors)(row, j);
+                    (*vectors)(row, i) = c * x + s * y;
+                    (*vectors)(row, j) = c * y - s * x;
+                  }
+              }
+  };
+  // One of the grids meets the crossing of the twelve by a thirteenth
+  for (const int n_steps : {3, 10, 33})
+    {
+      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+      EXPECT_TRUE(chart.thresholds.empty());
+      ASSERT_EQ(chart.branches.size(), 15u);
+      EXPECT_EQ(chart.n_doubtful_steps, 0);
+      for (std::size_t k = 0; k < chart.points.size(); ++k)
+        {
+          int n_multiple = 0, n_rising = 0;
+          for (int branch = 0; branch < 15; ++branch)
+            {
+              const double mu = chart.points[k].friction_coefficient, omega = value(chart, branch, k).imag();
+              const bool   multiple = std::abs(value(chart, branch, 0).imag() - std::sqrt(5.)) < 1e-9;
+              const bool   rising   = std::abs(value(chart, branch, 0).imag() - 2.) < 1e-9;
+              if (multiple)
+                n_multiple += std::abs(omega - std::sqrt(5.)) < 1e-9;
+              if (rising)
+                n_rising += std::abs(omega - std::sqrt(4. + 2. * mu)) < 1e-9;
+            }
+          EXPECT_EQ(n_multiple, 12);
+          EXPECT_EQ(n_rising, 1);
+        }
+    }
+}
+
+
+
+TEST(Branches, DoubleModesMayGrowAtOnce)
+{
+  // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
+  Family family;
+  family.stiffness = [](const double mu) { return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}); };
+  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise());
+  ASSERT_EQ(chart.thresholds.size(), 2u);
+  EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
+  EXPECT_EQ(chart.thresholds[0].mechanism, ThresholdMechanism::coalescence);
+  EXPECT_GE(chart.thresholds[0].partner, 0);
+  EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.05, 1e-10);
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+}
+
+
+
+TEST(Branches, DampingThatGrowsWithFriction)
+{
+  // C = μ diag(c (μ − 0.2), −1, 1) / 100: onset at 0.2, at once, and never
+  Family family;
+  family.stiffness = [](double) { return matrix({{1., 0., 0.}, {0., 2., 0.}, {0., 0., 3.}}); };
+  family.damping   = [](const double mu) {
+    DenseMatrix C = DenseMatrix::Zero(3, 3);
+    C(0, 0)       = -0.01 * mu * (mu - 0.2);
+    C(1, 1)       = -0.01 * mu;
+    C(2, 2)       = 0.01 * mu;
+    return C;
+  };
+  for (const int n_steps : {3, 10})
+    {
+      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+      ASSERT_EQ(chart.thresholds.size(), 2u);
+      EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
+      EXPECT_EQ(chart.thresholds[0].branch, 1);
+      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.2, 1e-10);
+      EXPECT_EQ(chart.thresholds[1].branch, 0);
+    }
+}
+
+
+
+TEST(Branches, BandCrossingsInClosedForm)
+{
+  // ω = √(8 + 2μ) leaves and √(10.2 − 2μ) enters the band ω < 3; the list ends 5 % above, where a fourth mode comes and goes
+  Family family;
+  family.last      = 3.15;
+  family.stiffness = [](const double mu) {
+    DenseMatrix K = DenseMatrix::Zero(4, 4);
+    K(0, 0)       = 8. + 2. * mu;
+    K(1, 1)       = 10.2 - 2. * mu;
+    K(2, 2)       = 4.;
+    K(3, 3)       = 9.9 + 4. * (mu - 0.5) * (mu - 0.5);
+    return K;
+  };
+  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise(3.));
+  ASSERT_EQ(chart.crossings.size(), 2u);
+  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.5, 1e-10);
+  EXPECT_FALSE(chart.crossings[0].enters);
+  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 0.6, 1e-10);
+  EXPECT_TRUE(chart.crossings[1].enters);
+  EXPECT_EQ(chart.counts.front().n_modes, 2);
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+  expect_counts(chart);
+}
+
+
+
+TEST(Branches, OverdampedModesReachTheRealAxis)
+{
+  // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
+  Family family;
+  family.stiffness           = [](double) { return matrix({{1., 0.}, {0., 9.}}); };
+  family.damping             = [](const double mu) { return matrix({{2.09 - (mu - 1.) * (mu - 1.), 0.}, {0., 0.1}}); };
+  const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+  ASSERT_EQ(chart.crossings.size(), 2u);
+  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.7, 1e-10);
+  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 1.3, 1e-10);
+  for (const BandCrossing &crossing : chart.crossings)
+    EXPECT_EQ(crossing.edge, BandEdge::real_axis);
+  EXPECT_FALSE(chart.crossings[0].enters);
+  EXPECT_TRUE(chart.crossings[1].enters);
+  EXPECT_TRUE(chart.thresholds.empty());
+  EXPECT_EQ(chart.n_doubtful_steps, 0);
+  expect_counts(chart);
+}
+
+
+
+TEST(Branches, UncertaintyCoversThePerturbation)
+{
+  // D = ψᵀ δK φ / (−ψᵀQ'φ): what first order says of the system with K + δK
+  for (const double size : {1e-6, 1e-4, 1e-3})
+    for (const bool damped : {false, true})
+      {
+        Flutter flutter, perturbed;
+        if (damped)
+          flutter.d2 = perturbed.d2 = 0.04;
+        perturbed.k11 += 0.8 * size;
+        perturbed.k22 -= 0.5 * size;
+        perturbed.k12 += 0.3 * size;
+        Family            family = flutter.family();
+        const DenseMatrix K = perturbed.family().stiffness(0.), K0 = flutter.family().stiffness(0.);
+        family.corrections = [&](const ChartPoint &point) {
+          const int          k = point.lambda.size();
+          ComplexDenseMatrix D = ComplexDenseMatrix::Zero(k, k);
+          for (int i = 0; i < k; ++i)
+            for (int j = 0; j < k; ++j)
+              {
+                Complex change = 0., derivative = 0.;
+                for (int r = 0; r < 2; ++r)
+                  {
+                    derivative += point.left(r, i) * (2. * point.lambda[i] + (r == 0 ? flutter.d1 : flutter.d2)) * point.right(r, i);
+                    for (int c = 0; c < 2; ++c)
+                      change += point.left(r, i) * (K(r, c) - K0(r, c)) * point.right(c, j);
+                  }
+                D(i, j) = -change / derivative;
+              }
+          return D;
+        };
+        family.disturb = [&](ChartPoint &point) {
+          for (std::size_t j = 0; j < point.lambda.size(); ++j)
+            point.uncertainties[j] = std::abs(point.corrections(j, j));
+        };
+        const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
+        ASSERT_EQ(chart.thresholds.size(), 1u);
+        const double error =
+          std::abs(chart.thresholds[0].friction_coefficient - (damped ? perturbed.threshold() : perturbed.coalescence()));
+        const double bound = chart.thresholds[0].uncertainty;
+        EXPECT_LT(error, bound);
+        EXPECT_LT(bound, 20. * error);
+      }
+}
+
+
+
+TEST(Branches, ManyModes)
+{
+  // Symmetric with a band of 40 frequencies, three of them close, and nonsymmetric coupling of rank three
+  std::mt19937                     generator(11);
+  std::normal_distribution<double> normal;
+  const int                        n = 40, rank = 3;
+  DenseMatrix                      U = DenseMatrix::Zero(n, rank), V = DenseMatrix::Zero(n, rank), mixing = DenseMatrix::Zero(n, n);
+  std::vector<double>              squares(n);
+  for (int i = 0; i < n; ++i)
+    {
+      squares[i] = std::pow(1. + 0.1 * (i + 0.3 * normal(generator)), 2);
+      for (int j = 0; j < rank; ++j)
+        {
+          U(i, j) = 0.5 * normal(generator);
+          V(i, j) = 0.5 * normal(generator);
+        }
+      for (int j = 0; j < n; ++j)
+        mixing(i, j) = normal(generator);
+    }
+  squares[20] = squares[19] = squares[18];
+  for (int i = 0; i < n; ++i)
+    mixing(i, i) += n;
+  // An orthogonal basis hides the structure
+  const DenseMatrix basis = symmetric_eigenpairs(mixing + mixing.transpose()).vectors;
+  Family            family;
+  family.stiffness = [&](const double mu) -> DenseMatrix {
+    DenseMatrix K = mu * U * V.transpose();
+    for (int i = 0; i < n; ++i)
+      K(i, i) += squares[i];
+    return basis.transpose() * K * basis;
+  };
+  family.last          = 4.2;
+  ChartOptions options = precise(3.9, 1e-8);
+
+  const StabilityChart coarse = family.chart(uniform_grid(0., 1., 20), options);
+  const StabilityChart fine   = family.chart(uniform_grid(0., 1., 80), options);
+  EXPECT_EQ(coarse.n_doubtful_steps, 0);
+  EXPECT_EQ(fine.n_doubtful_steps, 0);
+  expect_counts(coarse);
+  expect_counts(fine);
+  EXPECT_GT(coarse.thresholds.size(), 2u);
+  expect_same(coarse, fine, 2e-8);
+
+  // Another order of the modes of the triple λ at μ = 0 changes nothing
+  family.disturb = [](ChartPoint &point) {
+    for (std::size_t j = 0; j + 1 < point.lambda.size(); ++j)
+      if (std::abs(point.lambda[j + 1] - point.lambda[j]) < 1e-9)
+        {
+          std::swap(point.lambda[j], point.lambda[j + 1]);
+          for (auto *vectors : {&point.right, &point.left})
+            for (int i = 0; i < vectors->rows(); ++i)
+              std::swap((*vectors)(i, j), (*vectors)(i, j + 1));
+        }
+  };
+  const StabilityChart other = family.chart(uniform_grid(0., 1., 20), options);
+  ASSERT_EQ(other.points.size(), coarse.points.size());
+  for (std::size_t k = 0; k < other.points.size(); ++k)
+    EXPECT_NEAR(other.points[k].friction_coefficient, coarse.points[k].friction_coefficient, 1e-12);
+  expect_same(coarse, other, 1e-12);
+}
+
+
+
+TEST(Branches, PinsAndDisc)
+{
+  // 24 pin modes within 1 %, a disc doublet among them, twelve equal modes above, and the friction of three pins
+  std::mt19937                     generator(5);
+  std::normal_distribution<double> normal;
+  const int                        n = 40, rank = 3;
+  DenseMatrix                      U = DenseMatrix::Zero(n, rank), V = DenseMatrix::Zero(n, rank);
+  std::vector<double>              squares(n);
+  for (int i = 0; i < n; ++i)
+    squares[i] = i < 24 ? 25. * (1. + 0.02 * i / 24.) : i < 26 ? 25.2 : i < 38 ? 30. : 20. + i;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < rank; ++j)
+      {
+        const double weight = i < 24 ? 0.1 : i < 26 ? 0.3 : i < 38 ? 1e-3 : 0.3;
+        U(i, j)             = weight * normal(generator);
+        V(i, j)             = weight * normal(generator);
+      }
+  for (const double damping : {0., 1e-3})
+    {
+      Family family;
+      family.stiffness = [&](const double mu) {
+        DenseMatrix K = mu * U * V.transpose();
+        for (int i = 0; i < n; ++i)
+          K(i, i) += squares[i];
+        return K;
+      };
+      if (damping > 0.)
+        family.damping = [&](double) {
+          DenseMatrix C = DenseMatrix::Zero(n, n);
+          for (int i = 0; i < n; ++i)
+            C(i, i) = damping * (i < 24 ? 1. : 2.);
+          return C;
+        };
+      const StabilityChart coarse = family.chart(uniform_grid(0., 1., 20), precise(10., 1e-8));
+      const StabilityChart fine   = family.chart(uniform_grid(0., 1., 80), precise(10., 1e-8));
+      EXPECT_EQ(coarse.n_doubtful_steps, 0);
+      EXPECT_EQ(fine.n_doubtful_steps, 0);
+      EXPECT_EQ(coarse.branches.size(), 40u);
+      expect_same(coarse, fine, 2e-8);
+    }
+}
+
+
+
+TEST(Branches, WindowsBetweenPointsAreFound)
+{
+  // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
+  for (const int n_steps : {5, 10, 20})
+    for (const double d : {0., 0.001, 0.01})
+      {
+        Family family;
+        family.stiffness = [](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); };
+        if (d > 0.)
+          family.damping = [d](double) { return matrix({{d, 0.}, {0., d}}); };
+        const double         half  = std::sqrt(0.07 * 0.07 - 5. * d * d);
+        const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
+        ASSERT_EQ(chart.thresholds.size(), 2u) << n_steps << " steps, d = " << d;
+        EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.5 - half, 1e-10);
+        EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.5 + half, 1e-10);
+        EXPECT_EQ(chart.n_doubtful_steps, 0);
+      }
+}
+
+
+
+TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
+{
+  Flutter      flutter;
+  Family       family         = flutter.family();
+  ChartOptions options        = precise();
+  options.maximum_refinements = 0;
+  const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), options);
+  ASSERT_EQ(chart.thresholds.size(), 1u);
+  EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.9, 1e-12);
+  EXPECT_NEAR(chart.thresholds[0].uncertainty, 0.1, 1e-12);
+}
+
+
+
+TEST(Branches, CoordinatesInABasisThatGrows)
+{
+  Flutter              flutter;
+  Family               family = flutter.family();
+  const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
+  int                  n_rows = 2;
+  family.disturb              = [&n_rows](ChartPoint &point) {
+    ++n_rows;
+    for (auto *vectors : {&point.right, &point.left})
+      *vectors = with_rows(*vectors, n_rows);
+  };
+  const StabilityChart other = family.chart(uniform_grid(0., 2., 10), precise());
+  ASSERT_EQ(other.points.size(), chart.points.size());
+  expect_same(chart, other, 1e-12);
+}
+
+
+
+TEST(Branches, Refusals)
+{
+  Family family = Flutter().family();
+  EXPECT_TRUE(family.chart({}, precise()).points.empty());
+  const StabilityChart single = family.chart({0.3}, precise());
+  EXPECT_EQ(single.branches.size(), 2u);
+  EXPECT_EQ(single.counts.front().n_modes, 2);
+  EXPECT_THROW(family.chart({0.2, 0.1}, precise()), Error);
+  EXPECT_THROW(family.chart({0.2, 0.2}, precise()), Error);
+  EXPECT_THROW(family.chart({0.1, 0.2}, ChartOptions()), Error);
+}
