@@ -2,13 +2,11 @@
 #include <squeal/bases/mode_labels.h>
 #include <squeal/linear_algebra/orthonormal_basis.h>
 
-#include <deal.II/base/tensor.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <limits>
-#include <numeric>
 
 namespace Squeal
 {
@@ -25,8 +23,8 @@ namespace Squeal
        * @param functions  n_nodes × n_functions
        * @param weights    n_nodes
        */
-      Projection(const DenseMatrix &functions, const std::vector<double> &weights)
-        : roots(as_column(weights).cwiseSqrt())
+      Projection(const DenseMatrix &functions, const Eigen::VectorXd &weights)
+        : roots(weights.cwiseSqrt())
         // Functions that others span (r^k on a single radius) are dropped
         , basis(
             orthonormal_basis(DenseMatrix(roots.asDiagonal() * functions), [](const double rest) { return independent.exceeded_by(rest); }))
@@ -35,36 +33,72 @@ namespace Squeal
           diagonal = diagonal > 0. ? diagonal : 1.;
       }
 
-      /// Energy of the projection of a field: the sum of its squared orthonormal coefficients.
-      double energy(const std::vector<double> &field) const
+      /// Energy of the projection of each field, n_nodes × k: the sum of its squared orthonormal coefficients.
+      Eigen::VectorXd energies(const DenseMatrix &fields) const
       {
-        return orthonormal_coefficients(field).squaredNorm();
+        return orthonormal_coefficients(fields).colwise().squaredNorm();
       }
 
       /// Factors of the functions in the projection of a field.
-      Eigen::VectorXd coefficients(const std::vector<double> &field) const
+      Eigen::VectorXd coefficients(const DenseMatrix &field) const
       {
         return basis.R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients(field));
       }
 
     private:
-      Eigen::VectorXd orthonormal_coefficients(const std::vector<double> &field) const
+      DenseMatrix orthonormal_coefficients(const DenseMatrix &fields) const
       {
-        return basis.Q.transpose() * roots.cwiseProduct(as_column(field));
+        return basis.Q.transpose() * (roots.asDiagonal() * fields);
       }
 
       Eigen::VectorXd               roots; ///< of the weights
       OrthonormalBasis<DenseMatrix> basis; ///< of the functions times the roots; dropped ones have ones on the diagonal of R
     };
 
-    /// Displacement of a node; clamped directions are at rest.
-    std::array<double, 3> displacement(const Node &node, const double *mode)
+    /// 1, x, x², ... as columns.
+    DenseMatrix powers(const Eigen::VectorXd &x, const int n_powers)
     {
-      std::array<double, 3> u;
-      for (unsigned int k = 0; k < 3; ++k)
-        u[k] = node.dofs[k] >= 0 ? mode[node.dofs[k]] : 0.;
-      return u;
+      DenseMatrix result = DenseMatrix::Ones(x.size(), n_powers);
+      for (int k = 1; k < n_powers; ++k)
+        result.col(k) = result.col(k - 1).cwiseProduct(x);
+      return result;
     }
+
+    /// Nodes of one component.
+    struct Nodes
+    {
+      std::vector<const Node *> nodes;
+      Eigen::MatrixX3d          positions; ///< [m]
+      Eigen::VectorXd           masses;    ///< [kg]
+
+      Nodes(const Model &model, const std::vector<double> &nodal_masses, const unsigned int component)
+      {
+        std::vector<double> chosen;
+        for (std::size_t i = 0; i < nodal_masses.size(); ++i)
+          if (model.nodes()[i].component == component)
+            {
+              nodes.push_back(&model.nodes()[i]);
+              chosen.push_back(nodal_masses[i]);
+            }
+        masses = as_column(chosen);
+        positions.resize(nodes.size(), 3);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          positions.row(i) = Eigen::RowVector3d::Map(nodes[i]->position.data());
+      }
+
+      /// Of a mode on all free dofs; clamped directions are at rest.
+      Eigen::MatrixX3d displacements(const Eigen::VectorXd &mode) const
+      {
+        Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(nodes.size(), 3);
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+          for (unsigned int k = 0; k < 3; ++k)
+            if (nodes[i]->dofs[k] >= 0)
+              u(i, k) = mode[nodes[i]->dofs[k]];
+        return u;
+      }
+    };
+
+    // -------------------------------------------------------------------- disc
 
     constexpr int n_radial_functions = 5;
     constexpr int largest_harmonic   = 16;
@@ -72,62 +106,39 @@ namespace Squeal
     /// Projections of disc fields on harmonics 0 ... largest_harmonic.
     struct DiscHarmonics
     {
-      std::vector<const Node *> nodes;
-      std::vector<double>       weights, cosines, sines;
-      double                    inner_radius, outer_radius;
-      std::vector<Projection>   harmonics;
+      Nodes                   disc;
+      Eigen::VectorXd         cosines, sines;
+      std::vector<Projection> harmonics;
 
       DiscHarmonics(const Model &model, const std::vector<double> &nodal_masses)
+        : disc(model, nodal_masses, 0)
       {
-        inner_radius = std::numeric_limits<double>::max();
-        outer_radius = 0.;
-        std::vector<double> radii;
-        for (std::size_t i = 0; i < model.nodes().size(); ++i)
-          if (const Node &node = model.nodes()[i]; node.component == 0)
-            {
-              const double r = std::hypot(node.position[0], node.position[1]);
-              nodes.push_back(&node);
-              weights.push_back(nodal_masses[i]);
-              radii.push_back(r);
-              cosines.push_back(r > 0. ? node.position[0] / r : 1.);
-              sines.push_back(r > 0. ? node.position[1] / r : 0.);
-              inner_radius = std::min(inner_radius, r);
-              outer_radius = std::max(outer_radius, r);
-            }
+        const Eigen::VectorXd radii = disc.positions.leftCols(2).rowwise().norm();
+        const Eigen::VectorXd theta =
+          disc.positions.col(1).binaryExpr(disc.positions.col(0), [](const double y, const double x) { return std::atan2(y, x); });
+        cosines = theta.array().cos();
+        sines   = theta.array().sin();
+
+        // Columns: powers of the radius, scaled to [-1, 1], times cosine, then times sine
+        const double      inner = radii.minCoeff(), outer = radii.maxCoeff();
+        const DenseMatrix radial = powers((2. * radii.array() - inner - outer) / (outer - inner), n_radial_functions);
         for (int n = 0; n <= largest_harmonic; ++n)
           {
-            // Columns: powers of the scaled radius times cosine, then times sine
-            DenseMatrix functions(nodes.size(), (n == 0 ? 1 : 2) * n_radial_functions);
-            for (std::size_t i = 0; i < nodes.size(); ++i)
-              {
-                const double s = scaled_radius(radii[i]), theta = std::atan2(sines[i], cosines[i]);
-                for (int k = 0; k < n_radial_functions; ++k)
-                  {
-                    functions(i, k) = std::pow(s, k) * std::cos(n * theta);
-                    if (n > 0)
-                      functions(i, n_radial_functions + k) = std::pow(s, k) * std::sin(n * theta);
-                  }
-              }
-            harmonics.emplace_back(std::move(functions), weights);
+            DenseMatrix functions(radii.size(), (n == 0 ? 1 : 2) * n_radial_functions);
+            functions.leftCols(n_radial_functions) = (n * theta).array().cos().matrix().asDiagonal() * radial;
+            if (n > 0)
+              functions.rightCols(n_radial_functions) = (n * theta).array().sin().matrix().asDiagonal() * radial;
+            harmonics.emplace_back(functions, disc.masses);
           }
-      }
-
-      double scaled_radius(const double r) const
-      {
-        return (2. * r - inner_radius - outer_radius) / (outer_radius - inner_radius);
       }
 
       /// Axial, radial and circumferential displacement of the nodes.
-      std::array<std::vector<double>, 3> cylindrical(const double *mode) const
+      Eigen::MatrixX3d cylindrical(const Eigen::VectorXd &mode) const
       {
-        std::array<std::vector<double>, 3> fields;
-        for (std::size_t i = 0; i < nodes.size(); ++i)
-          {
-            const auto u = displacement(*nodes[i], mode);
-            fields[0].push_back(u[2]);
-            fields[1].push_back(u[0] * cosines[i] + u[1] * sines[i]);
-            fields[2].push_back(-u[0] * sines[i] + u[1] * cosines[i]);
-          }
+        const Eigen::MatrixX3d u = disc.displacements(mode);
+        Eigen::MatrixX3d       fields(u.rows(), 3);
+        fields << u.col(2), cosines.cwiseProduct(u.col(0)) + sines.cwiseProduct(u.col(1)),
+          cosines.cwiseProduct(u.col(1)) - sines.cwiseProduct(u.col(0));
         return fields;
       }
 
@@ -137,63 +148,87 @@ namespace Squeal
        * nodal line pattern may be turned, so the amplitudes are taken along
        * their common direction in the cosine-sine plane.
        */
-      int nodal_circles(const std::vector<double> &field, const int n) const
+      int nodal_circles(const Eigen::VectorXd &field, const int n) const
       {
         // Profile a(r) cos nθ + b(r) sin nθ
-        constexpr int n_samples = 41;
-        const auto    profile   = radial_profile(field, n, n_samples);
+        constexpr int         n_samples = 41;
+        const DenseMatrix     radial    = powers(Eigen::VectorXd::LinSpaced(n_samples, -1., 1.), n_radial_functions);
+        const Eigen::VectorXd factors   = harmonics[n].coefficients(field);
+        const Eigen::VectorXd a         = radial * factors.head(n_radial_functions);
+        Eigen::VectorXd       b         = Eigen::VectorXd::Zero(n_samples);
+        if (n > 0)
+          b = radial * factors.tail(n_radial_functions);
 
         // Common direction: dominant axis of Σ (a, b)ᵀ(a, b)
-        double aa = 0., ab = 0., bb = 0.;
-        for (const auto &[a, b] : profile)
-          {
-            aa += a * a;
-            ab += a * b;
-            bb += b * b;
-          }
-        const double        angle   = 0.5 * std::atan2(2. * ab, aa - bb);
-        double              largest = 0.;
-        std::vector<double> amplitude;
-        for (const auto &[a, b] : profile)
-          {
-            amplitude.push_back(a * std::cos(angle) + b * std::sin(angle));
-            largest = std::max(largest, std::abs(amplitude.back()));
-          }
+        const double          angle     = 0.5 * std::atan2(2. * a.dot(b), a.squaredNorm() - b.squaredNorm());
+        const Eigen::VectorXd amplitude = std::cos(angle) * a + std::sin(angle) * b;
 
         // Changes between values that are clearly different from zero
-        constexpr double clear = 0.1;
-        int              sign = 0, changes = 0;
+        constexpr double clear   = 0.1;
+        const double     largest = max_norm(amplitude);
+        int              changes = 0;
+        double           last    = 0.;
         for (const double value : amplitude)
           if (std::abs(value) > clear * largest)
             {
-              const int new_sign = value > 0. ? 1 : -1;
-              changes += sign != 0 && new_sign != sign;
-              sign = new_sign;
+              changes += last * value < 0.;
+              last = value;
             }
         return changes;
       }
-
-    private:
-      /// (a, b) at equidistant radii of the projection Σ_k s^k (a_k cos nθ + b_k sin nθ).
-      std::vector<std::pair<double, double>> radial_profile(const std::vector<double> &field, const int n, const int n_samples) const
-      {
-        const auto                             factors = harmonics[n].coefficients(field);
-        std::vector<std::pair<double, double>> profile;
-        for (int i = 0; i < n_samples; ++i)
-          {
-            const double s = -1. + 2. * i / (n_samples - 1);
-            double       a = 0., b = 0.;
-            for (int k = 0; k < n_radial_functions; ++k)
-              {
-                a += factors[k] * std::pow(s, k);
-                if (n > 0)
-                  b += factors[n_radial_functions + k] * std::pow(s, k);
-              }
-            profile.emplace_back(a, b);
-          }
-        return profile;
-      }
     };
+
+    // -------------------------------------------------------------------- pins
+
+    /// The axis of a pin, through the centre of its contact nodes along their mean normal.
+    struct PinAxis
+    {
+      Eigen::Vector3d centre = Eigen::Vector3d::Zero(), direction = Eigen::Vector3d::Zero();
+      int             n_contact = 0;
+    };
+
+    std::map<unsigned int, PinAxis> pin_axes(const ContactInterface &interface)
+    {
+      std::map<unsigned int, PinAxis> axes;
+      for (const ContactNode &contact : interface)
+        {
+          PinAxis &axis = axes[contact.pin];
+          axis.centre += Eigen::Vector3d::Map(contact.position.data());
+          axis.direction += Eigen::Vector3d::Map(contact.normal.data());
+          ++axis.n_contact;
+        }
+      for (auto &[pin, axis] : axes)
+        {
+          axis.centre /= axis.n_contact;
+          axis.direction.normalize();
+        }
+      return axes;
+    }
+
+    /// Adds the energies of bending, torsion and stretching of each mode, 3 × k: of its projections on polynomials of the height.
+    void add_energies(const Nodes &pin, const PinAxis &axis, const DenseMatrix &modes, DenseMatrix &energies)
+    {
+      constexpr int          n_height_functions = 4;
+      const Eigen::Vector3d  along              = axis.direction;
+      const Eigen::MatrixX3d places             = pin.positions.rowwise() - axis.centre.transpose();
+      const Eigen::VectorXd  heights            = places * along;
+      const Eigen::MatrixX3d arms               = places - heights * along.transpose();
+      const Eigen::VectorXd  radii              = arms.rowwise().norm();
+      Eigen::MatrixX3d       around             = arms.rowwise().cross(along); // unit vectors about the axis, zero on it
+      for (Eigen::Index i = 0; i < radii.size(); ++i)
+        around.row(i) /= radii[i] > 0. ? radii[i] : 1.;
+
+      const DenseMatrix functions = powers(heights / max_norm(heights), n_height_functions);
+      const Projection  translation(functions, pin.masses), torsion(radii.asDiagonal() * functions, pin.masses);
+      for (Eigen::Index m = 0; m < modes.cols(); ++m)
+        {
+          const Eigen::MatrixX3d u       = pin.displacements(modes.col(m));
+          const Eigen::VectorXd  axially = u * along;
+          energies(0, m) += translation.energies(u - axially * along.transpose()).sum();
+          energies(1, m) += torsion.energies(u.cwiseProduct(around).rowwise().sum()).sum();
+          energies(2, m) += translation.energies(axially).sum();
+        }
+    }
   } // namespace
 
   std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
@@ -201,142 +236,43 @@ namespace Squeal
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::axial, ModeFamily::radial, ModeFamily::circumferential}};
     const DiscHarmonics                 disc(model, nodal_masses);
     std::vector<ModeLabel>              labels;
-    for (int j = 0; j < modes.cols(); ++j)
+    for (Eigen::Index j = 0; j < modes.cols(); ++j)
       {
-        const auto fields = disc.cylindrical(modes.col(j).data());
+        const Eigen::MatrixX3d fields = disc.cylindrical(modes.col(j));
 
         // Harmonic of the largest energy, the three directions together
-        double                largest = -1.;
-        int                   n_best  = 0;
-        std::array<double, 3> energies{};
+        DenseMatrix energies(3, largest_harmonic + 1);
         for (int n = 0; n <= largest_harmonic; ++n)
-          {
-            std::array<double, 3> e;
-            for (unsigned int d = 0; d < 3; ++d)
-              e[d] = disc.harmonics[n].energy(fields[d]);
-            if (const double sum = e[0] + e[1] + e[2]; sum > largest)
-              {
-                largest  = sum;
-                n_best   = n;
-                energies = e;
-              }
-          }
-
-        const unsigned int family = std::max_element(energies.begin(), energies.end()) - energies.begin();
-        labels.push_back({families[family], disc.nodal_circles(fields[family], n_best), n_best});
+          energies.col(n) = disc.harmonics[n].energies(fields);
+        Eigen::Index diameters, family;
+        energies.colwise().sum().maxCoeff(&diameters);
+        energies.col(diameters).maxCoeff(&family);
+        labels.push_back(
+          {families[family], disc.nodal_circles(fields.col(family), static_cast<int>(diameters)), static_cast<int>(diameters)});
       }
     return labels;
   }
-
-  namespace
-  {
-    using Vector = dealii::Tensor<1, 3>;
-
-    Vector vector(const std::array<double, 3> &components)
-    {
-      return Vector({components[0], components[1], components[2]});
-    }
-
-    /// A pin with its axis, through the centre of its contact nodes along their mean normal.
-    struct Pin
-    {
-      Vector                    centre, axis;
-      double                    n_contact = 0.;
-      std::vector<const Node *> nodes;
-      std::vector<double>       weights; ///< masses of the nodes [kg]
-
-      Vector from_centre(const Node &node) const
-      {
-        return vector(node.position) - centre;
-      }
-
-      /// The part of a vector across the axis.
-      Vector across(const Vector &v) const
-      {
-        return v - (v * axis) * axis;
-      }
-    };
-
-    std::map<unsigned int, Pin> pins_of(const Model &model, const ContactInterface &interface, const std::vector<double> &nodal_masses)
-    {
-      std::map<unsigned int, Pin> pins;
-      for (const ContactNode &contact : interface)
-        {
-          Pin &pin = pins[contact.pin];
-          pin.n_contact += 1.;
-          pin.centre += vector(contact.position);
-          pin.axis += vector(contact.normal);
-        }
-      for (auto &[number, pin] : pins)
-        {
-          pin.centre /= pin.n_contact;
-          pin.axis /= pin.axis.norm();
-        }
-      for (std::size_t i = 0; i < model.nodes().size(); ++i)
-        if (const auto pin = pins.find(model.nodes()[i].component); pin != pins.end())
-          {
-            pin->second.nodes.push_back(&model.nodes()[i]);
-            pin->second.weights.push_back(nodal_masses[i]);
-          }
-      return pins;
-    }
-
-    /// Adds the energies of bending, torsion and stretching of each mode: of its projections on polynomials of the height.
-    void add_energies(const Pin &pin, const DenseMatrix &modes, std::vector<std::array<double, 3>> &energies)
-    {
-      constexpr int     n_height_functions = 4;
-      const std::size_t n                  = pin.nodes.size();
-      double            height             = 0.;
-      for (const Node *node : pin.nodes)
-        height = std::max(height, std::abs(pin.from_centre(*node) * pin.axis));
-      DenseMatrix powers(n, n_height_functions), radius_powers(n, n_height_functions);
-      for (std::size_t i = 0; i < n; ++i)
-        for (int p = 0; p < n_height_functions; ++p)
-          {
-            const Vector d      = pin.from_centre(*pin.nodes[i]);
-            powers(i, p)        = std::pow(d * pin.axis / height, p);
-            radius_powers(i, p) = pin.across(d).norm() * powers(i, p);
-          }
-      const Projection translation(powers, pin.weights), torsion(radius_powers, pin.weights);
-
-      std::vector<double> u_axial(n), u_turning(n), u_across[3] = {u_axial, u_axial, u_axial};
-      for (int m = 0; m < modes.cols(); ++m)
-        {
-          for (std::size_t i = 0; i < n; ++i)
-            {
-              const Vector u = vector(displacement(*pin.nodes[i], modes.col(m).data())), d = pin.across(pin.from_centre(*pin.nodes[i]));
-              u_axial[i]   = u * pin.axis;
-              u_turning[i] = d.norm() > 0. ? dealii::cross_product_3d(d, u) * pin.axis / d.norm() : 0.;
-              for (unsigned int k = 0; k < 3; ++k)
-                u_across[k][i] = pin.across(u)[k];
-            }
-          for (const auto &component : u_across)
-            energies[m][0] += translation.energy(component);
-          energies[m][1] += torsion.energy(u_turning);
-          energies[m][2] += translation.energy(u_axial);
-        }
-    }
-  } // namespace
 
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,
                                     const std::vector<double> &nodal_masses,
                                     const DenseMatrix         &modes)
   {
-    const auto                         pins = pins_of(model, interface, nodal_masses);
-    std::vector<std::array<double, 3>> energies(modes.cols(), std::array<double, 3>{});
-    for (const auto &[number, pin] : pins)
-      add_energies(pin, modes, energies);
+    const auto  axes     = pin_axes(interface);
+    DenseMatrix energies = DenseMatrix::Zero(3, modes.cols());
+    for (const auto &[pin, axis] : axes)
+      add_energies(Nodes(model, nodal_masses, pin), axis, modes, energies);
 
     // Numbers within each family, by the number of modes that every pin has of it
     constexpr std::array<ModeFamily, 3> families = {{ModeFamily::flexural, ModeFamily::torsional, ModeFamily::longitudinal}};
     std::vector<ModeLabel>              labels;
     std::array<int, 3>                  count{};
-    const int                           n_pins    = pins.size();
+    const int                           n_pins    = axes.size();
     const std::array<int, 3>            per_order = {{2 * n_pins, n_pins, n_pins}};
-    for (const auto &e : energies)
+    for (Eigen::Index m = 0; m < modes.cols(); ++m)
       {
-        const unsigned int f = std::max_element(e.begin(), e.end()) - e.begin();
+        Eigen::Index f;
+        energies.col(m).maxCoeff(&f);
         labels.push_back({families[f], 0, 0, count[f]++ / per_order[f] + 1});
       }
     return labels;
