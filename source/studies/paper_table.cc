@@ -1,13 +1,12 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/paper_table.h>
+#include <squeal/studies/parameter_usage.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <optional>
-#include <tuple>
 
 namespace Squeal
 {
@@ -140,29 +139,13 @@ namespace Squeal
       return nullptr;
     }
 
-    // ---------------------------------------------------- what the paper looks at
-
-    /// Shape, without the mesh.
-    auto values(const GeometryParameters &g)
+    /// Whether one of the parameters that the @p paths name, "Section/Name" or "Section/", differs from its default.
+    bool differs(const Parameters &parameters, const std::vector<std::string> &paths)
     {
-      return std::tie(g.disc_inner_radius, g.disc_outer_radius, g.disc_thickness, g.pin_diameter, g.pin_height, g.top.radii, g.top.angles,
-                      g.bottom.radii, g.bottom.angles);
-    }
-
-    auto values(const Material &m)
-    {
-      return std::tie(m.young_modulus, m.poisson_ratio, m.density, m.rayleigh_alpha, m.rayleigh_beta);
-    }
-
-    auto values(const ElasticMount &m)
-    {
-      return std::tie(m.surface, m.radial, m.tangential, m.axial);
-    }
-
-    /// Operation, without the sense of rotation, which changes nothing here, and the dissipation, which Table 1 has both without and with.
-    auto values(const OperationParameters &o)
-    {
-      return std::tie(o.friction_coefficient, o.rotation_speed, o.load_per_side, o.friction_slope);
+      const std::vector<std::string> changed = changed_parameters(parameters);
+      return std::any_of(changed.begin(), changed.end(), [&](const std::string &parameter) {
+        return std::any_of(paths.begin(), paths.end(), [&](const std::string &path) { return concerns(path, parameter); });
+      });
     }
 
     /// A quantity of a mode in the paper and in the run.
@@ -200,21 +183,19 @@ namespace Squeal
 
   bool is_paper_scene(const Parameters &parameters)
   {
-    const Parameters  paper;
-    const std::string file      = std::filesystem::path(parameters.geometry.file).filename().string();
-    const auto        is_equal  = [](const ElasticMount &a, const ElasticMount &b) { return values(a) == values(b); };
-    const auto       &mounts    = parameters.materials.mounts;
-    const auto       &published = paper.materials.mounts;
-    return file == paper.geometry.file && values(parameters.geometry) == values(paper.geometry) &&
-           values(parameters.materials.disc) == values(paper.materials.disc) &&
-           values(parameters.materials.pin) == values(paper.materials.pin) &&
-           std::equal(mounts.begin(), mounts.end(), published.begin(), published.end(), is_equal) &&
+    return std::filesystem::path(parameters.geometry.file).filename() == Parameters().geometry.file &&
+           !differs(parameters,
+                    {"Geometry/Disc inner radius", "Geometry/Disc outer radius", "Geometry/Disc thickness", "Geometry/Pin diameter",
+                     "Geometry/Pin height", "Geometry/Top pin radii", "Geometry/Top pin angles", "Geometry/Bottom pin radii",
+                     "Geometry/Bottom pin angles", "Disc material/", "Pin material/", "Mounts/"}) &&
            (parameters.sliding.gaps.empty() || !parameters.needs_steady_sliding());
   }
 
   bool is_paper_operation(const Parameters &parameters)
   {
-    return values(parameters.operation) == values(Parameters().operation) && parameters.damping.modal_ratios.empty();
+    // The sense of rotation changes nothing here, and Table 1 has modes both without and with radial dissipation.
+    return !differs(parameters, {"Operation/Friction coefficient", "Operation/Rotation speed", "Operation/Load per side",
+                                 "Operation/Friction slope", "Damping/"});
   }
 
   const std::array<PaperRange, 2> paper_ranges_damped = {{{F1, -1.76, -1.07, 2}, {T1, -2.34, -1.41, 1}}};

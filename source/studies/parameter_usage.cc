@@ -8,6 +8,11 @@
 
 namespace Squeal
 {
+  bool concerns(const std::string &path, const std::string &parameter)
+  {
+    return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
+  }
+
   namespace
   {
     // --------------------------------------------------------------------- rules
@@ -88,12 +93,6 @@ namespace Squeal
       return table;
     }
 
-    /// Whether the @p path of a rule, "Section/Name" or "Section/", is that of a parameter or of its section.
-    bool concerns(const std::string &path, const std::string &parameter)
-    {
-      return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
-    }
-
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
@@ -119,23 +118,20 @@ namespace Squeal
       const std::string section = "Geometry/";
       return boost::starts_with(path, section) ? boost::replace_all_copy(boost::to_lower_copy(path.substr(section.size())), " ", "_") : "";
     }
-
-    // ------------------------------------------------------------------- changes
-
-    /// Paths of the parameters that differ from their defaults.
-    std::vector<std::string> changed_parameters(Parameters parameters)
-    {
-      Parameters   defaults;
-      Declarations known, present;
-      defaults.declare(known);
-      parameters.declare(present);
-      std::vector<std::string> changed;
-      for (const DeclaredParameter &parameter : present.parameters())
-        if (const DeclaredParameter *other = known.find(parameter.path); other == nullptr || other->print() != parameter.print())
-          changed.push_back(parameter.path);
-      return changed;
-    }
   } // namespace
+
+  std::vector<std::string> changed_parameters(Parameters parameters)
+  {
+    Parameters   defaults;
+    Declarations known, present;
+    defaults.declare(known);
+    parameters.declare(present);
+    std::vector<std::string> changed;
+    for (const DeclaredParameter &parameter : present.parameters())
+      if (const DeclaredParameter *other = known.find(parameter.path); other == nullptr || other->print() != parameter.print())
+        changed.push_back(parameter.path);
+    return changed;
+  }
 
   Reason no_sliding_speed(const Parameters &parameters)
   {

@@ -26,6 +26,12 @@ namespace Squeal
   /// Why the sliding speed damps nothing; null if it does. For studies that do not show it either.
   Reason no_sliding_speed(const Parameters &parameters);
 
+  /// Paths of the parameters that differ from their defaults.
+  std::vector<std::string> changed_parameters(Parameters parameters);
+
+  /// Whether @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
+  bool concerns(const std::string &path, const std::string &parameter);
+
   /// Paths of all parameters, and sections with "/" at the end, that some run does not use.
   std::vector<std::string> conditional_parameters();
 } // namespace Squeal
