@@ -83,7 +83,7 @@ namespace Squeal
     {
       Sample             sample = evaluate(lambda);
       ComplexDenseMatrix F      = sample.matrix;
-      F = current.factors->solve(F);
+      F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
       // A NaN must not reach LAPACK.
