@@ -131,7 +131,7 @@ namespace
 TEST(ContactProblem, TwoSpringsClosedForm)
 {
   // Springs of flexibility 1 and 2 under one plate, the second with a gap of 3: it closes when the first is compressed by 3.
-  const DenseMatrix F     = matrix({{1., 0.}, {0., 2.}}), zero(2, 2);
+  const DenseMatrix F = matrix({{1., 0.}, {0., 2.}}), zero = DenseMatrix::Zero(2, 2);
   const auto        light = solve_contact(pressed(F, zero, 0.4, {0., -3.}, 2.));
   EXPECT_EQ(light.closed, (std::vector<bool>{true, false}));
   EXPECT_DOUBLE_EQ(light.reactions[0], -2.);
