@@ -74,7 +74,7 @@ namespace Squeal
 
   std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
   {
-    const ComplexDenseMatrix X = with_rows(ComplexDenseMatrix(point.right(Eigen::all, modes)), reduced->size());
+    const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
     return {reduced->reduced().basis() * DenseMatrix(X.real()), reduced->reduced().basis() * DenseMatrix(X.imag())};
   }
 

@@ -81,7 +81,8 @@ namespace Squeal
         for (const int j : block.second)
           farthest = std::max(farthest, std::abs(x - lambda[j]));
       const auto add_overlaps = [&](const ComplexDenseMatrix &before, const ComplexDenseMatrix &after) {
-        overlaps += 0.5 * (columns(before, block.first, r).adjoint() * columns(after, block.second, r)).cwiseAbs2();
+        overlaps +=
+          0.5 * (with_rows(before(Eigen::all, block.first), r).adjoint() * with_rows(after(Eigen::all, block.second), r)).cwiseAbs2();
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);

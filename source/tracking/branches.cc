@@ -60,11 +60,6 @@ namespace Squeal
     return !divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag());
   }
 
-  ComplexDenseMatrix columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen, const Eigen::Index n_rows)
-  {
-    return with_rows(ComplexDenseMatrix(X(Eigen::all, chosen)), n_rows);
-  }
-
   bool is_growing(const std::complex<double> &lambda)
   {
     return lambda.real() > 0. && divergent.exceeded_by(lambda.real() / lambda.imag());

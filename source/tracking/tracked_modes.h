@@ -97,9 +97,6 @@ namespace Squeal
   /// The chart, with what the searches have found.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);
 
-  /// Some columns of X, of @p n_rows rows.
-  ComplexDenseMatrix columns(const ComplexDenseMatrix &X, const std::vector<int> &chosen, Eigen::Index n_rows);
-
   /// |Re λ| / Im λ is nothing but rounding errors.
   bool is_neutral(const std::complex<double> &lambda);
 } // namespace Squeal

@@ -25,7 +25,7 @@ namespace Squeal
     return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
   }
 
-  /// A X of a real and a complex matrix: two real products.
+  /// A X of a real and a complex matrix: one real product with [Re X, Im X].
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
 
   /// [Re X, Im X].
@@ -41,10 +41,11 @@ namespace Squeal
   DenseMatrix append_columns(const DenseMatrix &X, const DenseMatrix &Y);
 
   /// The matrix with rows of zeros appended, or its last rows left out.
-  template <typename Matrix>
-  Matrix with_rows(Matrix A, const Eigen::Index n_rows)
+  template <typename Derived>
+  typename Derived::PlainObject with_rows(const Eigen::MatrixBase<Derived> &A, const Eigen::Index n_rows)
   {
-    A.conservativeResizeLike(Matrix::Zero(n_rows, A.cols()));
-    return A;
+    typename Derived::PlainObject result = A;
+    result.conservativeResizeLike(Derived::PlainObject::Zero(n_rows, A.cols()));
+    return result;
   }
 } // namespace Squeal
