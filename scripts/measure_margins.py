@@ -24,10 +24,10 @@ LEAST_MARGIN = 2.0
 
 # Quantities that vary continuously over a sweep and pass through their threshold somewhere: what they decide is refined
 # until it no longer matters (doc/decisions.md), but a margin they cannot have.
-CONTINUOUS = {"divergence rate of a mode of a chart", "difference of two eigenvalues / their modulus",
+CONTINUOUS = {"difference of two eigenvalues / their modulus",
               "divergence rate of a mode among others of nearly the same lambda",
               "Im / modulus of the square of a difference of two eigenvalues",
-              "divergence rate of a complex mode / its uncertainty"}
+              "growth rate of a mode / its uncertainty"}
 
 
 @dataclasses.dataclass

@@ -106,7 +106,7 @@ Decides whether a disc rubbed by friction pins squeals.
       }
     catch (const int code)
       {
-        // Epetra throws its error codes.
+        // Trilinos throws error codes.
         return "Trilinos failed with code " + std::to_string(code) + "\n  where:  distributed vectors and matrices" + defect;
       }
   }

@@ -8,12 +8,6 @@
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
 
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_Map.h>
-#include <Epetra_MpiComm.h>
-#include <Epetra_MultiVector.h>
-#include <Epetra_Vector.h>
-
 #include <Eigen/LU>
 
 #include <boost/serialization/complex.hpp>

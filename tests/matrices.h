@@ -1,9 +1,8 @@
 #pragma once
 
-#include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
-#include <Epetra_MpiComm.h>
-#include <Epetra_Vector.h>
+#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 #include <array>
@@ -22,42 +21,31 @@ namespace Squeal::Testing
     last_process_all     ///< only the last process has rows
   };
 
-  inline Epetra_Map rows(const int n, const Distribution distribution = Distribution::even)
+  inline RowMap rows(const int n, const Distribution distribution = Distribution::even)
   {
-    const Epetra_MpiComm comm(MPI_COMM_WORLD);
-    const int            n_processes = comm.NumProc(), rank = comm.MyPID();
+    const int n_processes = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD),
+              rank        = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
     if (n_processes == 1 || distribution == Distribution::even)
-      return Epetra_Map(n, 0, comm);
+      return RowMap::even(n, MPI_COMM_WORLD);
     if (distribution == Distribution::last_process_all)
-      return Epetra_Map(n, rank == n_processes - 1 ? n : 0, 0, comm);
+      return RowMap::contiguous(rank == n_processes - 1 ? n : 0, MPI_COMM_WORLD);
     const int share = n / (n_processes - 1);
-    const int mine  = rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share);
-    return Epetra_Map(n, mine, 0, comm);
+    return RowMap::contiguous(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
   }
 
   using Row = std::map<int, double>; ///< column to entry
 
   /// A sparse matrix whose row i is @p row(i).
-  inline std::shared_ptr<SparseMatrix> sparse(const Epetra_Map &row_map, const Epetra_Map &column_map, const std::function<Row(int)> &row)
+  inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const std::function<Row(int)> &row)
   {
-    auto A = std::make_shared<SparseMatrix>(Copy, row_map, 0);
-    for (int i = 0; i < row_map.NumMyElements(); ++i)
-      {
-        std::vector<int>    columns;
-        std::vector<double> values;
-        for (const auto &[j, value] : row(row_map.GID(i)))
-          {
-            columns.push_back(j);
-            values.push_back(value);
-          }
-        A->InsertGlobalValues(row_map.GID(i), columns.size(), values.data(), columns.data());
-      }
-    A->FillComplete(column_map, row_map);
-    return A;
+    return std::make_shared<SparseMatrix>(row_map, column_map, [&](const int i, SparseMatrix::Row &entries) {
+      const Row given = row(row_map.number(i));
+      entries.assign(given.begin(), given.end());
+    });
   }
 
   /// diag(f(0), f(1), ...).
-  inline std::shared_ptr<SparseMatrix> diagonal(const Epetra_Map &row_map, const std::function<double(int)> &f)
+  inline std::shared_ptr<SparseMatrix> diagonal(const RowMap &row_map, const std::function<double(int)> &f)
   {
     return sparse(row_map, row_map, [&](const int i) { return Row{{i, f(i)}}; });
   }
@@ -68,7 +56,7 @@ namespace Squeal::Testing
    */
   inline std::shared_ptr<SparseMatrix> laplacian(const int m, const int n_copies, const Distribution distribution = Distribution::even)
   {
-    const Epetra_Map map = rows(m * m * m * n_copies, distribution);
+    const RowMap map = rows(m * m * m * n_copies, distribution);
     return sparse(map, map, [m](const int i) {
       Row row{{i, 6.}};
       for (const int step : {1, m, m * m})
@@ -150,9 +138,9 @@ namespace Squeal::Testing
             }
       }
 
-    const int        nx = cells[0] + 1, ny = cells[1] + 1, nz = cells[2] + 1;
-    const Epetra_Map map      = rows(3 * nx * ny * nz, distribution);
-    const auto       assemble = [&](const auto &element, const double spring) {
+    const int    nx = cells[0] + 1, ny = cells[1] + 1, nz = cells[2] + 1;
+    const RowMap map      = rows(3 * nx * ny * nz, distribution);
+    const auto   assemble = [&](const auto &element, const double spring) {
       return sparse(map, map, [&](const int dof) {
         Row       row;
         const int node = dof / 3, component = dof % 3;

@@ -3,7 +3,7 @@
 #include <squeal/assembly/elasticity.h>
 #include <squeal/contact/coupled_system.h>
 #include <squeal/geometry/extrusion.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>
 
 #include <array>
@@ -165,6 +165,16 @@ namespace Squeal::Testing
 
   // ------------------------------------------------------------------ scenes
 
+  /// Couples bodies given by symmetric matrices.
+  inline CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping = {})
+  {
+    std::vector<Term> terms = {sparse_term("stiffness of the bodies", 0, {}, bodies.stiffness),
+                               sparse_term("mass of the bodies", 2, {}, bodies.mass)};
+    if (bodies.damping)
+      terms.push_back(sparse_term("damping of the bodies", 1, {}, bodies.damping));
+    return Squeal::couple(terms, contact, damping);
+  }
+
   /// A mesh with all that is computed from it before any modes.
   struct Scene
   {
@@ -231,8 +241,8 @@ namespace Squeal::Testing
         {
           const Point3 value = u(node.position);
           for (unsigned int k = 0; k < 3; ++k)
-            if (node.dofs[k] >= 0 && model.free_map().MyGID(node.dofs[k]))
-              result.ReplaceGlobalValue(node.dofs[k], 0, value[k]);
+            if (const int i = result.map().place(node.dofs[k]); i >= 0)
+              result(i, 0) = value[k];
         }
     return result;
   }

@@ -1,7 +1,9 @@
 #include <squeal/assembly/cell_integrals.h>
 
-#include <deal.II/lac/trilinos_sparse_matrix.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparse_matrix.h>
+
+#include <algorithm>
 
 namespace Squeal
 {
@@ -9,71 +11,78 @@ namespace Squeal
 
   namespace
   {
-    /// Numbers of a cell's free dofs; local positions of the clamped ones are left out.
-    struct FreeDofs
+    /// A free dof of a cell, and its place among the rows of this process; -1 for those of others.
+    struct FreeDof
     {
-      std::vector<TrilinosWrappers::types::int_type> numbers;
-      std::vector<unsigned int>                      local;
-
-      void reinit(const Model &model, const std::vector<types::global_dof_index> &cell_dofs)
-      {
-        numbers.clear();
-        local.clear();
-        for (unsigned int i = 0; i < cell_dofs.size(); ++i)
-          if (const int number = model.free_dof(cell_dofs[i]); number >= 0)
-            {
-              numbers.push_back(number);
-              local.push_back(i);
-            }
-      }
+      unsigned int in_cell;
+      int          number, row;
     };
 
-    void add_to(TrilinosWrappers::SparseMatrix &matrix, const FreeDofs &dofs, const FullMatrix<double> &cell_matrix)
+    /// Free dofs of a cell: nothing is integrated over clamped ones.
+    std::vector<FreeDof> free_dofs(const Model &model, const Cell &cell)
     {
-      const unsigned int                   n = dofs.numbers.size();
-      std::vector<types::global_dof_index> columns(dofs.numbers.begin(), dofs.numbers.end());
-      std::vector<double>                  values(n);
-      for (unsigned int i = 0; i < n; ++i)
-        {
-          for (unsigned int j = 0; j < n; ++j)
-            values[j] = cell_matrix(dofs.local[i], dofs.local[j]);
-          matrix.add(columns[i], columns, values);
-        }
+      std::vector<types::global_dof_index> dofs(cell->get_fe().n_dofs_per_cell());
+      cell->get_dof_indices(dofs);
+      std::vector<FreeDof> result;
+      for (unsigned int i = 0; i < dofs.size(); ++i)
+        if (const int number = model.free_dof(dofs[i]); number >= 0)
+          result.push_back({i, number, model.free_map().place(number)});
+      return result;
     }
   } // namespace
 
-  std::shared_ptr<const SparseMatrix> assemble_cells(const Model &model, const CellPredicate &contributes, const CellIntegral &integral)
+  std::vector<std::shared_ptr<const SparseMatrix>> assemble_cells(const Model                     &model,
+                                                                  const CellPredicate             &contributes,
+                                                                  const std::vector<CellIntegral> &integrals)
   {
-    IndexSet owned(model.free_map().NumGlobalElements());
-    if (model.free_map().NumMyElements() > 0)
-      owned.add_range(model.free_map().MinMyGID(), model.free_map().MaxMyGID() + 1);
-    TrilinosWrappers::SparsityPattern    pattern(owned, model.communicator());
-    const unsigned int                   n = model.dof_handler().get_fe().n_dofs_per_cell();
-    std::vector<types::global_dof_index> cell_dofs(n);
-    FreeDofs                             free;
-    const auto                           for_cells = [&](const std::function<void(const Cell &)> &action) {
+    // Every process knows every cell and integrates those that have one of its rows: at the borders more than one does, and
+    // nothing is sent.
+    const RowMap &map       = model.free_map();
+    const auto    for_cells = [&](const std::function<void(const Cell &, const std::vector<FreeDof> &)> &action) {
       for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned() && contributes(cell))
+        if (contributes(cell))
           {
-            cell->get_dof_indices(cell_dofs);
-            free.reinit(model, cell_dofs);
-            action(cell);
+            const std::vector<FreeDof> dofs = free_dofs(model, cell);
+            if (std::any_of(dofs.begin(), dofs.end(), [](const FreeDof &dof) { return dof.row >= 0; }))
+              action(cell, dofs);
           }
     };
-    for_cells([&](const Cell &) {
-      for (const auto row : free.numbers)
-        pattern.add_entries(row, free.numbers.begin(), free.numbers.end());
-    });
-    pattern.compress();
 
-    TrilinosWrappers::SparseMatrix matrix;
-    FullMatrix<double>             cell_matrix(n, n);
-    matrix.reinit(pattern);
-    for_cells([&](const Cell &cell) {
-      integral(cell, cell_matrix);
-      add_to(matrix, free, cell_matrix);
+    DynamicSparsityPattern rows(map.n_local(), map.n());
+    for_cells([&](const Cell &, const std::vector<FreeDof> &dofs) {
+      std::vector<types::global_dof_index> columns;
+      for (const FreeDof &dof : dofs)
+        columns.push_back(dof.number);
+      for (const FreeDof &dof : dofs)
+        if (dof.row >= 0)
+          rows.add_entries(dof.row, columns.begin(), columns.end());
     });
-    matrix.compress(VectorOperation::add);
-    return std::make_shared<SparseMatrix>(static_cast<const SparseMatrix &>(matrix.trilinos_matrix()));
+    SparsityPattern pattern;
+    pattern.copy_from(rows);
+    rows.reinit(0, 0);
+
+    std::vector<dealii::SparseMatrix<double>> matrices(integrals.size());
+    for (dealii::SparseMatrix<double> &matrix : matrices)
+      matrix.reinit(pattern);
+    FullMatrix<double> cell_matrix(model.dof_handler().get_fe().n_dofs_per_cell());
+    for_cells([&](const Cell &cell, const std::vector<FreeDof> &dofs) {
+      for (std::size_t k = 0; k < integrals.size(); ++k)
+        {
+          integrals[k](cell, cell_matrix);
+          for (const FreeDof &i : dofs)
+            if (i.row >= 0)
+              for (const FreeDof &j : dofs)
+                matrices[k].add(i.row, j.number, cell_matrix(i.in_cell, j.in_cell));
+        }
+    });
+    std::vector<std::shared_ptr<const SparseMatrix>> result;
+    for (const dealii::SparseMatrix<double> &matrix : matrices)
+      result.push_back(std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) {
+        // Left out: directions that a mass does not couple, and the diagonal that deal.II adds in rows of other bodies
+        for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
+          if (entry->value() != 0.)
+            row.emplace_back(entry->column(), entry->value());
+      }));
+    return result;
   }
 } // namespace Squeal

@@ -94,20 +94,21 @@ namespace Squeal
     }
 
     /// Terms of a body: stiffness and mass at unit coefficient, once more as its damping.
-    void add_body(BodyTerms &bodies, const Model &model, const std::string &name, const Material &material, const bool is_disc)
+    void add_body(BodyTerms &bodies, const Model &model, const types::material_id component, const Material &material)
     {
+      const std::string  &name = model.component_names()[component];
       FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
                                  update_values | update_gradients | update_JxW_values);
-      const CellPredicate belongs = [is_disc](const Cell &cell) { return (cell->material_id() == 0) == is_disc; };
-      const auto          K       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
+      const CellPredicate belongs   = [component](const Cell &cell) { return cell->material_id() == component; };
+      const CellIntegral  stiffness = [&](const Cell &cell, FullMatrix<double> &K) {
         values.reinit(cell);
-        check_orientation(values, model.component_names()[cell->material_id()]);
-        integrate_stiffness(values, material.poisson_ratio, cell_matrix);
-      });
-      const auto          M       = assemble_cells(model, belongs, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
-        values.reinit(cell);
-        integrate_mass(values, cell_matrix);
-      });
+        check_orientation(values, name);
+        integrate_stiffness(values, material.poisson_ratio, K);
+      };
+      // The values are those of the cell whose stiffness has been integrated
+      const CellIntegral mass     = [&](const Cell &, FullMatrix<double> &M) { integrate_mass(values, M); };
+      const auto         matrices = assemble_cells(model, belongs, {stiffness, mass});
+      const auto        &K = matrices[0], &M = matrices[1];
 
       const std::string young = "Young's modulus, " + name, density = "density, " + name, alpha = "Rayleigh alpha, " + name,
                         beta = "Rayleigh beta, " + name;
@@ -138,18 +139,19 @@ namespace Squeal
             std::make_tuple(axial, "axial", mount.axial)})
         if (stiffness != 0.)
           {
-            const auto        K = assemble_cells(model, has_mount, [&, e = direction](const Cell &cell, FullMatrix<double> &cell_matrix) {
-              cell_matrix = 0.;
+            const CellIntegral integral = [&, e = direction](const Cell &cell, FullMatrix<double> &K) {
+              K = 0.;
               for (const unsigned int f : cell->face_indices())
                 if (is_mounted(cell, f))
                   {
                     values.reinit(cell, f);
-                    integrate_mount(values, e, cell_matrix);
+                    integrate_mount(values, e, K);
                   }
-            });
+            };
             const std::string parameter = std::string(name) + " stiffness, " + mount.surface;
-            bodies.values[parameter]           = {stiffness};
-            bodies.terms.push_back(sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, K));
+            bodies.values[parameter]    = {stiffness};
+            bodies.terms.push_back(
+              sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, {integral})[0]));
           }
     }
   } // namespace
@@ -157,8 +159,8 @@ namespace Squeal
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials)
   {
     BodyTerms bodies;
-    add_body(bodies, model, "disc", materials.disc, true);
-    add_body(bodies, model, "pins", materials.pin, false);
+    for (unsigned int component = 0; component < model.component_names().size(); ++component)
+      add_body(bodies, model, component, materials.of(model.component_names()[component]));
     for (const ElasticMount &mount : materials.mounts)
       add_mount(bodies, model, mount);
     return bodies;

@@ -34,20 +34,20 @@ namespace Squeal
   {
     FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
                                update_values | update_gradients | update_quadrature_points | update_JxW_values);
-    const CellPredicate is_disc   = [](const Cell &cell) { return cell->material_id() == 0; };
-    const auto          assembled = [&](const auto &integrand) {
-      return assemble_cells(model, is_disc, [&](const Cell &cell, FullMatrix<double> &cell_matrix) {
-        values.reinit(cell);
-        integrate(values, cell_matrix, integrand);
-      });
+    const CellPredicate is_disc    = [](const Cell &cell) { return cell->material_id() == 0; };
+    const CellIntegral  gyroscopic = [&](const Cell &cell, FullMatrix<double> &G) {
+      values.reinit(cell);
+      integrate(values, G,
+                 [](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
     };
-    const auto G =
-      assembled([](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
-    const auto N = assembled([](double, const double turned_v, double, const double turned_u) { return turned_v * turned_u; });
+    const CellIntegral convective = [&](const Cell &, FullMatrix<double> &N) {
+      integrate(values, N, [](double, const double turned_v, double, const double turned_u) { return turned_v * turned_u; });
+    };
+    const auto matrices = assemble_cells(model, is_disc, {gyroscopic, convective});
 
     const char *const speed = "angular velocity of the disc", *const density = "density, disc";
     bodies.values[speed] = {angular_velocity};
-    bodies.terms.push_back(sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, G, Symmetry::skew));
-    bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, N));
+    bodies.terms.push_back(sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, matrices[0], Symmetry::skew));
+    bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, matrices[1]));
   }
 } // namespace Squeal

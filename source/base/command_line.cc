@@ -1,7 +1,8 @@
 #include <squeal/base/command_line.h>
 #include <squeal/base/exceptions.h>
 
-#include <algorithm>
+#include <boost/algorithm/string/predicate.hpp>
+
 #include <map>
 
 namespace Squeal
@@ -13,11 +14,6 @@ namespace Squeal
                              const std::string &change = "squeal --help lists the options")
     {
       throw ParameterError(what, "command line, `" + word + "`", change);
-    }
-
-    bool begins_with(const std::string &word, const char *beginning)
-    {
-      return word.rfind(beginning, 0) == 0;
     }
   } // namespace
 
@@ -36,7 +32,7 @@ namespace Squeal
     for (std::size_t i = 0; i < words.size(); ++i)
       {
         const std::string &word = words[i];
-        if (options_end || !begins_with(word, "-"))
+        if (options_end || !boost::starts_with(word, "-"))
           {
             files.push_back(word);
             continue;
@@ -58,7 +54,7 @@ namespace Squeal
           {
             if (equals != std::string::npos)
               option->second->push_back(word.substr(equals + 1));
-            else if (i + 1 < words.size() && !begins_with(words[i + 1], "--"))
+            else if (i + 1 < words.size() && !boost::starts_with(words[i + 1], "--"))
               option->second->push_back(words[++i]);
             else
               refuse("an option lacks its value", word);

@@ -1,8 +1,6 @@
 #include <squeal/base/decision.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Squeal
 {
@@ -14,29 +12,11 @@ namespace Squeal
       static std::vector<DecisionRecord *> all;
       return all;
     }
-
-    void clear(DecisionRecord &record)
-    {
-      record.below   = 0.;
-      record.above   = std::numeric_limits<double>::infinity();
-      record.n_below = record.n_above = 0;
-    }
   } // namespace
 
-  double DecisionRecord::margin_below() const
-  {
-    return std::log10(threshold / below);
-  }
-
-  double DecisionRecord::margin_above() const
-  {
-    return std::log10(above / threshold);
-  }
-
   Decision::Decision(const char *quantity, const double threshold)
-    : record{quantity, threshold, 0., 0., 0, 0}
+    : record{quantity, threshold}
   {
-    clear(record);
     registry().push_back(&record);
   }
 
@@ -62,11 +42,6 @@ namespace Squeal
     return exceeds;
   }
 
-  double Decision::threshold() const
-  {
-    return record.threshold;
-  }
-
   std::vector<DecisionRecord> Decision::records()
   {
     std::vector<DecisionRecord> result;
@@ -80,6 +55,6 @@ namespace Squeal
   void Decision::forget()
   {
     for (DecisionRecord *record : registry())
-      clear(*record);
+      *record = {record->quantity, record->threshold};
   }
 } // namespace Squeal

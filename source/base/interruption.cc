@@ -15,20 +15,7 @@ namespace Squeal
 {
   namespace
   {
-    struct Signal
-    {
-      int         number;
-      const char *name;
-    };
-    constexpr std::array<Signal, 4> signals = {{{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}, {SIGHUP, "SIGHUP"}, {SIGPIPE, "SIGPIPE"}}};
-
-    const char *name_of(const int number)
-    {
-      for (const Signal &signal : signals)
-        if (signal.number == number)
-          return signal.name;
-      return "a signal";
-    }
+    constexpr std::array<int, 4> signals = {{SIGINT, SIGTERM, SIGHUP, SIGPIPE}};
 
     // A handler reaches nothing but what is static, and little more than write() is safe in it.
     int              wake_up[2]; // ends of a pipe: the handler writes, the thread reads
@@ -43,7 +30,7 @@ namespace Squeal
       for (std::size_t s = 0; s < signals.size(); ++s)
         {
           struct sigaction given;
-          ::sigaction(signals[s].number, nullptr, &given);
+          ::sigaction(signals[s], nullptr, &given);
           is_ignored[s] = given.sa_handler == SIG_IGN;
         }
     }
@@ -69,7 +56,7 @@ namespace Squeal
   {
     for (std::size_t s = 0; s < signals.size(); ++s)
       if (is_ignored[s])
-        ::signal(signals[s].number, SIG_IGN);
+        ::signal(signals[s], SIG_IGN);
   }
 
   Interruption::Interruption()
@@ -85,9 +72,9 @@ namespace Squeal
         own.sa_handler       = tell_thread;
         own.sa_flags         = SA_RESTART;
         ::sigfillset(&own.sa_mask);
-        ::sigaction(signals[s].number, nullptr, &former[s]);
+        ::sigaction(signals[s], nullptr, &former[s]);
         if (!is_ignored[s])
-          ::sigaction(signals[s].number, &own, nullptr);
+          ::sigaction(signals[s], &own, nullptr);
       }
     ignore_again();
   }
@@ -95,26 +82,11 @@ namespace Squeal
   Interruption::~Interruption()
   {
     for (std::size_t s = 0; s < signals.size(); ++s)
-      ::sigaction(signals[s].number, &former[s], nullptr);
+      ::sigaction(signals[s], &former[s], nullptr);
     tell_thread(0);
     waiting.join();
     ::close(wake_up[0]);
     ::close(wake_up[1]);
-  }
-
-  void Interruption::be_silent()
-  {
-    silent = true;
-  }
-
-  std::unique_lock<std::mutex> Interruption::hold()
-  {
-    return std::unique_lock<std::mutex>(mutex);
-  }
-
-  void Interruption::before_end(std::function<std::string()> new_action)
-  {
-    action = std::move(new_action);
   }
 
   void Interruption::wait()
@@ -128,7 +100,7 @@ namespace Squeal
     mutex.lock();
     const std::string consequence = action ? ": " + action() : std::string();
     if (!silent)
-      say(std::string("\nsqueal was ended by ") + name_of(number) + consequence + "\n");
+      say(std::string("\nsqueal was ended by SIG") + ::sigabbrev_np(number) + consequence + "\n");
     else
       // mpirun ends all processes when the first one has ended: that should be the one that cleans up and speaks.
       std::this_thread::sleep_for(std::chrono::seconds(1));

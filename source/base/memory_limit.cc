@@ -81,9 +81,7 @@ namespace Squeal
       {
         std::istringstream parts(line);
         std::string        number, controllers, group;
-        std::getline(parts, number, ':');
-        std::getline(parts, controllers, ':');
-        std::getline(parts, group);
+        std::getline(std::getline(std::getline(parts, number, ':'), controllers, ':'), group);
         if (controllers.empty())
           result = std::min(result, left_by_groups(hierarchies, group, version_2));
         else if (("," + controllers + ",").find(",memory,") != std::string::npos)

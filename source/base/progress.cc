@@ -10,26 +10,6 @@ namespace Squeal
 {
   namespace
   {
-    rusage own_usage()
-    {
-      rusage usage;
-      getrusage(RUSAGE_SELF, &usage);
-      return usage;
-    }
-
-    /// Peak resident memory of this process [byte].
-    double peak_memory()
-    {
-      return 1024. * own_usage().ru_maxrss;
-    }
-
-    /// Processor time of this process [s].
-    double cpu_time()
-    {
-      const rusage usage = own_usage();
-      return usage.ru_utime.tv_sec + usage.ru_stime.tv_sec + 1e-6 * (usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
-    }
-
     constexpr const char *erase_line = "\r\033[K";
 
     /// Name and elapsed time of a step.
@@ -44,21 +24,21 @@ namespace Squeal
 
   Stopwatch::Stopwatch()
     : start(std::chrono::steady_clock::now())
-    , cpu_start(cpu_time())
+    , cpu_start(std::clock())
   {}
 
   Cost Stopwatch::cost() const
   {
-    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), cpu_time() - cpu_start, peak_memory()};
+    rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+            double(std::clock() - cpu_start) / CLOCKS_PER_SEC, 1024. * usage.ru_maxrss};
   }
 
-  Progress::Progress() = default;
-
   Progress::Progress(std::ostream &stream, const bool live)
-    : Progress()
+    : stream(&stream)
+    , live(live)
   {
-    this->stream = &stream;
-    this->live   = live;
     if (live)
       counter = std::thread([this]() { count(); });
   }
@@ -118,15 +98,5 @@ namespace Squeal
     const std::lock_guard<std::mutex> lock(mutex);
     if (stream != nullptr)
       *stream << (live ? erase_line : "") << text << std::endl;
-  }
-
-  const std::vector<StepRecord> &Progress::steps() const
-  {
-    return records;
-  }
-
-  double Progress::elapsed() const
-  {
-    return run.cost().seconds;
   }
 } // namespace Squeal

@@ -1,11 +1,11 @@
 #include <squeal/base/text.h>
 
+#include <boost/algorithm/string/trim_all.hpp>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 
 namespace Squeal
 {
@@ -50,11 +50,7 @@ namespace Squeal
 
   std::string single_spaced(const std::string &text)
   {
-    std::istringstream stream(text);
-    std::string        word, result;
-    while (stream >> word)
-      result += (result.empty() ? "" : " ") + word;
-    return result;
+    return boost::trim_fill_copy(text, " ");
   }
 
   std::string legible(const std::string &text)
@@ -78,9 +74,9 @@ namespace Squeal
   {
     std::istringstream old_text(there), new_text(here);
     std::string        old_line, new_line;
-    const auto         quoted = [](const std::istream &stream, const std::string &line) {
-      const auto first = line.find_first_not_of(" \t");
-      return stream && first != std::string::npos ? in_quotes(line.substr(first)) : "nothing";
+    const auto         quoted = [](const std::istream &stream, std::string line) {
+      boost::trim_left(line);
+      return stream && !line.empty() ? in_quotes(line) : "nothing";
     };
     while (std::getline(old_text, old_line) && std::getline(new_text, new_line) && old_line == new_line)
       ;

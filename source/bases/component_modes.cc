@@ -1,9 +1,7 @@
 #include <squeal/base/assignment.h>
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/sparse.h>
-
-#include <Epetra_Vector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <map>
@@ -12,7 +10,7 @@ namespace Squeal
 {
   namespace
   {
-    /// A mode in which the component modes that it would be named after participate less bears no name [-].
+    /// Smallest participation of component modes after which a mode is named [-].
     constexpr double smallest_participation = 0.1;
   } // namespace
 
@@ -21,8 +19,8 @@ namespace Squeal
     // Row sums of the x displacements: M e_x
     MultiVector e_x(model.free_map(), 1);
     for (const Node &node : model.nodes())
-      if (node.dofs[0] >= 0 && model.free_map().MyGID(node.dofs[0]))
-        e_x.ReplaceGlobalValue(node.dofs[0], 0, 1.);
+      if (const int i = e_x.map().place(node.dofs[0]); i >= 0)
+        e_x(i, 0) = 1.;
     const DenseMatrix   row_sums = replicate(mass * e_x);
     std::vector<double> masses;
     for (const Node &node : model.nodes())
@@ -39,10 +37,7 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    std::vector<bool> selected(model.component_names().size());
-    for (std::size_t c = 0; c < selected.size(); ++c)
-      selected[c] = (c == 0) == (component == Component::disc);
-    const auto T = component_kernel(model, closed, selected, boundary);
+    const auto T = component_kernel(model, closed, component, boundary);
 
     const SymmetricModes modes =
       symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, options);
@@ -67,14 +62,12 @@ namespace Squeal
                                   const MultiVector                         &real_part,
                                   const MultiVector                         *imaginary_part)
   {
-    const int         n_modes = real_part.NumVectors();
+    const int         n_modes = real_part.n_columns();
     const MultiVector M_re    = mass * real_part;
-    const MultiVector M_im    = imaginary_part ? mass * *imaginary_part : MultiVector(real_part.Map(), n_modes);
+    const MultiVector M_im    = imaginary_part ? mass * *imaginary_part : MultiVector(real_part.map(), n_modes);
 
-    std::vector<double> norm_re(n_modes), norm_im(n_modes, 0.);
-    real_part.Dot(M_re, norm_re.data());
-    if (imaginary_part)
-      imaginary_part->Dot(M_im, norm_im.data());
+    const std::vector<double> norm_re = column_products(real_part, M_re),
+                              norm_im = imaginary_part ? column_products(*imaginary_part, M_im) : std::vector<double>(n_modes, 0.);
 
     std::vector<std::map<ModeShape, double>> shares(n_modes);
     for (const ComponentModes *reference : references)

@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/inertia_relief.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <limits>
@@ -38,7 +39,7 @@ namespace Squeal
 
   MultiVector InertiaRelief::solve(const MultiVector &forces) const
   {
-    MultiVector u(forces.Map(), forces.NumVectors());
+    MultiVector u(forces.map(), forces.n_columns());
     if (!N)
       {
         factor->apply(forces, u);
@@ -53,10 +54,9 @@ namespace Squeal
     while (true)
       {
         factor->apply(residual, correction);
-        u.Update(1., correction, 1.);
+        u += correction;
         multiply_add(-1., *N, gram(*MN, u), 1., u);
-        residual = *K * u;
-        residual.Update(1., relieved, -1.);
+        residual                          = relieved - *K * u;
         const std::vector<double> rest    = column_norms(residual);
         double                    largest = 0.;
         for (std::size_t j = 0; j < rest.size(); ++j)
@@ -73,8 +73,17 @@ namespace Squeal
       }
   }
 
-  const MultiVector *InertiaRelief::rigid_body_modes() const
+  InertiaRelief static_response(const Model               &model,
+                                const SecondOrderSystem   &system,
+                                const double               largest_circular_frequency,
+                                const FactorizationLibrary library)
   {
-    return N.get();
+    return {system.stiffness,           system.mass, free_disc_motions(model, system, largest_circular_frequency),
+            largest_circular_frequency, library,     "stiffness of disc and pins without contact"};
+  }
+
+  MultiVector attachment_modes(const InertiaRelief &response, const SparseMatrix &P)
+  {
+    return response.solve(transpose_times(P, unit_vectors(P.rows())));
   }
 } // namespace Squeal

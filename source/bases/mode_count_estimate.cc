@@ -1,13 +1,12 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/geometry/faces.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
-#include <string>
 
 namespace Squeal
 {
@@ -20,39 +19,6 @@ namespace Squeal
     /// Shear correction of plates and bars [-].
     constexpr double shear_correction = 5. / 6.;
 
-    // ------------------------------------------------------------------ bodies
-
-    /// A body as a prism along z.
-    struct Prism
-    {
-      double height, area, outline; ///< h [m], S [m²], L [m]
-    };
-
-    Prism prism(const HexMesh &mesh, const std::vector<HexFace> &outer_faces, const unsigned int volume)
-    {
-      double lowest = std::numeric_limits<double>::max(), highest = std::numeric_limits<double>::lowest();
-      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-        if (hexahedron.volume == volume)
-          for (const unsigned int node : hexahedron.nodes)
-            {
-              lowest  = std::min(lowest, mesh.points[node][2]);
-              highest = std::max(highest, mesh.points[node][2]);
-            }
-
-      // Gauss' theorem: V = ∮ z n_z dS; faces that stand upright make up the outline.
-      double content = 0., lateral = 0.;
-      for (const HexFace &face : outer_faces)
-        if (face.volume == volume)
-          {
-            const auto [centre, normal] = face_geometry(mesh, face.nodes);
-            content += normal[2] * (centre[2] - lowest);
-            if (std::abs(normal[2]) < 0.5 * normal.norm())
-              lateral += normal.norm();
-          }
-      const double height = highest - lowest;
-      return {height, content / height, lateral / height};
-    }
-
     /// Of the edges of the elements of a body [m].
     double longest_edge(const HexMesh &mesh, const std::vector<HexFace> &faces, const unsigned int volume)
     {
@@ -63,8 +29,6 @@ namespace Squeal
             longest = std::max(longest, mesh.points[face.nodes[i]].distance(mesh.points[face.nodes[(i + 1) % 4]]));
       return longest;
     }
-
-    // ------------------------------------------------------------------ waves
 
     /// Wave speeds of a material [m/s].
     struct WaveSpeeds
@@ -85,17 +49,23 @@ namespace Squeal
       return std::sqrt(0.5 * (a * a + std::hypot(a * a, 2. * b)));
     }
 
-    /// N(k).
-    double plane_modes(const Prism &body, const double wave_number, const double edge)
+    /// S, mean area of the sections across z [m²].
+    double area(const BodyShape &body)
     {
-      return (body.area * wave_number * wave_number + edge * body.outline * wave_number) / (4. * M_PI);
+      return body.volume / body.height;
+    }
+
+    /// N(k).
+    double plane_modes(const BodyShape &body, const double wave_number, const double edge)
+    {
+      return (area(body) * wave_number * wave_number + edge * body.outline * wave_number) / (4. * M_PI);
     }
 
     /**
      * Modes across the section for all orders along the height: k_n = (n − @p offset) π / h, n = 1, 2, ..., below
      * @p wave_number = ω / c.
      */
-    double section_modes(const Prism &body, const double wave_number, const double offset)
+    double section_modes(const BodyShape &body, const double wave_number, const double offset)
     {
       const double n_orders = std::floor(wave_number * body.height / M_PI + offset);
       if (!(n_orders >= 1.))
@@ -110,7 +80,7 @@ namespace Squeal
       return sum;
     }
 
-    double disc_modes(const Prism &body, const WaveSpeeds &speed, const double omega)
+    double disc_modes(const BodyShape &body, const WaveSpeeds &speed, const double omega)
     {
       const double thin    = speed.plate * body.height / std::sqrt(12.);
       const double bending = bending_wave_number(omega, thin, std::sqrt(shear_correction) * speed.shear);
@@ -122,11 +92,11 @@ namespace Squeal
       return n;
     }
 
-    double pin_modes(const Prism &body, const WaveSpeeds &speed, const double omega)
+    double pin_modes(const BodyShape &body, const WaveSpeeds &speed, const double omega)
     {
       // Fixed at the back, free to slide in front: k_n = (n − ½) π / h; along the axis both ends are fixed.
       const auto   orders  = [&](const double k, const double offset) { return std::floor(k * body.height / M_PI + offset); };
-      const double radius  = std::sqrt(body.area / (4. * M_PI)); // of gyration, of a round section
+      const double radius  = std::sqrt(area(body) / (4. * M_PI)); // of gyration, of a round section
       const double bending = bending_wave_number(omega, speed.bar * radius, std::sqrt(shear_correction) * speed.shear);
       return 2. * orders(bending, 0.5) + orders(omega / speed.shear, 0.5) + orders(omega / speed.bar, 0.) +
              section_modes(body, omega / speed.shear, 0.5) + section_modes(body, omega / speed.plate, 0.5) +
@@ -134,26 +104,50 @@ namespace Squeal
     }
   } // namespace
 
-  double ModeCountEstimate::coupled() const
+  std::vector<BodyShape> body_shapes(const HexMesh &mesh)
   {
-    return disc + pins;
+    constexpr double       infinity = std::numeric_limits<double>::infinity();
+    std::vector<BodyShape> bodies;
+    std::vector<Range>     z(mesh.volume_names.size(), {infinity, -infinity});
+    for (const std::string &name : mesh.volume_names)
+      bodies.push_back({name, infinity, 0., 0., 0., 0., 0.});
+    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
+    for (std::size_t node = 0; node < mesh.points.size(); ++node)
+      {
+        const HexMesh::Point &p      = mesh.points[node];
+        BodyShape            &body   = bodies[volume_of_node[node]];
+        Range                &extent = z[volume_of_node[node]];
+        const double          radius = std::hypot(p[0], p[1]);
+        body.inner_radius            = std::min(body.inner_radius, radius);
+        body.outer_radius            = std::max(body.outer_radius, radius);
+        extent                       = {std::min(extent.least, p[2]), std::max(extent.greatest, p[2])};
+      }
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      bodies[b].height = z[b].greatest - z[b].least;
+    for (const HexFace &face : outer_faces(mesh))
+      {
+        BodyShape &body             = bodies[face.volume];
+        const auto [centre, normal] = face_geometry(mesh, face.nodes);
+        body.volume += centre * normal / 3.; // Gauss' theorem
+        if (std::abs(normal[2]) < 0.5 * normal.norm())
+          body.outline += normal.norm() / body.height;
+      }
+    for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
+      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
+        bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
+    return bodies;
   }
 
-  ModeCountEstimate expected_number_of_modes(const HexMesh            &mesh,
-                                             const MaterialParameters &materials,
-                                             const double              largest_circular_frequency)
+  double expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, const double largest_circular_frequency)
   {
-    const std::vector<HexFace> faces = outer_faces(mesh);
-    ModeCountEstimate          estimate;
-    for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
+    double n = 0.;
+    for (const BodyShape &body : body_shapes(mesh))
       {
-        const Prism body = prism(mesh, faces, volume);
-        if (mesh.volume_names[volume] == PhysicalNames::disc)
-          estimate.disc = disc_modes(body, WaveSpeeds(materials.disc), largest_circular_frequency);
-        else
-          estimate.pins += pin_modes(body, WaveSpeeds(materials.pin), largest_circular_frequency);
+        const WaveSpeeds speed(materials.of(body.name));
+        n += body.name == PhysicalNames::disc ? disc_modes(body, speed, largest_circular_frequency) :
+                                                pin_modes(body, speed, largest_circular_frequency);
       }
-    return estimate;
+    return n;
   }
 
   void check_wave_resolution(const HexMesh            &mesh,
@@ -165,18 +159,16 @@ namespace Squeal
     for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
       {
         const std::string &name      = mesh.volume_names[volume];
-        const bool         is_disc   = name == PhysicalNames::disc;
         const double       frequency = hertz(largest_circular_frequency);
-        const double       wave      = WaveSpeeds(is_disc ? materials.disc : materials.pin).shear / frequency;
+        const double       wave      = WaveSpeeds(materials.of(name)).shear / frequency;
         const double       edge      = longest_edge(mesh, faces, volume);
         if (wave * degree >= edge)
           continue;
-        std::ostringstream what, change;
-        what << "shear waves of " << frequency << " Hz are " << wave << " m long in " << name << ", whose elements measure up to " << edge
-             << " m: the mesh does not resolve the modes of the band";
-        change << "lower it below " << wave * degree / edge * frequency << " Hz, choose smaller elements, or correct "
-               << (is_disc ? "Disc" : "Pin") << " material/Young modulus and Density";
-        throw ParameterError(what.str(), "parameter Band/Maximum frequency", change.str());
+        throw ParameterError(text("shear waves of ", frequency, " Hz are ", wave, " m long in ", name, ", whose elements measure up to ",
+                                  edge, " m: the mesh does not resolve the modes of the band"),
+                             "parameter Band/Maximum frequency",
+                             text("lower it below ", wave * degree / edge * frequency, " Hz, choose smaller elements, or correct ",
+                                  name == PhysicalNames::disc ? "Disc" : "Pin", " material/Young modulus and Density"));
       }
   }
 } // namespace Squeal

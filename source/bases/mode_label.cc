@@ -4,16 +4,6 @@
 
 namespace Squeal
 {
-  ModeShape ModeLabel::shape() const
-  {
-    return {family, nodal_circles, nodal_diameters, rank};
-  }
-
-  bool ModeLabel::is_of_pins() const
-  {
-    return rank > 0;
-  }
-
   bool operator==(const ModeLabel &a, const ModeLabel &b)
   {
     return a.shape() == b.shape() && a.sign == b.sign;

@@ -193,8 +193,8 @@ namespace Squeal
       for (const ContactNode &contact : interface)
         {
           PinAxis &axis = axes[contact.pin];
-          axis.centre += Eigen::Vector3d::Map(contact.position.data());
-          axis.direction += Eigen::Vector3d::Map(contact.normal.data());
+          axis.centre += contact.position;
+          axis.direction += contact.normal;
           ++axis.n_contact;
         }
       for (auto &[pin, axis] : axes)

@@ -1,9 +1,8 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/replicate.h>
-
-#include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -53,41 +52,36 @@ namespace Squeal
         {
           if (part->compute && !part->is_uncoupled)
             required(in.inverse, recipe, "an UpdatedInverse of the coupled stiffness");
-          sets.push_back(part->set ? required(in.*(part->set), recipe, part->symbol) : part->compute(in));
-          counts.*(part->count) = sets.back().NumVectors();
-          if (part->count != &BasisCounts::disc_free)
+          sets.push_back(part->compute ? part->compute(in) : required(in.set(*part->set), recipe, part->symbol));
+          if (part->set)
+            counts.sets[*part->set] = sets.back().n_columns();
+          if (part->set != BasisSource::disc_free)
             continue;
           if (const auto motions = missing_motions(in, sets.back()))
             {
-              counts.rigid_body = motions->NumVectors();
+              counts.rigid_body = motions->n_columns();
               sets.push_back(*motions);
             }
         }
-      std::vector<const MultiVector *> pointers;
-      for (const MultiVector &set : sets)
-        pointers.push_back(&set);
-      return join(pointers);
+      return join_all(sets);
     }
 
     /// Divides the columns by their M-norms; throws SolverError at a zero column.
     void scale_to_unit_norm(const SparseMatrix &M, const BasisRecipe &recipe, MultiVector &X)
     {
-      std::vector<double> squares(X.NumVectors());
-      X.Dot(M * X, squares.data());
-      for (int j = 0; j < X.NumVectors(); ++j)
+      const std::vector<double> squares = column_products(X, M * X);
+      for (int j = 0; j < X.n_columns(); ++j)
         {
           if (!(squares[j] > 0.))
             throw SolverError("column " + std::to_string(j) + " of T_r0 is zero or undefined", where(recipe),
                               "check the step that computed it");
-          X(j)->Scale(1. / std::sqrt(squares[j]));
+          X.col(j) /= std::sqrt(squares[j]);
         }
     }
 
     double largest_entry(const MultiVector &X)
     {
-      std::vector<double> norms(X.NumVectors());
-      X.NormInf(norms.data());
-      return *std::max_element(norms.begin(), norms.end());
+      return dealii::Utilities::MPI::max(max_norm(X.local()), X.communicator());
     }
 
     /// T_r0 T_cr in coupled coordinates; the columns of T_r0 get scaled.
@@ -100,10 +94,10 @@ namespace Squeal
       const SparseMatrix &P_n = *in.contact->normal;
       scale_to_unit_norm(*in.uncoupled->mass, recipe, T_r0);
       const SingularValues axes = singular_values(replicate(P_n * T_r0));
-      const auto [values, V]    = agreed(T_r0.Comm(), {axes.values, axes.right});
+      const auto [values, V]    = agreed(T_r0.communicator(), {axes.values, axes.right});
 
       const double largest = values.front();
-      const int    n_r0    = T_r0.NumVectors();
+      const int    n_r0    = T_r0.n_columns();
       connection.rank =
         std::count_if(values.begin(), values.end(), [&](const double value) { return connected.exceeded_by(value / largest / tolerance); });
       if (connection.rank == n_r0)
@@ -122,19 +116,18 @@ namespace Squeal
   {
     int n = 0;
     for (const BasisPart *part : recipe.parts)
-      n += counts.*(part->count) + (part->count == &BasisCounts::disc_free ? counts.rigid_body : 0);
+      n += (part->set ? counts.sets.at(*part->set) : counts.contact) + (part->set == BasisSource::disc_free ? counts.rigid_body : 0);
     return {n, recipe.is_connected() ? n - counts.contact : n};
   }
 
   int ReducedBasis::size() const
   {
-    return vectors->NumVectors();
+    return vectors->n_columns();
   }
 
-  ReducedBasis reduced_basis(const BasisKind kind, const BasisIngredients &in, const BasisOptions &options)
+  ReducedBasis reduced_basis(const BasisRecipe &recipe, const BasisIngredients &in, const BasisOptions &options)
   {
-    const BasisRecipe  &recipe = Squeal::recipe(kind);
-    const SparseMatrix &M      = *required(in.coupled, recipe, "the coupled system").mass;
+    const SparseMatrix &M = *required(in.coupled, recipe, "the coupled system").mass;
     if (recipe.is_connected())
       {
         required(in.uncoupled, recipe, "the system of the bodies");
@@ -147,12 +140,12 @@ namespace Squeal
     counts.contact       = in.coupled->n_contact();
     MultiVector     X    = join_parts(recipe, in, counts);
     const BasisSize size = nominal_size(recipe, counts);
-    const int       n    = M.NumGlobalRows();
-    if (size.n_r > n && kind != BasisKind::pod)
+    const int       n    = M.n_rows();
+    if (size.n_r > n && !recipe.is_pod)
       throw SolverError("the basis has " + std::to_string(size.n_r) + " vectors, the coupled system only " + std::to_string(n) + " dofs",
                         where(recipe), "take fewer component modes, or a finer mesh");
 
-    ReducedBasis basis{recipe.name, nullptr, size.n_r0, size.n_r, 0, options.tolerance, 1., 0., {}};
+    ReducedBasis basis{nullptr, size.n_r0, size.n_r, 0, options.tolerance, 1., 0., {}};
 
     // ------------------------------------------------- T_r
     std::optional<MultiVector> connected;
@@ -160,7 +153,7 @@ namespace Squeal
       connected.emplace(connect(X, recipe, in, options.connection_tolerance, basis.connection));
     const MultiVector &T = connected ? *connected : X;
     PrincipalAxes      axes;
-    if (kind == BasisKind::pod)
+    if (recipe.is_pod)
       {
         basis.tolerance   = options.pod_tolerance;
         const int maximum = options.pod_size > 0 ? options.pod_size : std::numeric_limits<int>::max();
@@ -169,7 +162,7 @@ namespace Squeal
     else
       basis.vectors = std::make_shared<MultiVector>(orthonormalize(M, nullptr, T, options.tolerance, &axes));
     basis.condition      = axes.condition;
-    basis.n_dropped      = T.NumVectors() - basis.size();
+    basis.n_dropped      = T.n_columns() - basis.size();
     basis.orthonormality = orthonormality_defect(M, *basis.vectors);
     if (!(basis.orthonormality <= largest_orthonormality_defect))
       throw SolverError("its vectors are not orthonormal: max |TᵀMT − I| = " + std::to_string(basis.orthonormality), where(recipe),

@@ -2,7 +2,7 @@
 #include <squeal/base/decision.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Far above rounding, far below any mount worth the name.
+    /// Far above rounding errors, far below the stiffness of any mount in use.
     const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency *zero_frequency);
     const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
 
@@ -21,7 +21,7 @@ namespace Squeal
       const RealPairs   axes = symmetric_eigenpairs(gram(X, *system.mass * X));
       const MultiVector Y    = X * DenseMatrix(axes.vectors * as_column(axes.values).cwiseSqrt().cwiseInverse().asDiagonal());
       // Every process must cut the same motions off.
-      const RealPairs ritz = agreed(X.Comm(), symmetric_eigenpairs(gram(Y, *system.stiffness * Y)));
+      const RealPairs ritz = agreed(X.communicator(), symmetric_eigenpairs(gram(Y, *system.stiffness * Y)));
       return {Y * ritz.vectors, ritz.values};
     }
 
@@ -46,8 +46,8 @@ namespace Squeal
           const double values[6][3] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}, {0., -p[2], p[1]}, {p[2], 0., -p[0]}, {-p[1], p[0], 0.}};
           for (int j = 0; j < 6; ++j)
             for (int k = 0; k < 3; ++k)
-              if (node.dofs[k] >= 0 && model.free_map().MyGID(node.dofs[k]))
-                motions.ReplaceGlobalValue(node.dofs[k], j, values[j][k]);
+              if (const int i = motions.map().place(node.dofs[k]); i >= 0)
+                motions(i, j) = values[j][k];
         }
     return motions;
   }
@@ -64,8 +64,8 @@ namespace Squeal
     const DenseMatrix    D    = replicate(normal * motions);
     const double         size = max_norm(replicate(motions)) * std::sqrt(D.rows());
     const SingularValues axes = singular_values(D); // descending
-    const auto [values, V]    = agreed(motions.Comm(), {axes.values, axes.right});
-    const int k               = motions.NumVectors();
+    const auto [values, V]    = agreed(motions.communicator(), {axes.values, axes.right});
+    const int k               = motions.n_columns();
     const int rank =
       std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
 

@@ -1,14 +1,16 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/contact/contact_interface.h>
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 
 namespace Squeal
 {
@@ -24,13 +26,12 @@ namespace Squeal
     /// A node of a contact surface with the area-weighted normal of the faces that meet there.
     struct SurfaceNode
     {
-      unsigned int node;
-      Tensor<1, 3> area_normal;
-      double       area = 0.;
+      Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
+      double          area        = 0.;
     };
 
     /// Nodes of a named surface, in the order of their numbers.
-    std::vector<SurfaceNode> surface_nodes(const Model &model, const char *surface)
+    std::map<unsigned int, SurfaceNode> surface_nodes(const Model &model, const char *surface)
     {
       const types::boundary_id id = model.surface_id(surface);
       const auto              &fe = model.dof_handler().get_fe();
@@ -47,154 +48,117 @@ namespace Squeal
                 if (fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, f))
                   {
                     SurfaceNode &entry = nodes[model.node_of_dof(dofs[i])];
-                    entry.node         = model.node_of_dof(dofs[i]);
                     for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
                       {
                         entry.area += values.shape_value(i, q) * values.JxW(q);
-                        entry.area_normal += values.normal_vector(q) * values.JxW(q);
+                        entry.area_normal += values.JxW(q) * Eigen::Vector3d::Map(values.normal_vector(q).begin_raw());
                       }
                   }
             }
-      std::vector<SurfaceNode> result;
-      for (const auto &[number, node] : nodes)
-        result.push_back(node);
-      return result;
+      return nodes;
     }
 
-    Point<3> position(const Model &model, const unsigned int node)
+    Eigen::Vector3d position(const Model &model, const unsigned int node)
     {
-      const auto &p = model.nodes()[node].position;
-      return {p[0], p[1], p[2]};
+      return Eigen::Vector3d::Map(model.nodes()[node].position.data());
     }
 
-    std::string print(const Point<3> &p)
+    std::string place(const Eigen::Vector3d &p)
     {
-      std::ostringstream text;
-      text << "(" << p[0] << ", " << p[1] << ", " << p[2] << ") m";
-      return text.str();
-    }
-
-    std::array<double, 3> to_array(const Tensor<1, 3> &v)
-    {
-      return {{v[0], v[1], v[2]}};
+      return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
     }
 
     /// n, t, b of a contact node.
-    void set_frame(ContactNode &node, Tensor<1, 3> normal, const Rotation rotation)
+    void set_frame(ContactNode &node, Eigen::Vector3d normal, const Rotation rotation)
     {
-      normal /= normal.norm();
-      for (unsigned int k = 0; k < 3; ++k)
-        if (!inclined.exceeded_by(std::abs(normal[k])))
-          normal[k] = 0.;
-      normal /= normal.norm();
+      normal *= 1. / normal.norm();
+      for (double &cosine : normal)
+        if (!inclined.exceeded_by(std::abs(cosine)))
+          cosine = 0.;
+      node.normal = (1. / normal.norm()) * normal;
 
       const double r = node.axis_distance();
       if (!(r > smallest_axis_distance))
         throw MeshError("a contact node lies on the disc's axis, where nothing slides", "surface disc_contact",
                         "move the pins away from the axis");
-      Tensor<1, 3> e_theta({-node.position[1] / r, node.position[0] / r, 0.});
-      if (rotation == Rotation::negative)
-        e_theta *= -1.;
-      Tensor<1, 3> sliding = e_theta - (e_theta * normal) * normal;
+      const Eigen::Vector3d e_theta = Eigen::Vector3d(-node.position[1], node.position[0], 0.) / (rotation == Rotation::negative ? -r : r);
+      const Eigen::Vector3d sliding = e_theta - e_theta.dot(node.normal) * node.normal;
       if (!(sliding.norm() > 1e-6))
-        throw MeshError("the sliding direction is normal to the contact face",
-                        "contact node at " + print(Point<3>(Tensor<1, 3>({node.position[0], node.position[1], node.position[2]}))),
+        throw MeshError("the sliding direction is normal to the contact face", "contact node at " + place(node.position),
                         "contact faces must not be perpendicular to the circumferential direction");
-      sliding /= sliding.norm();
-      node.normal  = to_array(normal);
-      node.sliding = to_array(sliding);
-      node.radial  = to_array(cross_product_3d(normal, sliding));
+      node.sliding = (1. / sliding.norm()) * sliding;
+      node.radial  = node.normal.cross(node.sliding);
     }
   } // namespace
 
-  double ContactNode::axis_distance() const
-  {
-    return std::hypot(position[0], position[1]);
-  }
-
-  int ContactNode::side() const
-  {
-    return normal[2] > 0. ? 1 : -1;
-  }
-
   ContactInterface pair_contact_nodes(const Model &model, const Rotation rotation, const double tolerance)
   {
-    const auto  disc_nodes = surface_nodes(model, PhysicalNames::disc_contact);
-    const auto  pin_nodes  = surface_nodes(model, PhysicalNames::pin_contact);
-    const char *advice     = "mesh both contact faces from the same plan, or raise Geometry/Pairing tolerance";
+    const auto disc_nodes = surface_nodes(model, PhysicalNames::disc_contact);
+    const auto pin_nodes  = surface_nodes(model, PhysicalNames::pin_contact);
 
     // Disc nodes sorted by x: a partner is looked for among the neighbours only
-    std::vector<std::pair<double, const SurfaceNode *>> sorted;
-    for (const SurfaceNode &node : disc_nodes)
-      sorted.emplace_back(position(model, node.node)[0], &node);
+    std::vector<std::pair<double, unsigned int>> sorted;
+    for (const auto &[number, node] : disc_nodes)
+      sorted.emplace_back(position(model, number)[0], number);
     std::sort(sorted.begin(), sorted.end());
 
     // Partners
     ContactInterface            interface;
     std::map<unsigned int, int> partners;
-    unsigned int                n_single    = 0;
-    double                      largest_gap = 0.;
-    Point<3>                    example;
-    for (const SurfaceNode &pin_node : pin_nodes)
+    unsigned int                n_single = 0;
+    std::string                 example; // of a node without one
+    for (const auto &[pin_node, pin_entry] : pin_nodes)
       {
-        const Point<3>     p       = position(model, pin_node.node);
-        const SurfaceNode *nearest = nullptr;
-        double             gap     = std::numeric_limits<double>::max();
+        const Eigen::Vector3d p       = position(model, pin_node);
+        unsigned int          nearest = 0;
+        double                gap     = std::numeric_limits<double>::infinity();
         // Far partners are sought in a wider window so that the message can name the distance.
         const double window = std::max(tolerance, 1e-2);
-        for (auto it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(p[0] - window, (const SurfaceNode *)nullptr));
+        for (auto it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(p[0] - window, 0u));
              it != sorted.end() && it->first <= p[0] + window; ++it)
-          if (const double distance = position(model, it->second->node).distance(p); distance < gap)
+          if (const double distance = (position(model, it->second) - p).norm(); distance < gap)
             {
               gap     = distance;
               nearest = it->second;
             }
-        if (nearest == nullptr || gap > tolerance)
+        if (gap > tolerance)
           {
             if (n_single++ == 0)
-              {
-                example     = p;
-                largest_gap = gap;
-              }
+              example = place(p) + (std::isinf(gap) ? " no node of the disc is within 10 mm" :
+                                                      text(" the nearest node of the disc is ", gap, " m away"));
             continue;
           }
-        if (partners[nearest->node]++ > 0)
-          throw MeshError("a node of the disc touches two pin nodes", "contact node at " + print(p),
+        if (partners[nearest]++ > 0)
+          throw MeshError("a node of the disc touches two pin nodes", "contact node at " + place(p),
                           "separate the pins, so that no two of them share a point of the disc");
 
         ContactNode node;
-        node.disc_node = nearest->node;
-        node.pin_node  = pin_node.node;
-        node.pin       = model.nodes()[pin_node.node].component;
-        node.position  = model.nodes()[nearest->node].position;
-        node.area      = pin_node.area;
-        set_frame(node, nearest->area_normal, rotation);
+        node.disc_node = nearest;
+        node.pin_node  = pin_node;
+        node.pin       = model.nodes()[pin_node].component;
+        node.position  = position(model, nearest);
+        node.area      = pin_entry.area;
+        set_frame(node, disc_nodes.at(nearest).area_normal, rotation);
         for (const unsigned int partner : {node.disc_node, node.pin_node})
           for (const int dof : model.nodes()[partner].dofs)
             if (dof < 0)
-              throw MeshError("a contact node is clamped", "contact node at " + print(p),
+              throw MeshError("a contact node is clamped", "contact node at " + place(p),
                               "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
         interface.push_back(node);
       }
 
     // Nothing may be left over on either side
+    const auto refuse = [](const std::string &what, const char *where) {
+      throw MeshError(what, where, "mesh both contact faces from the same plan, or raise Geometry/Pairing tolerance");
+    };
     if (n_single > 0)
-      {
-        std::ostringstream distance;
-        if (largest_gap < std::numeric_limits<double>::max())
-          distance << "the nearest node of the disc is " << largest_gap << " m away";
-        else
-          distance << "no node of the disc is within 10 mm";
-        throw MeshError(std::to_string(n_single) + " of " + std::to_string(pin_nodes.size()) +
-                          " nodes of pin_contact have no partner on disc_contact; e.g. at " + print(example) + " " + distance.str(),
-                        "pairing of contact nodes", advice);
-      }
+      refuse(text(n_single, " of ", pin_nodes.size(), " nodes of pin_contact have no partner on disc_contact; e.g. at ", example),
+             "pairing of contact nodes");
     if (interface.size() != disc_nodes.size())
-      throw MeshError(std::to_string(disc_nodes.size() - interface.size()) + " of " + std::to_string(disc_nodes.size()) +
-                        " nodes of disc_contact have no partner on pin_contact",
-                      "pairing of contact nodes", advice);
+      refuse(text(disc_nodes.size() - interface.size(), " of ", disc_nodes.size(), " nodes of disc_contact have no partner on pin_contact"),
+             "pairing of contact nodes");
     if (interface.empty())
-      throw MeshError("disc and pins share no contact node", "surfaces disc_contact and pin_contact", advice);
+      refuse("disc and pins share no contact node", "surfaces disc_contact and pin_contact");
     return interface;
   }
 
@@ -224,10 +188,9 @@ namespace Squeal
 
   std::vector<double> sliding_dissipation(const std::vector<double> &reactions, const OperationParameters &operation)
   {
-    std::vector<double> c_t(reactions.size(), 0.);
-    if (operation.friction_slope != 0.)
-      for (unsigned int c = 0; c < reactions.size(); ++c)
-        c_t[c] = std::abs(reactions[c]) * operation.friction_slope;
+    std::vector<double> c_t;
+    for (const double reaction : reactions)
+      c_t.push_back(std::abs(reaction) * operation.friction_slope);
     return c_t;
   }
 } // namespace Squeal

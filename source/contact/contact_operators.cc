@@ -7,21 +7,14 @@ namespace Squeal
 {
   namespace
   {
-    /// u_slave = Σ coefficient u_master, in numbers of free dofs.
-    struct SlaveRow
-    {
-      std::vector<int>    masters;
-      std::vector<double> coefficients;
-    };
-    using SlaveRows = std::map<int, SlaveRow>;
+    /// u_slave = Σ coefficient u_master: (master, coefficient) of each slave, in numbers of free dofs.
+    using SlaveRows = std::map<int, std::vector<std::pair<int, double>>>;
 
     /// Direction in which a node is eliminated: the coordinate axis nearest to the normal.
     unsigned int eliminated_direction(const ContactNode &node)
     {
-      unsigned int k = 0;
-      for (unsigned int j = 1; j < 3; ++j)
-        if (std::abs(node.normal[j]) > std::abs(node.normal[k]))
-          k = j;
+      unsigned int k;
+      node.normal.cwiseAbs().maxCoeff(&k);
       return k;
     }
 
@@ -33,27 +26,21 @@ namespace Squeal
     {
       const unsigned int k     = eliminated_direction(contact);
       const auto        &slave = model.nodes()[node_number].dofs;
-      SlaveRow          &row   = rows[slave[k]];
+      auto              &row   = rows[slave[k]];
       for (unsigned int j = 0; j < 3; ++j)
         {
           const double ratio = contact.normal[j] / contact.normal[k];
           if (ratio == 0.)
             continue;
           if (j != k)
-            {
-              row.masters.push_back(slave[j]);
-              row.coefficients.push_back(-ratio);
-            }
+            row.emplace_back(slave[j], -ratio);
           if (partner >= 0)
-            {
-              row.masters.push_back(model.nodes()[partner].dofs[j]);
-              row.coefficients.push_back(ratio);
-            }
+            row.emplace_back(model.nodes()[partner].dofs[j], ratio);
         }
     }
 
     /// Selection of the dofs that are @p kept and not slaves, with the rows of the slaves.
-    std::shared_ptr<SparseMatrix> kernel_matrix(const Epetra_Map &rows, const std::vector<bool> &kept, const SlaveRows &slaves)
+    std::shared_ptr<SparseMatrix> kernel_matrix(const RowMap &rows, const std::vector<bool> &kept, const SlaveRows &slaves)
     {
       // Columns keep the order and the owner of their dofs
       std::vector<int> column(kept.size(), -1);
@@ -62,48 +49,35 @@ namespace Squeal
         if (kept[dof] && slaves.count(dof) == 0)
           {
             column[dof] = n_columns++;
-            n_own += rows.MyGID(static_cast<int>(dof));
+            n_own += rows.place(static_cast<int>(dof)) >= 0;
           }
-      const Epetra_Map domain(n_columns, n_own, 0, rows.Comm());
-
-      auto         T   = std::make_shared<SparseMatrix>(Copy, rows, 2);
-      const double one = 1.;
-      for (int i = 0; i < rows.NumMyElements(); ++i)
-        {
-          const int dof = rows.GID(i);
-          if (!kept[dof])
-            continue;
-          if (const auto slave = slaves.find(dof); slave != slaves.end())
-            for (unsigned int m = 0; m < slave->second.masters.size(); ++m)
-              T->InsertGlobalValues(dof, 1, &slave->second.coefficients[m], &column[slave->second.masters[m]]);
-          else
-            T->InsertGlobalValues(dof, 1, &one, &column[dof]);
-        }
-      T->FillComplete(domain, rows);
-      return T;
+      return std::make_shared<SparseMatrix>(rows, RowMap::contiguous(n_own, rows.communicator()), [&](const int i, SparseMatrix::Row &row) {
+        const int dof = rows.number(i);
+        if (!kept[dof])
+          return;
+        if (const auto slave = slaves.find(dof); slave != slaves.end())
+          for (const auto &[master, coefficient] : slave->second)
+            row.emplace_back(column[master], coefficient);
+        else
+          row.emplace_back(column[dof], 1.);
+      });
     }
 
     /// Rows v_c·(u_D − u_P) for the vector v of each contact node that @p direction picks.
-    std::shared_ptr<SparseMatrix> relative_displacement(const Model                &model,
-                                                        const ContactInterface     &interface,
-                                                        const std::array<double, 3> ContactNode::*const direction)
+    std::shared_ptr<SparseMatrix> relative_displacement(const Model            &model,
+                                                        const ContactInterface &interface,
+                                                        const Eigen::Vector3d ContactNode::*const direction)
     {
-      const Epetra_Map rows(static_cast<int>(interface.size()), 0, model.free_map().Comm());
-      auto             P = std::make_shared<SparseMatrix>(Copy, rows, 6);
-      for (int i = 0; i < rows.NumMyElements(); ++i)
-        {
-          const int          c    = rows.GID(i);
-          const ContactNode &node = interface[c];
-          for (unsigned int k = 0; k < 3; ++k)
-            if (const double value = (node.*direction)[k]; value != 0.)
-              {
-                const double minus_value = -value;
-                P->InsertGlobalValues(c, 1, &value, &model.nodes()[node.disc_node].dofs[k]);
-                P->InsertGlobalValues(c, 1, &minus_value, &model.nodes()[node.pin_node].dofs[k]);
-              }
-        }
-      P->FillComplete(model.free_map(), rows);
-      return P;
+      const RowMap rows = RowMap::even(interface.size(), model.communicator());
+      return std::make_shared<SparseMatrix>(rows, model.free_map(), [&](const int i, SparseMatrix::Row &row) {
+        const ContactNode &node = interface[rows.number(i)];
+        for (unsigned int k = 0; k < 3; ++k)
+          if (const double value = (node.*direction)[k]; value != 0.)
+            {
+              row.emplace_back(model.nodes()[node.disc_node].dofs[k], value);
+              row.emplace_back(model.nodes()[node.pin_node].dofs[k], -value);
+            }
+      });
     }
   } // namespace
 
@@ -114,17 +88,22 @@ namespace Squeal
       eliminate(slaves, model, contact, contact.pin_node, contact.disc_node);
     return {relative_displacement(model, interface, &ContactNode::normal), relative_displacement(model, interface, &ContactNode::sliding),
             relative_displacement(model, interface, &ContactNode::radial),
-            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().NumGlobalElements(), true), slaves)};
+            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n(), true), slaves)};
   }
 
-  std::shared_ptr<SparseMatrix> component_kernel(const Model             &model,
-                                                 const ContactInterface  &interface,
-                                                 const std::vector<bool> &selected,
-                                                 const ContactBoundary    boundary)
+  bool belongs_to(const Node &node, const Component component)
   {
-    std::vector<bool> kept(model.free_map().NumGlobalElements(), false);
+    return (node.component == 0) == (component == Component::disc);
+  }
+
+  std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
+                                                 const ContactInterface &interface,
+                                                 const Component         component,
+                                                 const ContactBoundary   boundary)
+  {
+    std::vector<bool> kept(model.free_map().n(), false);
     for (const Node &node : model.nodes())
-      if (selected[node.component])
+      if (belongs_to(node, component))
         for (const int dof : node.dofs)
           if (dof >= 0)
             kept[dof] = true;
@@ -133,7 +112,7 @@ namespace Squeal
     if (boundary == ContactBoundary::sliding)
       for (const ContactNode &contact : interface)
         for (const unsigned int node : {contact.disc_node, contact.pin_node})
-          if (selected[model.nodes()[node].component])
+          if (belongs_to(model.nodes()[node], component))
             eliminate(slaves, model, contact, node, -1);
     return kernel_matrix(model.free_map(), kept, slaves);
   }
@@ -141,21 +120,15 @@ namespace Squeal
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u)
   {
     // Columns keep the order and the owner of the dofs that they select; a slave that equals the dof selected next does as well.
-    const Epetra_Map &columns = T.DomainMap();
-    MultiVector       q(columns, u.NumVectors());
+    const RowMap     &columns = T.columns();
+    MultiVector       q(columns, u.n_columns());
+    SparseMatrix::Row row;
     int               next = 0;
-    for (int i = 0; i < T.NumMyRows() && next < columns.NumMyElements(); ++i)
+    for (int i = 0; i < T.rows().n_local() && next < columns.n_local(); ++i)
       {
-        int     n_entries;
-        double *values;
-        int    *entries;
-        T.ExtractMyRowView(i, n_entries, values, entries);
-        if (n_entries == 1 && values[0] == 1. && T.GCID(entries[0]) == columns.GID(next))
-          {
-            for (int j = 0; j < u.NumVectors(); ++j)
-              q[j][next] = u[j][i];
-            ++next;
-          }
+        T.get_row(i, row);
+        if (row.size() == 1 && row[0] == std::make_pair(columns.number(next), 1.))
+          q.local().row(next++) = u.local().row(i);
       }
     return q;
   }

@@ -1,5 +1,5 @@
 #include <squeal/contact/coupled_system.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,14 +32,9 @@ namespace Squeal
     return {{SystemParameter::radial_damping, radial}, {SystemParameter::sliding_damping, sliding}};
   }
 
-  const Epetra_Map &CoupledSystem::map() const
+  const RowMap &CoupledSystem::map() const
   {
-    return stiffness->RowMap();
-  }
-
-  int CoupledSystem::n_contact() const
-  {
-    return friction_forces->rank();
+    return stiffness->rows();
   }
 
   ParameterValues CoupledSystem::at(const double friction_coefficient, const ParameterValues &others) const
@@ -89,23 +84,13 @@ namespace Squeal
     std::vector<CoupledTerm> coupled;
     for (const Term &body : bodies)
       {
-        auto V = multiply(*multiply(*contact.normal, *body.matrix), T_c);
-        V->Scale(0.5);
-        coupled.push_back({body, V});
+        const auto V = multiply(*multiply(*contact.normal, *body.matrix), T_c);
+        coupled.push_back({body, linear_combination({{0.5, V.get()}})});
         coupled.back().term.matrix = congruence(*body.matrix, T_c);
       }
     CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping);
     result.kernel        = contact.kernel;
     return result;
-  }
-
-  CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping)
-  {
-    std::vector<Term> terms = {sparse_term("stiffness of the bodies", 0, {}, bodies.stiffness),
-                               sparse_term("mass of the bodies", 2, {}, bodies.mass)};
-    if (bodies.damping)
-      terms.push_back(sparse_term("damping of the bodies", 1, {}, bodies.damping));
-    return couple(terms, contact, damping);
   }
 
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others)
@@ -149,12 +134,12 @@ namespace Squeal
     return result;
   }
 
-  Matrix normal_reactions(const CoupledSystem &system, const int power)
+  Matrix normal_reactions(const CoupledSystem &system, const double shift)
   {
     std::vector<std::pair<double, Matrix>> parts;
     for (const Term &term : system.terms)
-      if (is_friction(term) && term.power == power)
-        parts.emplace_back(term.coefficient.at(system.at(-1.)), term.right->sparse_transpose());
+      if (is_friction(term) && (term.power == 0 || shift != 0.))
+        parts.emplace_back(std::pow(shift, term.power) * term.coefficient.at(system.at(-1.)), term.right->sparse_transpose());
     return sum(parts);
   }
 

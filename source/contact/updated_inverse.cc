@@ -1,8 +1,6 @@
 #include <squeal/contact/updated_inverse.h>
 #include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/sparse.h>
-
-#include <cmath>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 namespace Squeal
 {
@@ -17,16 +15,6 @@ namespace Squeal
           terms.push_back(term);
       return pencil_at(sparse_matrices(terms, system.values), shift);
     }
-
-    /// V_K + s V_C + s² V_M; null: none.
-    std::shared_ptr<const SparseMatrix> reactions_at(const CoupledSystem &system, const double shift)
-    {
-      std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> parts;
-      for (int power = 0; power < 3; ++power)
-        if (const auto V = normal_reactions(system, power); V && (power == 0 || shift != 0.))
-          parts.emplace_back(std::pow(shift, power), V);
-      return sum(parts);
-    }
   } // namespace
 
   UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
@@ -36,7 +24,7 @@ namespace Squeal
 
     const MultiVector A = system.friction_forces->columns(0, n_c);
     X                   = std::make_unique<MultiVector>(solve_frictionless(A));
-    V                   = reactions_at(system, shift);
+    V                   = normal_reactions(system, shift);
     VX                  = V ? replicate(*V * *X) : DenseMatrix::Zero(n_c, n_c);
   }
 
@@ -57,23 +45,13 @@ namespace Squeal
 
   MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
   {
-    MultiVector Y(B.Map(), B.NumVectors());
+    MultiVector Y(B.map(), B.n_columns());
     factor->apply(B, Y);
     return Y;
   }
 
-  const Epetra_Map &UpdatedInverse::map() const
+  const RowMap &UpdatedInverse::map() const
   {
     return factor->map();
-  }
-
-  const MultiVector &UpdatedInverse::attachment_modes() const
-  {
-    return *X;
-  }
-
-  const Factorization &UpdatedInverse::frictionless() const
-  {
-    return *factor;
   }
 } // namespace Squeal

@@ -3,11 +3,10 @@
 #include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/replicate.h>
 
-#include <Epetra_Comm.h>
-
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numeric>
+#include <optional>
 
 namespace Squeal
 {
@@ -32,67 +31,74 @@ namespace Squeal
       Complex r, u;
     };
 
-    /// Root of the largest eigenvalue of a symmetric positive semidefinite matrix, the same on all processes.
-    double root_of_largest(const Epetra_Comm &comm, const DenseMatrix &A)
-    {
-      const std::vector<double> values = agreed(comm, symmetric_eigenpairs(A + A.transpose())).values;
-      return values.empty() ? 0. : std::sqrt(std::max(0., 0.5 * values.back()));
-    }
-
     /// The diagonal of diag(d); ones without weights.
     DenseMatrix weights_of(const Term &term, const ParameterValues &values)
     {
       return term.weighted(DenseMatrix(DenseMatrix::Ones(term.right->rank(), 1)), values);
     }
 
-    /// Largest modulus of diag(d); 1 without weights.
-    double largest_weight(const Term &term, const ParameterValues &values)
+    /// The matrix E, whose columns are those of several factors.
+    using Factors = std::vector<const LowRankFactor *>;
+
+    int total_rank(const Factors &factors)
     {
-      return max_norm(weights_of(term, values));
+      return std::accumulate(factors.begin(), factors.end(), 0,
+                             [](const int n, const LowRankFactor *factor) { return n + factor->rank(); });
     }
 
-    /// Calls @p action with each factor and its first column in E.
-    void for_columns(const std::vector<const LowRankFactor *> &factors, const std::function<void(const LowRankFactor &, int)> &action)
+    /// Calls @p action with all columns of E, some at a time, and the number of the first of them.
+    void for_chunks(const Factors &factors, const std::function<void(const MultiVector &, int)> &action)
     {
-      int first = 0;
+      int offset = 0;
       for (const LowRankFactor *factor : factors)
         {
-          action(*factor, first);
-          first += factor->rank();
+          for (int first = 0; first < factor->rank(); first += chunk_size)
+            action(factor->columns(first, std::min(chunk_size, factor->rank() - first)), offset + first);
+          offset += factor->rank();
         }
     }
 
-    /// P (K + s M)⁻¹ on sets of vectors, P the M-orthogonal projection onto the complement of the modes.
-    class ComplementInverse
+    /// EᵀX.
+    DenseMatrix transpose_times(const Factors &factors, const MultiVector &X)
     {
-    public:
-      ComplementInverse(const SparseMatrix &M, const MultiVector *modes, const LinearOperator &inverse)
-        : modes(modes)
-        , inverse(inverse)
-      {
-        if (modes != nullptr)
-          mass_times_modes = std::make_unique<MultiVector>(M * *modes);
-      }
+      DenseMatrix result;
+      for (const LowRankFactor *factor : factors)
+        {
+          const DenseMatrix rows = factor->transpose_times(X);
+          result.conservativeResize(result.rows() + rows.rows(), rows.cols());
+          result.bottomRows(rows.rows()) = rows;
+        }
+      return result;
+    }
+
+    /// P (K + s M)⁻¹ on sets of vectors, P the M-orthogonal projection onto the complement of the modes Φ, if there are any.
+    struct ComplementInverse
+    {
+      const LinearOperator      &inverse;
+      const MultiVector         *modes;            ///< Φ; null for none
+      std::optional<MultiVector> mass_times_modes; ///< M Φ
 
       MultiVector operator*(const MultiVector &F) const
       {
-        MultiVector X(F.Map(), F.NumVectors(), false);
+        MultiVector X(F.map(), F.n_columns(), false);
         inverse.apply(F, X);
         if (modes != nullptr)
           multiply_add(-1., *modes, gram(*mass_times_modes, X), 1., X);
         return X;
       }
-
-    private:
-      const MultiVector           *modes;
-      const LinearOperator        &inverse;
-      std::unique_ptr<MultiVector> mass_times_modes;
     };
+
+    /// ‖(K + s M)^−½ E‖ on the complement, the same on all processes.
+    double norm_on_complement(const Factors &factors, const ComplementInverse &complement_inverse, const MPI_Comm communicator)
+    {
+      DenseMatrix flexibility(total_rank(factors), total_rank(factors));
+      for_chunks(factors, [&](const MultiVector &F, const int first) {
+        flexibility.middleCols(first, F.n_columns()) = transpose_times(factors, complement_inverse * F);
+      });
+      const std::vector<double> values = agreed(communicator, symmetric_eigenpairs(flexibility + flexibility.transpose())).values;
+      return values.empty() ? 0. : std::sqrt(std::max(0., 0.5 * values.back()));
+    }
   } // namespace
-
-
-
-  // -------------------------------------------------------------- preparation
 
   CondensedDeterminant::CondensedDeterminant(const CoupledSystem               &system,
                                              const SymmetricModes              &modes,
@@ -106,104 +112,65 @@ namespace Squeal
   {
     for (const double eigenvalue : modes.eigenvalues)
       omega.push_back(std::sqrt(std::max(0., eigenvalue)));
-    const MultiVector      *Phi     = omega.empty() ? nullptr : modes.vectors.get();
-    const int               n_modes = omega.size();
-    const SparseMatrix     &M       = *system.mass;
-    const ComplementInverse complement_inverse(M, Phi, inverse);
+    const SparseMatrix     &M   = *system.mass;
+    const MultiVector      *Phi = omega.empty() ? nullptr : modes.vectors.get();
+    const ComplementInverse complement_inverse{inverse, Phi, Phi ? std::optional(M * *Phi) : std::nullopt};
 
-    // ---------------------------------------- terms of low rank, and their factors
-    std::vector<const LowRankFactor *> factors;
+    Factors factors;
     for (const Term &term : system.terms)
-      if (term.matrix == system.mass || term.matrix == system.stiffness || term.vanishes(system.at(1.)))
-        continue;
-      else if (term.matrix)
-        throw SolverError("the term `" + term.name + "` is not confined to the contact", "determinant condensed to the contact nodes",
-                          "take sparse LU factors instead (small systems), or leave the term out: Rayleigh damping, say");
-      else
-        {
-          auto known = std::find(factors.begin(), factors.end(), term.left.get());
-          if (known == factors.end())
-            known = factors.insert(known, term.left.get());
-          int first_row = 0;
-          for (auto factor = factors.begin(); factor != known; ++factor)
-            first_row += (*factor)->rank();
-          blocks.push_back(
-            {&term, first_row, n_modes > 0 ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
-        }
-    for (const LowRankFactor *factor : factors)
-      n_rows += factor->rank();
-    modes_forces = ComplexDenseMatrix(n_modes, n_rows);
-    if (n_modes > 0)
-      for_columns(factors, [&](const LowRankFactor &factor, const int first) {
-        modes_forces.middleCols(first, factor.rank()) = factor.transpose_times(*Phi).transpose().cast<Complex>();
-      });
-
-    // ------------------------------------------- norms, and how many terms to take
-    const auto for_chunks = [](const LowRankFactor &factor, const std::function<void(int, int)> &action) {
-      for (int first = 0; first < factor.rank(); first += chunk_size)
-        action(first, std::min(chunk_size, factor.rank() - first));
-    };
-    for (Block &block : blocks)
       {
-        const LowRankFactor &R = *block.term->right;
-        DenseMatrix          flexibility(R.rank(), R.rank());
-        for_chunks(R, [&](const int first, const int n) {
-          flexibility.middleCols(first, n) = R.transpose_times(complement_inverse * R.columns(first, n));
-        });
-        block.norm = largest_weight(*block.term, system.values) * root_of_largest(M.Comm(), flexibility);
+        if (term.matrix == system.mass || term.matrix == system.stiffness || term.vanishes(system.at(1.)))
+          continue;
+        if (term.matrix)
+          throw SolverError("the term `" + term.name + "` is not confined to the contact", "determinant condensed to the contact nodes",
+                            "take sparse LU factors instead (small systems), or leave the term out: Rayleigh damping, say");
+        const auto known     = std::find(factors.begin(), factors.end(), term.left.get());
+        const int  first_row = total_rank({factors.begin(), known});
+        if (known == factors.end())
+          factors.push_back(term.left.get());
+        blocks.push_back({&term, first_row, Phi ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
       }
-    DenseMatrix flexibility(n_rows, n_rows);
-    for_columns(factors, [&](const LowRankFactor &factor, const int first_column) {
-      for_chunks(factor, [&](const int first, const int n) {
-        const MultiVector X = complement_inverse * factor.columns(first, n);
-        for_columns(factors, [&](const LowRankFactor &other, const int first_row) {
-          flexibility.block(first_row, first_column + first, other.rank(), n) = other.transpose_times(X);
-        });
-      });
-    });
-    forces_norm = root_of_largest(M.Comm(), flexibility);
+    n_rows       = total_rank(factors);
+    modes_forces = ComplexDenseMatrix(omega.size(), n_rows);
+    if (Phi != nullptr && n_rows > 0)
+      modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
-    const auto sufficient = [&](const int n) {
-      return std::all_of(request.lambda.begin(), request.lambda.end(), [&](const Complex lambda) {
-        return truncation(lambda, request.largest_friction_coefficient, n) <= request.tolerance;
-      });
+    // Norms, and how many terms to take
+    for (Block &block : blocks)
+      block.norm = max_norm(weights_of(*block.term, system.values)) *
+                   norm_on_complement({block.term->right.get()}, complement_inverse, M.communicator());
+    forces_norm          = norm_on_complement(factors, complement_inverse, M.communicator());
+    const auto is_coarse = [&](const Complex lambda) {
+      return !(truncation(lambda, request.largest_friction_coefficient) <= request.tolerance);
     };
-    for (n_terms = 1; !sufficient(n_terms); ++n_terms)
+    for (n_terms = 1; std::any_of(request.lambda.begin(), request.lambda.end(), is_coarse); ++n_terms)
       if (n_terms == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
                           "determinant condensed to the contact nodes", "take more real modes");
 
-    // ----------------------------------------------------------------- moments
+    // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H blows up what rounding leaves of the modes: it is taken out in every step.
     for (Block &block : blocks)
       block.moments.assign(n_terms, DenseMatrix(block.term->right->rank(), n_rows));
     const double w = deflation_square + shift;
-    for_columns(factors, [&](const LowRankFactor &factor, const int first_column) {
-      for_chunks(factor, [&](const int first, const int n) {
-        const auto keep = [&](const int k, const MultiVector &T) {
+    for_chunks(factors, [&](const MultiVector &F, const int first) {
+      MultiVector T = complement_inverse * F, previous(T);
+      for (int k = 0; k < n_terms; ++k)
+        {
+          if (k > 0)
+            {
+              MultiVector  next = complement_inverse * (M * T);
+              const double two  = k == 1 ? 1. : 2.;
+              next.local()      = two * (2. * w * next.local() - T.local());
+              if (k > 1)
+                next -= previous;
+              previous = std::move(T);
+              T        = std::move(next);
+            }
           for (Block &block : blocks)
-            block.moments[k].middleCols(first_column + first, n) = block.term->right->transpose_times(T);
-        };
-        // T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H blows up what rounding leaves of the modes: it is taken out in every step.
-        MultiVector T = complement_inverse * factor.columns(first, n), previous(T);
-        keep(0, T);
-        for (int k = 1; k < n_terms; ++k)
-          {
-            MultiVector  next = complement_inverse * (M * T);
-            const double two  = k == 1 ? 1. : 2.;
-            next.Update(-two, T, 2. * w * two);
-            if (k > 1)
-              next.Update(-1., previous, 1.);
-            previous = T;
-            T        = next;
-            keep(k, T);
-          }
-      });
+            block.moments[k].middleCols(first, F.n_columns()) = block.term->right->transpose_times(T);
+        }
     });
   }
-
-
-
-  // --------------------------------------------------------------- evaluation
 
   ComplexDenseMatrix CondensedDeterminant::complement(const Complex lambda, const double mu) const
   {
@@ -234,8 +201,6 @@ namespace Squeal
     return N;
   }
 
-
-
   CondensedDeterminant::OnModes CondensedDeterminant::on_modes(const Complex lambda, const double mu) const
   {
     const ParameterValues values  = system.at(mu);
@@ -259,35 +224,22 @@ namespace Squeal
     return result;
   }
 
-
-
-  double CondensedDeterminant::truncation(const Complex lambda, const double mu, const int n) const
+  double CondensedDeterminant::truncation(const Complex lambda, const double mu) const
   {
     const ParameterValues values = system.at(mu);
     // Σ_{k ≥ n} 2 |u|ᵏ / |r|
     const Ratio  ratio(lambda, deflation_square, shift);
-    const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n) / (1. - u) / std::abs(ratio.r);
+    const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n_terms) / (1. - u) / std::abs(ratio.r);
     double       rows = 0.;
     for (const Block &block : blocks)
       rows += std::abs(block.term->factor(lambda, values)) * block.norm;
     return rows * tail * forces_norm;
   }
 
-
-
-  double CondensedDeterminant::truncation(const Complex lambda, const double mu) const
-  {
-    return truncation(lambda, mu, n_terms);
-  }
-
-
-
   const std::vector<double> &CondensedDeterminant::frequencies() const
   {
     return omega;
   }
-
-
 
   int CondensedDeterminant::n_moments() const
   {

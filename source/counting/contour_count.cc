@@ -2,14 +2,14 @@
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/counting/condensed_determinant.h>
 #include <squeal/counting/contour_count.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
 
 namespace Squeal
 {
@@ -28,8 +28,6 @@ namespace Squeal
     /// Steps below this part of ω_high mean that a zero lies on the contour; so close may no real mode be to its ends.
     constexpr double shortest_step = 1e-9;
 
-    // ------------------------------------------------------------------- contour
-
     /// Corners of what is followed, counterclockwise, and how often it makes up the whole contour.
     struct Contour
     {
@@ -40,31 +38,18 @@ namespace Squeal
         , multiplicity(damped ? 1 : 2)
       {
         if (!(high > low))
-          throw SolverError(number(hertz(high)) + " Hz as the end of the band, " + number(hertz(low)) + " Hz as its beginning", place,
-                            "let the band end above its beginning");
+          throw SolverError(decimal_text(hertz(high)) + " Hz as the end of the band, " + decimal_text(hertz(low)) + " Hz as its beginning",
+                            place, "let the band end above its beginning");
         if (damped)
           corners = {{0., low}, {width, low}, {width, high}, {-width, high}, {-width, low}, {0., low}};
         else
           corners = {{0., low}, {width, low}, {width, high}, {0., high}};
       }
 
-      static std::string number(const double value)
-      {
-        std::ostringstream stream;
-        stream << value;
-        return stream.str();
-      }
-
-      /// Largest |λ|.
-      double radius() const
-      {
-        return std::hypot(width, high);
-      }
-
       [[noreturn]] void refuse(const std::string &why, const Complex lambda) const
       {
-        throw SolverError("the count is refused: " + why + " at " + number(hertz(lambda.imag())) + " Hz with a growth rate of " +
-                            number(lambda.real()) + " 1/s",
+        throw SolverError(text("the count is refused: ", why, " at ", decimal_text(hertz(lambda.imag())), " Hz with a growth rate of ",
+                               lambda.real(), " 1/s"),
                           place,
                           std::abs(lambda.real()) < width ? "move the end of the band off the mode, or allow more points" :
                                                             "choose another width of the contour, or allow more points");
@@ -74,8 +59,6 @@ namespace Squeal
       int                  multiplicity;
       std::vector<Complex> corners;
     };
-
-    // ------------------------------------------------------------------- following
 
     /// Turns of the determinant along the contour; n_points and largest_phase_step of @p count take account of them.
     int turns(FollowedDeterminant  &determinant,
@@ -120,7 +103,7 @@ namespace Squeal
 
       const double turns = contour.multiplicity * phase / (2. * M_PI), whole = std::round(turns);
       if (!(std::abs(turns - whole) < 1e-3))
-        throw SolverError("the determinant does not return to its phase: " + Contour::number(turns) + " turns", place,
+        throw SolverError("the determinant does not return to its phase: " + text(turns) + " turns", place,
                           "choose another end of the band or another width of the contour");
       return whole;
     }
@@ -134,7 +117,22 @@ namespace Squeal
       return below(contour.high) - below(contour.low);
     }
 
-    // ------------------------------------------------------------------ both methods
+    /// None may lie on the contour, and inside have to be as many as there are by inertia.
+    void check_real_modes(const SymmetricModes &modes, const Contour &contour, const int n_frictionless)
+    {
+      int n_inside = 0;
+      for (const double eigenvalue : modes.eigenvalues)
+        {
+          const double omega = std::sqrt(std::max(0., eigenvalue));
+          n_inside += omega > contour.low && omega < contour.high;
+          for (const double end : {contour.low, contour.high})
+            if (std::abs(omega - end) < shortest_step * contour.high)
+              contour.refuse("a real mode lies on the contour", {0., end});
+        }
+      if (n_inside != n_frictionless)
+        throw SolverError(text(n_inside, " real modes were found in the band, ", n_frictionless, " exist"), place,
+                          "move the end of the band off the mode next to it");
+    }
 
     std::vector<ContourCount> count_condensed(const CoupledSystem       &system,
                                               const std::vector<double> &mu,
@@ -155,23 +153,11 @@ namespace Squeal
           factor       = factorize_positive_definite(real.shift > 0. ? *add(1., K, real.shift, M) : K, real.library, real.what);
           real.inverse = factor.get();
         }
-      const double         deflation_end = std::max(1.05, options.deflation) * contour.radius();
+      const double         deflation_end = std::max(1.05, options.deflation) * std::hypot(contour.width, contour.high); // the largest |λ|
       const SymmetricModes modes         = symmetric_modes(K, M, deflation_end * deflation_end, real);
 
-      // Their number inside, by inertia alone
       const int n_frictionless = n_frictionless_modes(system, contour);
-      int       n_inside       = 0;
-      for (const double eigenvalue : modes.eigenvalues)
-        {
-          const double omega = std::sqrt(std::max(0., eigenvalue));
-          n_inside += omega > contour.low && omega < contour.high;
-          for (const double end : {contour.low, contour.high})
-            if (std::abs(omega - end) < shortest_step * contour.high)
-              contour.refuse("a real mode lies on the contour", {0., end});
-        }
-      if (n_inside != n_frictionless)
-        throw SolverError(std::to_string(n_inside) + " real modes were found in the band, " + std::to_string(n_frictionless) + " exist",
-                          place, "move the end of the band off the mode next to it");
+      check_real_modes(modes, contour, n_frictionless);
 
       CondensedDeterminantRequest request;
       request.lambda = {{0., contour.low}, {contour.width, contour.low}, {contour.width, contour.high}, {0., contour.high}};
@@ -193,7 +179,7 @@ namespace Squeal
             [&](const Complex lambda) {
               return FollowedDense::Sample{determinant->complement(lambda, friction), {}, 0., determinant->truncation(lambda, friction)};
             },
-            {}, options.largest_phase_step, M.Comm());
+            {}, options.largest_phase_step, M.communicator());
           FollowedDense on_modes(
             [&](const Complex lambda) {
               CondensedDeterminant::OnModes sample = determinant->on_modes(lambda, friction);
@@ -201,7 +187,7 @@ namespace Squeal
               return FollowedDense::Sample{std::move(sample.matrix), std::move(sample.resonances), bound * sample.complement_inverse,
                                            bound * sample.gain};
             },
-            determinant->frequencies(), options.largest_phase_step, M.Comm());
+            determinant->frequencies(), options.largest_phase_step, M.communicator());
 
           ContourCount count;
           count.n_frictionless = n_frictionless;
@@ -209,7 +195,6 @@ namespace Squeal
           count.n_modes += turns(on_modes, contour, options, count, progress);
           count.truncation_bound = std::max(complement.error, on_modes.error);
           count.n_moments        = determinant->n_moments();
-          count.n_deflated       = modes.eigenvalues.size();
           if (count.truncation_bound <= largest_truncation)
             {
               results.push_back(count);
@@ -224,8 +209,6 @@ namespace Squeal
         }
       return results;
     }
-
-
 
     std::vector<ContourCount> count_sparse(const CoupledSystem       &system,
                                            const std::vector<double> &mu,
@@ -249,8 +232,6 @@ namespace Squeal
     }
   } // namespace
 
-
-
   ContourMethod contour_method(const CoupledSystem &system)
   {
     const bool confined = std::all_of(system.terms.begin(), system.terms.end(), [&system](const Term &term) {
@@ -258,8 +239,6 @@ namespace Squeal
     });
     return confined ? ContourMethod::condensed : ContourMethod::sparse_lu;
   }
-
-
 
   std::vector<ContourCount> count_by_contour(const CoupledSystem       &system,
                                              const std::vector<double> &mu,

@@ -5,14 +5,13 @@
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_determinant.h>
 
-#include <Epetra_Comm.h>
-
 #include <algorithm>
 #include <cmath>
 #include <complex>
 #include <functional>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace Squeal
@@ -46,8 +45,6 @@ namespace Squeal
     int n_points = 0;
   };
 
-
-
   /// ‖F‖_F of a step. Between its ends F may exceed it, but must stay below 1.
   constexpr double largest_change = 0.5;
 
@@ -66,7 +63,7 @@ namespace Squeal
     using Function = std::function<Sample(std::complex<double>)>;
 
     /// @p poles of the matrix on the positive imaginary axis, to which steps are kept short
-    FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, const Epetra_Comm &comm)
+    FollowedDense(Function function, std::vector<double> poles, const double largest_phase_step, MPI_Comm comm)
       : function(std::move(function))
       , poles(std::move(poles))
       , largest_phase_step(largest_phase_step)
@@ -75,32 +72,33 @@ namespace Squeal
 
     void start(const std::complex<double> lambda) override
     {
-      set_next(evaluate(lambda));
+      ++n_points;
+      set_next(function(lambda));
       accept();
     }
 
     Step attempt(const std::complex<double> lambda) override
     {
-      Sample             sample = evaluate(lambda);
+      ++n_points;
+      Sample             sample = function(lambda);
       ComplexDenseMatrix F      = sample.matrix;
       F                         = current.factors->solve(F);
       F.diagonal().array() -= 1.;
       const std::complex<double> trace = F.trace();
       // A NaN must not reach LAPACK.
-      const double        norm   = F.norm();
-      std::vector<double> agreed = {std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag()};
-      agree_on(agreed);
-      const double infinity = std::numeric_limits<double>::infinity();
-      Step         step{std::isfinite(agreed[0]) ? agreed[0] / largest_change : infinity, 0.};
+      const double norm         = F.norm();
+      const auto [size, phase]  = agreed_pair(std::isfinite(norm) ? std::min(norm, balanced(F).norm()) : norm, trace.imag());
+      constexpr double infinity = std::numeric_limits<double>::infinity();
+      Step             step{std::isfinite(size) ? size / largest_change : infinity, 0.};
       if (step.size > 1.)
         return step;
 
       set_next(std::move(sample));
       step.phase = next.argument - current.argument;
-      step.phase += 2. * M_PI * std::round((agreed[1] - step.phase) / (2. * M_PI));
+      step.phase += 2. * M_PI * std::round((phase - step.phase) / (2. * M_PI));
       step.largest_phase = std::abs(step.phase);
       // Farther from the trace than the bound: rounding has spoilt one of the two.
-      if (!(std::abs(step.phase - agreed[1]) <= -std::log(1. - agreed[0]) - agreed[0] + 1e-6))
+      if (!(std::abs(step.phase - phase) <= -std::log(1. - size) - size + 1e-6))
         return {infinity, 0.};
       step.size = std::max(step.size, step.largest_phase / largest_phase_step);
       return step;
@@ -114,10 +112,9 @@ namespace Squeal
 
     double longest_step(const std::complex<double> lambda) const override
     {
-      double distance = std::numeric_limits<double>::infinity();
+      double distance = std::numeric_limits<double>::infinity(); // to a pole ±iω
       for (const double omega : poles)
-        distance =
-          std::min({distance, std::abs(lambda - std::complex<double>(0., omega)), std::abs(lambda + std::complex<double>(0., omega))});
+        distance = std::min(distance, std::hypot(lambda.real(), std::abs(lambda.imag()) - omega));
       return 0.5 * distance;
     }
 
@@ -130,38 +127,28 @@ namespace Squeal
       double                   argument = 0., error = 0.;
     };
 
-    Sample evaluate(const std::complex<double> lambda)
-    {
-      ++n_points;
-      return function(lambda);
-    }
-
     void set_next(Sample sample)
     {
       next.factors.emplace(sample.matrix);
       double norm = std::sqrt(sample.matrix.rows()) * next.factors->inverse_norm();
       if (!sample.scaling.empty() && std::isfinite(norm))
         norm = next.factors->solve(as_column(sample.scaling).asDiagonal()).norm();
-      std::vector<double> agreed = {next.factors->log_determinant().imag(), sample.offset + sample.factor * norm};
-      agree_on(agreed);
-      next.argument = agreed[0];
-      next.error    = agreed[1];
+      std::tie(next.argument, next.error) = agreed_pair(next.factors->log_determinant().imag(), sample.offset + sample.factor * norm);
     }
 
     /// Every process computes the same; steps are decided upon what process 0 found.
-    void agree_on(std::vector<double> &values) const
+    std::pair<double, double> agreed_pair(const double first, const double second) const
     {
-      values = agreed(comm, {std::move(values), {}}).values;
+      const std::vector<double> values = agreed(comm, {{first, second}, {}}).values;
+      return {values[0], values[1]};
     }
 
     const Function            function;
     const std::vector<double> poles;
     const double              largest_phase_step;
-    const Epetra_Comm        &comm;
+    MPI_Comm                  comm;
     Point                     current, next;
   };
-
-
 
   /// det Q.
   class FollowedSparse : public FollowedDeterminant
@@ -174,14 +161,15 @@ namespace Squeal
 
     void start(const std::complex<double> lambda) override
     {
-      next = {lambda, evaluate(lambda)};
-      accept();
+      ++n_points;
+      current = {lambda, determinant.logarithm(lambda)};
     }
 
     Step attempt(const std::complex<double> lambda) override
     {
-      const std::complex<double> middle = evaluate(0.5 * (current.lambda + lambda));
-      next                              = {lambda, evaluate(lambda)};
+      n_points += 2;
+      const std::complex<double> middle = determinant.logarithm(0.5 * (current.lambda + lambda));
+      next                              = {lambda, determinant.logarithm(lambda)};
       const std::complex<double> first = change(current.logarithm, middle), second = change(middle, next.logarithm);
       const double               largest = std::max(std::abs(first), std::abs(second));
       return {std::isfinite(largest) ? largest / largest_phase_step : std::numeric_limits<double>::infinity(), first.imag() + second.imag(),
@@ -198,12 +186,6 @@ namespace Squeal
     {
       std::complex<double> lambda, logarithm;
     };
-
-    std::complex<double> evaluate(const std::complex<double> lambda)
-    {
-      ++n_points;
-      return determinant.logarithm(lambda);
-    }
 
     static std::complex<double> change(const std::complex<double> from, const std::complex<double> to)
     {

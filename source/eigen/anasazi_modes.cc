@@ -1,93 +1,30 @@
+#include "anasazi_traits.h"
 #include "shift_invert.h"
 
 #include <squeal/base/exceptions.h>
 
 #include <AnasaziBasicEigenproblem.hpp>
 #include <AnasaziBlockKrylovSchurSolMgr.hpp>
-#include <AnasaziEpetraAdapter.hpp>
-#include <Epetra_Comm.h>
-#include <Epetra_Operator.h>
 
 #include <algorithm>
 
 namespace Squeal
 {
-  namespace
-  {
-    /// Our operator as Anasazi sees it.
-    class EpetraShiftInvert : public Epetra_Operator
-    {
-    public:
-      explicit EpetraShiftInvert(const ShiftInvert &A)
-        : A(A)
-      {}
-
-      int Apply(const Epetra_MultiVector &X, Epetra_MultiVector &Y) const override
-      {
-        A.apply(X, Y);
-        return 0;
-      }
-
-      int ApplyInverse(const Epetra_MultiVector &, Epetra_MultiVector &) const override
-      {
-        return -1;
-      }
-      int SetUseTranspose(bool) override
-      {
-        return -1;
-      }
-      double NormInf() const override
-      {
-        return -1.;
-      }
-      bool HasNormInf() const override
-      {
-        return false;
-      }
-      bool UseTranspose() const override
-      {
-        return false;
-      }
-      const char *Label() const override
-      {
-        return "(K + s M)^-1 M";
-      }
-      const Epetra_Comm &Comm() const override
-      {
-        return A.mass().Comm();
-      }
-      const Epetra_Map &OperatorDomainMap() const override
-      {
-        return A.mass().DomainMap();
-      }
-      const Epetra_Map &OperatorRangeMap() const override
-      {
-        return A.mass().RangeMap();
-      }
-
-    private:
-      const ShiftInvert &A;
-    };
-  } // namespace
-
-
-
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request)
   {
-    using Vectors  = Epetra_MultiVector;
-    using Operator = Epetra_Operator;
-    using Problem  = Anasazi::BasicEigenproblem<double, Vectors, Operator>;
+    using Problem = Anasazi::BasicEigenproblem<double, MultiVector, LinearOperator>;
+    using Teuchos::rcp;
 
     // The basis and one more block must be linearly independent.
     const int n          = A.n_free();
     const int block_size = std::max(1, std::min(request.block_size, n / 4));
 
-    Teuchos::RCP<Vectors> start = Teuchos::rcp(new Vectors(random_vectors(A.mass().DomainMap(), block_size, request.seed)));
+    const auto start = rcp(new MultiVector(random_vectors(A.map(), block_size, request.seed)));
     A.project(*start);
 
-    const Teuchos::RCP<Problem> problem = Teuchos::rcp(new Problem(Teuchos::RCP<Operator>(Teuchos::rcp(new EpetraShiftInvert(A))), start));
-    // Anasazi takes the mass matrix non-const but only applies it.
-    problem->setM(Teuchos::rcp(const_cast<SparseMatrix *>(&A.mass()), false));
+    const Teuchos::RCP<const LinearOperator> inverse(&A, Teuchos::RCP_WEAK_NO_DEALLOC), mass(&A.mass(), Teuchos::RCP_WEAK_NO_DEALLOC);
+    const auto                               problem = rcp(new Problem(inverse, start));
+    problem->setM(mass);
     problem->setHermitian(true);
     problem->setNEV(request.n_wanted);
     if (!problem->setProblem())
@@ -115,7 +52,7 @@ namespace Squeal
     parameters.set("Orthogonalization", "DGKS");
     try
       {
-        Anasazi::BlockKrylovSchurSolMgr<double, Vectors, Operator> solver(problem, parameters);
+        Anasazi::BlockKrylovSchurSolMgr<double, MultiVector, LinearOperator> solver(problem, parameters);
         // How many converged is seen below.
         solver.solve();
       }
@@ -127,6 +64,6 @@ namespace Squeal
     const auto &solution = problem->getSolution();
     if (solution.numVecs == 0)
       return {};
-    return MultiVector(Copy, *solution.Evecs, 0, solution.numVecs);
+    return view(*solution.Evecs, 0, solution.numVecs);
   }
 } // namespace Squeal

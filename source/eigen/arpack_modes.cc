@@ -2,7 +2,6 @@
 
 #include <squeal/base/exceptions.h>
 
-#include <Epetra_MpiComm.h>
 #include <mpi.h>
 
 #include <algorithm>
@@ -68,19 +67,16 @@ namespace Squeal
     }
   } // namespace
 
-
-
   std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request)
   {
-    const Epetra_Map &map     = A.mass().DomainMap();
-    const auto       *mpi     = dynamic_cast<const Epetra_MpiComm *>(&map.Comm());
-    const int         comm    = MPI_Comm_c2f(mpi != nullptr ? mpi->Comm() : MPI_COMM_SELF);
-    const int         n_local = map.NumMyElements();
+    const RowMap &map     = A.map();
+    const int     comm    = MPI_Comm_c2f(map.communicator());
+    const int     n_local = map.n_local();
 
     // ARPACK refuses processes without rows: those get one whose entries stay zero.
     const int n   = std::max(1, n_local);
     const int nev = request.n_wanted;
-    const int ncv = std::min(map.NumGlobalElements(), std::max(2 * nev + 20, nev + 40));
+    const int ncv = std::min(map.n(), std::max(2 * nev + 20, nev + 40));
 
     std::vector<double> resid(n), v(static_cast<std::size_t>(n) * ncv), workd(3 * static_cast<std::size_t>(n));
     const int           lworkl = ncv * (ncv + 8);
@@ -92,9 +88,9 @@ namespace Squeal
 
     MultiVector start = random_vectors(map, 1, request.seed);
     A.project(start);
-    std::copy(start[0], start[0] + n_local, resid.begin());
+    std::copy_n(start.col(0).begin(), n_local, resid.begin());
 
-    const auto vector = [&](double *values) { return MultiVector(View, map, values, n, 1); };
+    const auto vector = [&](double *values) { return MultiVector(map, values, 1); };
     double     tol    = request.tolerance;
     int        ido = 0, info = 1;
     while (true)
@@ -115,7 +111,7 @@ namespace Squeal
               A.apply_to_image(vector(workd.data() + ipntr[2] - 1), y);
               break;
             case 2:
-              A.mass().Multiply(false, x, y);
+              A.mass().apply(x, y);
               break;
             default:
               throw_arpack("pdsaupd (unknown request)", ido, request.what);
@@ -135,7 +131,8 @@ namespace Squeal
              v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 1, 2);
     if (info != 0)
       throw_arpack("pdseupd", info, request.what);
-    const int n_converged = iparam[4];
-    return MultiVector(Copy, map, v.data(), n, n_converged);
+    const int         n_converged = iparam[4];
+    const MultiVector converged(map, v.data(), n_converged);
+    return converged;
   }
 } // namespace Squeal

@@ -1,7 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
+#include <squeal/linear_algebra/communication.h>
 
-#include <Epetra_Comm.h>
 #include <Eigen/QR>
 #include <lapacke.h>
 
@@ -18,18 +18,6 @@ namespace Squeal
     constexpr double negligible = 1e-15;
     /// Unit vectors of which projecting them again leaves less than this were rounding errors.
     constexpr double meaningless = 1e-3;
-
-    /// Every process takes the values of the first one: branches must not depend on how a sum was rounded.
-    void replicate(const Epetra_Comm &comm, double *values, const std::size_t n)
-    {
-      if (n > 0)
-        comm.Broadcast(values, static_cast<int>(n), 0);
-    }
-
-    void replicate(const Epetra_Comm &comm, DenseMatrix &A)
-    {
-      replicate(comm, A.data(), A.size());
-    }
 
     /// Parts of stacked coordinates, each of r rows, side by side.
     DenseMatrix parts_of(const DenseMatrix &states, const int degree)
@@ -66,7 +54,7 @@ namespace Squeal
      */
     DenseMatrix pivoted_qr(MultiVector &X, std::vector<double> smallest)
     {
-      const int        b = X.NumVectors();
+      const int        b = X.n_columns();
       DenseMatrix      R = DenseMatrix::Zero(b, b);
       std::vector<int> permutation(b);
       std::iota(permutation.begin(), permutation.end(), 0);
@@ -76,7 +64,7 @@ namespace Squeal
         {
           const MultiVector   remaining = view(X, k, b - k);
           std::vector<double> norms     = column_norms(remaining);
-          replicate(X.Comm(), norms.data(), norms.size());
+          agree(X.communicator(), norms.data(), norms.size());
           int pivot = 0;
           for (int j = 1; j < b - k; ++j)
             if (norms[j] > norms[pivot])
@@ -89,8 +77,8 @@ namespace Squeal
               pivot += k;
               MultiVector       first = view(X, k, 1), second = view(X, pivot, 1);
               const MultiVector copy = first;
-              first.Update(1., second, 0.);
-              second.Update(1., copy, 0.);
+              first                  = second;
+              second                 = copy;
               R.col(k).head(k).swap(R.col(pivot).head(k));
               std::swap(permutation[k], permutation[pivot]);
               std::swap(smallest[k], smallest[pivot]);
@@ -100,7 +88,7 @@ namespace Squeal
 
           // ------------------------------------------------- removed from the others
           MultiVector q = view(X, k, 1);
-          q.Scale(1. / largest);
+          q *= 1. / largest;
           R(k, k) = largest;
           if (k + 1 < b)
             {
@@ -136,8 +124,8 @@ namespace Squeal
     }
   } // namespace
 
-  CompactKrylov::CompactKrylov(const Epetra_Map &map, const int degree, const int n_reserved)
-    : map(&map)
+  CompactKrylov::CompactKrylov(const RowMap &map, const int degree, const int n_reserved)
+    : map(map)
     , degree(degree)
     , U(std::make_unique<MultiVector>(map, std::max(n_reserved, 1), false))
   {}
@@ -164,20 +152,20 @@ namespace Squeal
 
   void CompactKrylov::reserve(const int n)
   {
-    if (n <= U->NumVectors())
+    if (n <= U->n_columns())
       return;
-    auto larger = std::make_unique<MultiVector>(*map, n + n / 2, false);
+    auto larger = std::make_unique<MultiVector>(map, n + n / 2, false);
     if (r > 0)
       {
         MultiVector target = view(*larger, 0, r);
-        target.Update(1., basis(), 0.);
+        target             = basis();
       }
     U = std::move(larger);
   }
 
   DenseMatrix CompactKrylov::absorb(MultiVector &X, const std::vector<double> &magnitudes)
   {
-    DenseMatrix coefficients = DenseMatrix::Zero(r, X.NumVectors()), R = DenseMatrix::Identity(X.NumVectors(), X.NumVectors());
+    DenseMatrix coefficients = DenseMatrix::Zero(r, X.n_columns()), R = DenseMatrix::Identity(X.n_columns(), X.n_columns());
     const auto  project = [&](MultiVector &Q) {
       if (r == 0)
         return 0.;
@@ -197,7 +185,7 @@ namespace Squeal
       {
         MultiVector Q       = view(X, 0, R.rows());
         double      removed = project(Q);
-        replicate(map->Comm(), &removed, 1);
+        agree(map.communicator(), &removed, 1);
         R = pivoted_qr(Q, std::vector<double>(R.rows(), meaningless)) * R;
         if (removed < 1e-8)
           break;
@@ -208,8 +196,8 @@ namespace Squeal
       {
         reserve(r + n_new);
         MultiVector target = view(*U, r, n_new);
-        target.Update(1., view(X, 0, n_new), 0.);
-        G = stacked(parts_of(G, degree), degree, r + n_new);
+        target             = view(X, 0, n_new);
+        G                  = stacked(parts_of(G, degree), degree, r + n_new);
         r += n_new;
       }
     return above(coefficients, R);
@@ -229,7 +217,7 @@ namespace Squeal
         coefficients += removed * R;
         R              = pivoted_qr(X, round == 0 ? smallest : meaningless) * R;
         double largest = max_norm(removed);
-        replicate(map->Comm(), &largest, 1);
+        agree(map.communicator(), &largest, 1);
         if (round > 0 && largest < 1e-8)
           break;
       }
@@ -252,7 +240,7 @@ namespace Squeal
   {
     // ------------------------------------------------- upper part of the image
     const DenseMatrix parts = parts_of(G.middleCols(m, b), degree);
-    MultiVector       states(*map, degree * b, false), image(*map, b, false);
+    MultiVector       states(map, degree * b, false), image(map, b, false);
     multiply_add(1., basis(), parts, 0., states);
     apply(states, image);
 
@@ -294,10 +282,10 @@ namespace Squeal
       throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(m) + " rows",
                         "eigenvalues of the quadratic pencil",
                         "check the matrices for entries that are not finite, or choose another shift");
-    replicate(map->Comm(), T);
-    replicate(map->Comm(), Z);
-    replicate(map->Comm(), real.data(), m);
-    replicate(map->Comm(), imaginary.data(), m);
+    agree(map.communicator(), T);
+    agree(map.communicator(), Z);
+    agree(map.communicator(), real.data(), m);
+    agree(map.communicator(), imaginary.data(), m);
 
     ritz.eigenvectors      = Z;
     DenseMatrix &Y         = ritz.eigenvectors;
@@ -308,9 +296,9 @@ namespace Squeal
     const auto width = [&](const int j) { return imaginary[j] != 0. ? 2 : 1; };
     for (int j = 0; j < m; j += width(j))
       Y.middleCols(j, width(j)).normalize();
-    replicate(map->Comm(), Y);
+    agree(map.communicator(), Y);
     DenseMatrix errors = H.bottomRows(b) * Y;
-    replicate(map->Comm(), errors);
+    agree(map.communicator(), errors);
 
     // ------------------------------------------------- by descending |ν|
     struct Entry
@@ -357,8 +345,8 @@ namespace Squeal
                         &condition, &separation, work.data(), m, &integer_work, 1);
     if (q > 0 && q < m && T(q, q - 1) != 0.)
       ++q;
-    replicate(map->Comm(), T);
-    replicate(map->Comm(), Z);
+    agree(map.communicator(), T);
+    agree(map.communicator(), Z);
     const DenseMatrix kept = Z.leftCols(q);
 
     // ------------------------------------------------- new coordinates and [H; B]
@@ -368,9 +356,9 @@ namespace Squeal
     // ------------------------------------------------- smallest basis of all parts
     DenseMatrix       P = parts_of(states, degree);
     const DenseMatrix R = pivoted_qr(P, negligible);
-    replicate(map->Comm(), P);
+    agree(map.communicator(), P);
 
-    auto        compressed = std::make_unique<MultiVector>(*map, U->NumVectors(), false);
+    auto        compressed = std::make_unique<MultiVector>(map, U->n_columns(), false);
     MultiVector target     = view(*compressed, 0, P.cols());
     multiply_add(1., basis(), P, 0., target);
     U = std::move(compressed);
@@ -381,14 +369,14 @@ namespace Squeal
 
   CompactKrylov CompactKrylov::deflated(const RitzPairs &ritz, const int n_locked) const
   {
-    CompactKrylov result(*map, degree, r);
+    CompactKrylov result(map, degree, r);
     MultiVector   target = view(*result.U, 0, r);
-    target.Update(1., basis(), 0.);
-    result.r = r;
-    result.m = m;
-    result.b = b;
-    result.G = G;
-    result.H = H;
+    target               = basis();
+    result.r             = r;
+    result.m             = m;
+    result.b             = b;
+    result.G             = G;
+    result.H             = H;
     result.restart(ritz, n_locked);
     result.b = 0;
     result.G.conservativeResize(Eigen::NoChange, result.m);

@@ -2,7 +2,7 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 namespace Squeal
 {
@@ -20,8 +20,6 @@ namespace Squeal
     throw SolverError("the modes below " + std::to_string(limit) + " rad²/s² cannot be counted: K - limit M stays singular", what,
                       "check that M is positive definite and that no dof is without stiffness and mass");
   }
-
-
 
   int count_modes(const SparseMatrix &K, const SparseMatrix &M, const double largest_eigenvalue, const std::string &what)
   {

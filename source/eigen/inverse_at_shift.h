@@ -33,23 +33,23 @@ namespace Squeal
     /// Upper part of S x for the states x = [u v] (degree two) or [u] (degree one).
     void apply(const MultiVector &states, MultiVector &image) const
     {
-      const int         b = image.NumVectors();
+      const int         b = image.n_columns();
       const MultiVector u = view(states, 0, b);
-      MultiVector       force(image.Map(), b, false);
+      MultiVector       force(image.map(), b, false);
       if (degree == 1)
         {
           pencil.mass->apply(u, force);
-          force.Scale(-radius * radius);
+          force *= -radius * radius;
         }
       else
         {
           // ρ (C + 2 s M) u + ρ² M v = ρ C u + M (2 ρ s u + ρ² v)
-          MultiVector combined(image.Map(), b, false);
-          combined.Update(2. * radius * s, u, radius * radius, view(states, b, b), 0.);
+          MultiVector combined(image.map(), b, false);
+          combined.local() = 2. * radius * s * u.local() + radius * radius * view(states, b, b).local();
           pencil.mass->apply(combined, force);
-          MultiVector damped(image.Map(), b, false);
+          MultiVector damped(image.map(), b, false);
           pencil.damping->apply(u, damped);
-          force.Update(-radius, damped, -1.);
+          force.local() = -radius * damped.local() - force.local();
         }
       inverse.apply(force, image);
       n_solves += b;

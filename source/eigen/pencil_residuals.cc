@@ -1,7 +1,5 @@
 #include "pencil_residuals.h"
 
-#include <Epetra_Vector.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,8 +34,8 @@ namespace Squeal
                              const MultiVector          &imaginary_part)
     {
       const int   width = static_cast<int>(values.size());
-      PencilImage image{MultiVector(real_part.Map(), width), MultiVector(real_part.Map(), width), std::vector<double>(width, 0.)};
-      MultiVector product(real_part.Map(), width, false);
+      PencilImage image{MultiVector(real_part.map(), width), MultiVector(real_part.map(), width), std::vector<double>(width, 0.)};
+      MultiVector product(real_part.map(), width, false);
       const std::vector<double> norms   = column_norms(imaginary_part);
       const bool                is_real = std::all_of(norms.begin(), norms.end(), [](const double x) { return x == 0.; });
       for (const bool imaginary_input : {false, true})
@@ -60,8 +58,8 @@ namespace Squeal
                 Complex factor = power == 2 ? values[j] * values[j] : power == 1 ? values[j] : Complex(1.);
                 if (imaginary_input)
                   factor *= Complex(0., 1.);
-                image.real(j)->Update(factor.real(), *product(j), 1.);
-                image.imaginary(j)->Update(factor.imag(), *product(j), 1.);
+                image.real.col(j) += factor.real() * product.col(j);
+                image.imaginary.col(j) += factor.imag() * product.col(j);
               }
           };
           add_term(pencil.stiffness, 0);
@@ -100,20 +98,20 @@ namespace Squeal
         const int         column = static_cast<int>(j);
         MultiVector       re = view(*modes.real_part, column, 1), im = view(*modes.imaginary_part, column, 1);
         const PencilImage before = apply_pencil(pencil, {modes.values[j]}, re, im);
-        MultiVector       new_re(re.Map(), 1), new_im(re.Map(), 1);
+        MultiVector       new_re(re.map(), 1), new_im(re.map(), 1);
         inverse.apply(before.real, new_re);
         inverse.apply(before.imaginary, new_im);
-        new_re.Update(1., re, -1.);
-        new_im.Update(1., im, -1.);
+        new_re            = re - new_re;
+        new_im            = im - new_im;
         const double norm = std::hypot(column_norms(new_re)[0], column_norms(new_im)[0]);
-        new_re.Scale(1. / norm);
-        new_im.Scale(1. / norm);
+        new_re *= 1. / norm;
+        new_im *= 1. / norm;
         const double residual = apply_pencil(pencil, {modes.values[j]}, new_re, new_im).residuals()[0];
         if (residual < modes.residuals[j])
           {
-            *(*modes.real_part)(column)      = *new_re(0);
-            *(*modes.imaginary_part)(column) = *new_im(0);
-            modes.residuals[j]               = residual;
+            re                 = new_re;
+            im                 = new_im;
+            modes.residuals[j] = residual;
           }
       }
   }

@@ -1,14 +1,12 @@
 #include "inverse_at_shift.h"
 #include "pencil_residuals.h"
 
+#include <squeal/eigen/phase.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/eigen/quadratic_modes.h>
-
-#include <Epetra_Comm.h>
-#include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,45 +75,14 @@ namespace Squeal
     /// Multiplies each φ by the factor that makes ‖φ‖₂ = 1 and its entry of largest modulus real and positive.
     void normalize(MultiVector &real, MultiVector &imaginary)
     {
-      const int                 k = real.NumVectors(), n = real.MyLength();
+      fix_phase(real, imaginary);
       const std::vector<double> real_norms = column_norms(real), imaginary_norms = column_norms(imaginary);
-
-      // ------------------------------------------------- largest entry over all processes, ties to the first row
-      std::vector<double> local(k, 0.), largest(k, 0.);
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < n; ++i)
-          local[j] = std::max(local[j], std::hypot(real[j][i], imaginary[j][i]));
-      real.Comm().MaxAll(local.data(), largest.data(), k);
-      std::vector<int> row(k, std::numeric_limits<int>::max()), first_row(k);
-      for (int j = 0; j < k; ++j)
-        for (int i = 0; i < n; ++i)
-          if (std::hypot(real[j][i], imaginary[j][i]) >= (1. - 1e-6) * largest[j])
-            row[j] = std::min(row[j], real.Map().GID(i));
-      real.Comm().MinAll(row.data(), first_row.data(), k);
-      std::vector<double> entry(2 * k, 0.), entries(2 * k);
-      for (int j = 0; j < k; ++j)
-        if (const int i = real.Map().LID(first_row[j]); i >= 0)
+      for (int j = 0; j < real.n_columns(); ++j)
+        if (const double norm = std::hypot(real_norms[j], imaginary_norms[j]); norm > 0.)
           {
-            entry[2 * j]     = real[j][i];
-            entry[2 * j + 1] = imaginary[j][i];
+            real.col(j) /= norm;
+            imaginary.col(j) /= norm;
           }
-      real.Comm().SumAll(entry.data(), entries.data(), 2 * k);
-
-      // ------------------------------------------------- rotate and scale
-      for (int j = 0; j < k; ++j)
-        {
-          const Complex pivot(entries[2 * j], entries[2 * j + 1]);
-          const double  size = std::hypot(real_norms[j], imaginary_norms[j]);
-          if (size == 0. || std::abs(pivot) == 0.)
-            continue;
-          const Complex factor = std::conj(pivot) / (std::abs(pivot) * size);
-          for (int i = 0; i < n; ++i)
-            {
-              const Complex phi = factor * Complex(real[j][i], imaginary[j][i]);
-              real[j][i]        = phi.real();
-              imaginary[j][i]   = phi.imag();
-            }
-        }
     }
 
     /// Sorts the Ritz values inside the radius into oscillating, real and zero ones; computes vectors and residuals.
@@ -171,9 +138,9 @@ namespace Squeal
             {
               const Candidate &candidate = candidates[j];
               modes.values.push_back(candidate.value);
-              (*modes.real_part)(j)->Update(1., *vectors(candidate.column), 0.);
+              modes.real_part->col(j) = vectors.col(candidate.column);
               if (candidate.conjugate != 0.)
-                (*modes.imaginary_part)(j)->Update(candidate.conjugate, *vectors(candidate.column + 1), 0.);
+                modes.imaginary_part->col(j) = candidate.conjugate * vectors.col(candidate.column + 1);
             }
           normalize(*modes.real_part, *modes.imaginary_part);
           modes.residuals = residuals(pencil, modes.values, *modes.real_part, *modes.imaginary_part);
@@ -213,7 +180,7 @@ namespace Squeal
         refuse("The shift is " + scientific(options.shift) + " 1/s", "give a real shift that is not negative");
       if (!(options.tolerance > 0.) || options.block_size < 1 || options.n_fresh_directions < 0)
         refuse("The tolerance, the block size or the number of fresh directions is not positive", "give positive values");
-      if (inverse.map().NumGlobalElements64() != pencil.mass->map().NumGlobalElements64())
+      if (inverse.map().n() != pencil.mass->map().n())
         refuse("The operators have different sizes", "hand over the factors of the same pencil");
     }
 

@@ -8,14 +8,10 @@ namespace Squeal
     , deflated(deflated)
   {}
 
-
-
   void ShiftInvert::apply(const MultiVector &X, MultiVector &Y) const
   {
     apply_to_image(M * X, Y);
   }
-
-
 
   void ShiftInvert::apply_to_image(const MultiVector &B, MultiVector &Y) const
   {
@@ -23,25 +19,24 @@ namespace Squeal
     project(Y);
   }
 
-
-
   void ShiftInvert::project(MultiVector &X) const
   {
     if (deflated != nullptr)
       multiply_add(-1., *deflated, gram(*deflated, M * X), 1., X);
   }
 
-
+  const RowMap &ShiftInvert::map() const
+  {
+    return M.map();
+  }
 
   const SparseMatrix &ShiftInvert::mass() const
   {
     return M;
   }
 
-
-
   int ShiftInvert::n_free() const
   {
-    return M.NumGlobalRows() - (deflated != nullptr ? deflated->NumVectors() : 0);
+    return M.n_rows() - (deflated != nullptr ? deflated->n_columns() : 0);
   }
 } // namespace Squeal

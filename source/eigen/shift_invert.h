@@ -14,14 +14,16 @@ namespace Squeal
    * eigenvalues 1 / (ω² + s) belong to the lowest other modes. Self-adjoint in
    * the inner product of M.
    */
-  class ShiftInvert
+  class ShiftInvert : public LinearOperator
   {
   public:
     /// @p deflated, M-orthonormal, may be null; all must outlive this object.
     ShiftInvert(const LinearOperator &inverse, const SparseMatrix &M, const MultiVector *deflated);
 
     /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ M X.
-    void apply(const MultiVector &X, MultiVector &Y) const;
+    void apply(const MultiVector &X, MultiVector &Y) const override;
+
+    const RowMap &map() const override;
 
     /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B where B = M X is at hand.
     void apply_to_image(const MultiVector &B, MultiVector &Y) const;

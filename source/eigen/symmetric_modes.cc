@@ -5,9 +5,8 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
-#include <squeal/linear_algebra/sparse.h>
-
-#include <Epetra_Comm.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +36,7 @@ namespace Squeal
 
     RitzPairs rayleigh_ritz(const SparseMatrix &K, const SparseMatrix &M, const MultiVector &V)
     {
-      const RealPairs reduced = agreed(V.Comm(), symmetric_eigenpairs(gram(V, K * V), gram(V, M * V)));
+      const RealPairs reduced = agreed(V.communicator(), symmetric_eigenpairs(gram(V, K * V), gram(V, M * V)));
       return {reduced.values, V * reduced.vectors};
     }
 
@@ -91,7 +90,7 @@ namespace Squeal
       /// A space that contains approximations of all wanted modes.
       RitzPairs find_all()
       {
-        const int n = K.NumGlobalRows();
+        const int n = K.n_rows();
         if (n <= largest_dense_system || 4 * count.n_modes + 50 > n)
           return dense();
 
@@ -125,13 +124,12 @@ namespace Squeal
 
       RitzPairs dense()
       {
-        const RealPairs all    = agreed(K.Comm(), symmetric_eigenpairs(to_dense(K), to_dense(M)));
+        const RealPairs all    = agreed(K.communicator(), symmetric_eigenpairs(to_dense(K), to_dense(M)));
         const int       n_kept = std::min<int>(std::max(1, count.n_modes), all.values.size());
-        MultiVector     vectors(K.DomainMap(), n_kept, false);
+        MultiVector     vectors(K.columns(), n_kept, false);
         // Rows of an uncoupled part have numbers that are not those in its dense matrix
         const int first_row = LocalRows(K).first_row;
-        for (int j = 0; j < n_kept; ++j)
-          std::copy_n(all.vectors.col(j).begin() + first_row, vectors.MyLength(), vectors[j]);
+        vectors.local()     = all.vectors.block(first_row, 0, vectors.n_local_rows(), n_kept);
         return {{all.values.begin(), all.values.begin() + n_kept}, vectors};
       }
 
@@ -185,12 +183,11 @@ namespace Squeal
         MultiVector       R(KV);
         for (int j = 0; j < n_modes; ++j)
           if (!is_rigid(pairs.values[j]))
-            for (int i = 0; i < R.MyLength(); ++i)
-              R[j][i] -= pairs.values[j] * MV[j][i];
+            R.col(j) -= pairs.values[j] * MV.col(j);
 
         const std::vector<double> norm_R = column_norms(R), norm_KV = column_norms(KV), norm_MV = column_norms(MV),
                                   norm_V = column_norms(*pairs.vectors);
-        const double norm_K              = K.NormInf();
+        const double norm_K              = row_sum_norm(K);
 
         Residuals residuals;
         for (int j = 0; j < n_modes; ++j)
@@ -217,7 +214,7 @@ namespace Squeal
         Residuals result = residuals(pairs);
         for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
           {
-            MultiVector       W(pairs.vectors->Map(), pairs.vectors->NumVectors());
+            MultiVector       W(pairs.vectors->map(), pairs.vectors->n_columns());
             const ShiftInvert A(inverse(), M, nullptr);
             A.apply(*pairs.vectors, W);
             RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
@@ -281,10 +278,10 @@ namespace Squeal
     /// The modes of all uncoupled parts in one order.
     SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
     {
-      const std::vector<Epetra_Map> maps = uncoupled_parts(K);
-      std::vector<SymmetricModes>   parts;
-      SymmetricModes                all;
-      for (const Epetra_Map &map : maps)
+      const std::vector<RowMap>   maps = uncoupled_parts(K);
+      std::vector<SymmetricModes> parts;
+      SymmetricModes              all;
+      for (const RowMap &map : maps)
         {
           const auto part_K = part(K, map), part_M = part(M, map);
           parts.push_back(Solver(*part_K, *part_M, limit, options).modes());
@@ -306,7 +303,7 @@ namespace Squeal
       std::stable_sort(order.begin(), order.end(), [&](const Place &a, const Place &b) {
         return parts[a.part].eigenvalues[a.mode] < parts[b.part].eigenvalues[b.mode];
       });
-      all.vectors = std::make_shared<MultiVector>(K.DomainMap(), static_cast<int>(order.size()));
+      all.vectors = std::make_shared<MultiVector>(K.columns(), static_cast<int>(order.size()));
       for (std::size_t column = 0; column < order.size(); ++column)
         {
           const SymmetricModes &modes = parts[order[column].part];
@@ -318,8 +315,6 @@ namespace Squeal
       return all;
     }
   } // namespace
-
-
 
   SymmetricModes symmetric_modes(const SparseMatrix          &K,
                                  const SparseMatrix          &M,

@@ -1,4 +1,3 @@
-#include <squeal/base/conventions.h>
 #include <squeal/estimates/eigenvalue_estimates.h>
 
 #include <algorithm>
@@ -13,8 +12,6 @@ namespace Squeal
 
     /// Estimates of ill-conditioned eigenvalues are not claimed.
     constexpr double largest_condition = 1e3;
-    /// An estimated error may be that much too small.
-    constexpr double safety = 3.;
 
     /// ψ_jᵀ A φ_j for every column, no conjugate.
     Eigen::VectorXcd bilinear(const DenseMatrix &A, const ComplexDenseMatrix &psi, const ComplexDenseMatrix &phi)
@@ -36,18 +33,6 @@ namespace Squeal
       const Complex denominator = std::abs(b + root) > std::abs(b - root) ? b + root : b - root;
       return std::abs(denominator) > 0. ? 2. * e / denominator : 0.;
     }
-
-    Verdict verdict(const Complex lambda, const double uncertainty, const bool well_conditioned, const bool neutral)
-    {
-      const double negligible = negligible_divergence * lambda.imag();
-      if (!well_conditioned)
-        return Verdict::undecided;
-      if (lambda.real() - safety * uncertainty > negligible)
-        return Verdict::unstable;
-      if (lambda.real() + safety * uncertainty <= negligible || (neutral && lambda.real() <= negligible))
-        return Verdict::stable;
-      return Verdict::undecided;
-    }
   } // namespace
 
   ResidualVectors residual_vectors(const CoupledSystem  &system,
@@ -65,25 +50,8 @@ namespace Squeal
 
   ResidualProducts ResidualVectors::products() const
   {
-    const auto energies = [](const MultiVector &F, const MultiVector &U) {
-      const int           k = F.NumVectors() / 2;
-      std::vector<double> result(2 * k);
-      F.Dot(U, result.data());
-      for (int j = 0; j < k; ++j)
-        result[j] += result[k + j];
-      result.resize(k);
-      return result;
-    };
-    return {product_of_halves(gram(left_forces, right_displacements)), energies(right_forces, right_displacements),
-            energies(left_forces, left_displacements)};
-  }
-
-  EigenvalueEstimates estimate_eigenvalues(const CoupledSystem  &system,
-                                           const UpdatedInverse &inverse,
-                                           const ReducedModel   &model,
-                                           const ReducedModes   &modes)
-  {
-    return estimate_eigenvalues(modes, residual_vectors(system, inverse, model, modes).products());
+    return {product_of_halves(gram(left_forces, right_displacements)), complex_products(right_forces, right_displacements),
+            complex_products(left_forces, left_displacements)};
   }
 
   EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products)
@@ -121,10 +89,10 @@ namespace Squeal
         for (int j = 0; j < k; ++j)
           {
             // Two neutral modes may meet where their errors differ by more than what separates them
-            const double shift = safety * std::abs(result.corrections[i] - result.corrections[j]);
+            const double shift = error_safety * std::abs(result.corrections[i] - result.corrections[j]);
             if (shift >= std::abs(modes.lambda[i] - modes.lambda[j]) && shift > negligible_divergence * std::abs(modes.lambda[i]))
               apart = false;
-            if (j != i && 4. * safety * safety * std::abs(E(i, j) * E(j, i)) >=
+            if (j != i && 4. * error_safety * error_safety * std::abs(E(i, j) * E(j, i)) >=
                             std::norm(modes.lambda[i] - modes.lambda[j]) * std::abs(derivatives[i] * derivatives[j]))
               {
                 alone = false;
@@ -134,7 +102,8 @@ namespace Squeal
         const bool well_conditioned = result.conditions[i] <= largest_condition;
         result.claimed.push_back(alone && well_conditioned);
         result.uncertainties.push_back(uncertainty);
-        result.verdicts.push_back(verdict(modes.lambda[i], uncertainty, well_conditioned, alone && apart && !modes.pencil.has_damping));
+        result.verdicts.push_back(well_conditioned ? verdict_of(modes.lambda[i], uncertainty, alone && apart && !modes.pencil.has_damping) :
+                                                     Verdict::undecided);
       }
     return result;
   }

@@ -2,14 +2,15 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/groups.h>
 #include <squeal/estimates/reduction_errors.h>
+#include <squeal/linear_algebra/communication.h>
 
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace Squeal
 {
@@ -58,16 +59,10 @@ namespace Squeal
       return (whitening(A).adjoint() * C).colwise().squaredNorm().cwiseQuotient(B.diagonal().real().transpose());
     }
 
-    /// Number of the cluster of each λ: chains of neighbours within the tolerance.
-    std::vector<int> clusters(const std::vector<Complex> &lambda, const double tolerance)
+    /// |ξ_1 − ξ_2|
+    double divergence_difference(const Complex &lambda_1, const Complex &lambda_2)
     {
-      std::vector<int> cluster(lambda.size());
-      std::iota(cluster.begin(), cluster.end(), 0);
-      for (std::size_t i = 0; i < lambda.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-          if (cluster[i] != cluster[j] && std::abs(lambda[i] - lambda[j]) <= tolerance * std::abs(lambda[i]))
-            std::replace(cluster.begin(), cluster.end(), cluster[i], cluster[j]);
-      return cluster;
+      return std::abs(modal_quantities(lambda_1).divergence_rate - modal_quantities(lambda_2).divergence_rate);
     }
 
     /// Group of a mode: the @p pins have one of their own.
@@ -88,7 +83,7 @@ namespace Squeal
       result.lambda.emplace_back(0., std::sqrt(modes.eigenvalues[modes.n_rigid_body + j]));
     const MultiVector elastic = view(*modes.vectors, modes.n_rigid_body, k);
     result.real_part          = std::make_shared<MultiVector>(elastic);
-    result.imaginary_part     = std::make_shared<MultiVector>(elastic.Map(), k);
+    result.imaginary_part     = std::make_shared<MultiVector>(elastic.map(), k);
     result.residuals.assign(modes.residuals.begin() + modes.n_rigid_body, modes.residuals.end());
     return result;
   }
@@ -98,7 +93,7 @@ namespace Squeal
                                           const ReducedModel   &model,
                                           const ReducedModes   &modes,
                                           const ComplexModes   &reference,
-                                          const ErrorOptions   &options)
+                                          const double          cluster_tolerance)
   {
     const int k = reference.lambda.size(), n_reduced = modes.lambda.size();
     if (k == 0)
@@ -116,62 +111,61 @@ namespace Squeal
     const ComplexDenseMatrix C  = from_halves(append_columns(XT.topRows(k), -XT.bottomRows(k))) * modes.right;
 
     // Clusters
-    const std::vector<int>        cluster = clusters(reference.lambda, options.cluster_tolerance);
-    std::vector<std::vector<int>> members(k);
-    for (int i = 0; i < k; ++i)
-      members[cluster[i]].push_back(i);
+    const auto &lambda  = reference.lambda;
+    const auto  cluster = connected_groups(
+       k, [&](const int i, const int j) { return std::abs(lambda[i] - lambda[j]) <= cluster_tolerance * std::abs(lambda[i]); });
+    const auto members = members_of(cluster);
 
     // Counterparts: the span of the cluster decides which reduced modes belong to it, MAC-M of single modes to which member
-    std::vector<Eigen::RowVectorXd> shares(k);
-    for (int c = 0; c < k; ++c)
-      if (!members[c].empty())
-        shares[c] = shares_in_span(A(members[c], members[c]), C(members[c], Eigen::all), B);
+    std::vector<Eigen::RowVectorXd> shares(k); // by the first member
+    for (const std::vector<int> &all : members)
+      shares[all.front()] = shares_in_span(A(all, all), C(all, Eigen::all), B);
     const auto mac  = [&](const int i, const int j) { return std::norm(C(i, j)) / (A(i, i).real() * B(j, j).real()); };
     const auto gain = [&](const int i, const int j) {
-      const double distance = std::abs(modes.lambda[j] - reference.lambda[i]) / std::abs(reference.lambda[i]);
+      const double distance = std::abs(modes.lambda[j] - lambda[i]) / std::abs(lambda[i]);
       return distance < far ? shares[cluster[i]][j] + member_weight * mac(i, j) : -1.;
     };
     std::vector<int> match = best_assignment(k, n_reduced, gain);
-    X.Comm().Broadcast(match.data(), k, 0); // ties may go either way
+    agree(X.communicator(), match.data(), k); // ties may go either way
     const ReducedModes        chosen    = selected(modes, match);
-    const EigenvalueEstimates estimates = estimate_eigenvalues(system, inverse, model, chosen);
+    const EigenvalueEstimates estimates = estimate_eigenvalues(chosen, residual_vectors(system, inverse, model, chosen).products());
 
-    // Angles
-    std::vector<double> angle(k);
-    for (int c = 0; c < k; ++c)
-      if (!members[c].empty())
-        {
-          std::vector<int> counterparts;
-          for (const int i : members[c])
-            counterparts.push_back(match[i]);
-          angle[c] = largest_angle(A(members[c], members[c]), B(counterparts, counterparts), C(members[c], counterparts));
-        }
+    std::vector<ModeError> errors(k);
+    for (const std::vector<int> &all : members)
+      {
+        std::vector<int> counterparts;
+        for (const int i : all)
+          counterparts.push_back(match[i]);
+        const double angle = largest_angle(A(all, all), B(counterparts, counterparts), C(all, counterparts));
+        for (const int i : all)
+          {
+            errors[i].cluster_size = all.size();
+            errors[i].subspace     = angle;
+          }
+      }
 
-    std::vector<ModeError> errors;
     for (int i = 0; i < k; ++i)
       {
-        const Complex         lambda = reference.lambda[i], found = chosen.lambda[i], corrected = found + estimates.corrections[i];
-        const ModalQuantities exact = modal_quantities(lambda), reduced = modal_quantities(found);
-        ModeError             error;
-        error.reference       = lambda;
-        error.reduced         = found;
-        error.match           = match[i];
-        error.residual        = estimates.energy_residuals[i];
-        error.shape           = std::max(0., 1. - mac(i, match[i]));
-        error.frequency       = std::abs(found.imag() - lambda.imag()) / lambda.imag();
-        error.divergence      = std::abs(reduced.divergence_rate - exact.divergence_rate);
-        error.eigenvalue      = std::abs(found - lambda) / std::abs(lambda);
-        error.cluster_size    = members[cluster[i]].size();
-        error.subspace        = angle[cluster[i]];
-        error.corrected       = corrected;
-        error.corrected_error = std::abs(corrected - lambda) / std::abs(lambda);
-        error.estimated_error = estimates.errors[i];
+        const Complex exact = lambda[i], found = chosen.lambda[i], corrected = found + estimates.corrections[i];
+        ModeError    &error        = errors[i];
+        error.reference            = exact;
+        error.reduced              = found;
+        error.match                = match[i];
+        error.residual             = estimates.energy_residuals[i];
+        error.shape                = std::max(0., 1. - mac(i, match[i]));
+        error.frequency            = std::abs(found.imag() - exact.imag()) / exact.imag();
+        error.divergence           = divergence_difference(found, exact);
+        error.estimated_divergence = divergence_difference(corrected, found);
+        error.corrected_divergence = divergence_difference(corrected, exact);
+        error.eigenvalue           = std::abs(found - exact) / std::abs(exact);
+        error.corrected            = corrected;
+        error.corrected_error      = std::abs(corrected - exact) / std::abs(exact);
+        error.estimated_error      = estimates.errors[i];
         error.estimate_ratio =
-          found != lambda ? std::abs(estimates.corrections[i]) / std::abs(found - lambda) : std::numeric_limits<double>::infinity();
+          found != exact ? std::abs(estimates.corrections[i]) / std::abs(found - exact) : std::numeric_limits<double>::infinity();
         error.condition = estimates.conditions[i];
         error.claimed   = estimates.claimed[i];
         error.verdict   = estimates.verdicts[i];
-        errors.push_back(error);
       }
     return errors;
   }
@@ -199,19 +193,12 @@ namespace Squeal
       {
         auto it = std::find_if(result.begin(), result.end(), [&](const GroupError &group) { return group.group == groups[j]; });
         if (it == result.end())
-          it = result.insert(result.end(), GroupError{groups[j], 0, 0., 0., 0., 0., 0., 0., 0., 0., 0.});
+          it = result.insert(it, GroupError{{}, groups[j]});
         ++it->n_modes;
-        const auto raise = [](double &largest, const double value) { largest = std::max(largest, value); };
-        raise(it->residual, errors[j].residual);
-        raise(it->shape, errors[j].shape);
-        raise(it->frequency, errors[j].frequency);
-        raise(it->divergence, errors[j].divergence);
-        raise(it->eigenvalue, errors[j].eigenvalue);
-        raise(it->subspace, errors[j].subspace);
-        raise(it->corrected_error, errors[j].corrected_error);
-        const double corrected = modal_quantities(errors[j].corrected).divergence_rate;
-        raise(it->estimated_divergence, std::abs(corrected - modal_quantities(errors[j].reduced).divergence_rate));
-        raise(it->corrected_divergence, std::abs(corrected - modal_quantities(errors[j].reference).divergence_rate));
+        using E = ErrorMeasures;
+        for (const auto measure : {&E::residual, &E::shape, &E::frequency, &E::divergence, &E::eigenvalue, &E::subspace,
+                                   &E::corrected_error, &E::estimated_divergence, &E::corrected_divergence})
+          (*it).*measure = std::max((*it).*measure, errors[j].*measure);
       }
     return result;
   }

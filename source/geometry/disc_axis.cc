@@ -16,8 +16,6 @@ namespace Squeal
   {
     using Vector = dealii::Tensor<1, 3>;
 
-    constexpr double pi = 3.14159265358979323846;
-
     // A face fits an axis if rotation moves it along its normal by less than this [radius].
     constexpr double fitting_motion = 5e-4;
 
@@ -28,8 +26,8 @@ namespace Squeal
     constexpr double first_scale = 0.1, scale_decrease = 0.8;
     constexpr int    n_weightings = 40;
 
-    // What is_misplaced() does not mind
-    constexpr double negligible_angle  = 0.1 * pi / 180.;
+    // What check_disc_axis() does not mind
+    constexpr double negligible_angle  = 0.1 * dealii::numbers::PI / 180.;
     constexpr double negligible_offset = 1e-3; ///< [radius]
     constexpr double clearly_rounder   = 0.1;  ///< share of the area
 
@@ -71,7 +69,7 @@ namespace Squeal
             area += size;
           }
       surface.centre /= area;
-      surface.radius = std::sqrt(area / (2. * pi));
+      surface.radius = std::sqrt(area / (2. * dealii::numbers::PI));
       for (const auto &[place, normal] : geometry)
         if (normal.norm() > 0.)
           surface.faces.push_back({(place - surface.centre) / surface.radius, normal / normal.norm(), normal.norm() / area});
@@ -127,11 +125,6 @@ namespace Squeal
     }
   } // namespace
 
-  bool DiscAxis::is_misplaced(const double disc_radius) const
-  {
-    return (angle > negligible_angle || offset > negligible_offset * disc_radius) && round > round_about_z + clearly_rounder;
-  }
-
   DiscAxis find_disc_axis(const HexMesh &mesh)
   {
     const Surface       surface = disc_surface(mesh);
@@ -166,20 +159,15 @@ namespace Squeal
     return axis;
   }
 
-  double disc_radius(const HexMesh &mesh)
+  void check_disc_axis(const DiscAxis &axis, const HexMesh &mesh, const std::string &where)
   {
-    double radius = 0.;
+    double radius = 0.; // largest distance of a node of the disc from z [m]
     for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
       if (mesh.volume_names[hexahedron.volume] == PhysicalNames::disc)
         for (const unsigned int node : hexahedron.nodes)
           radius = std::max(radius, std::hypot(mesh.points[node][0], mesh.points[node][1]));
-    return radius;
-  }
-
-  void check_disc_axis(const DiscAxis &axis, const HexMesh &mesh, const std::string &where)
-  {
-    const double radius = disc_radius(mesh);
-    if (axis.is_misplaced(radius))
+    const bool is_elsewhere = axis.angle > negligible_angle || axis.offset > negligible_offset * radius;
+    if (is_elsewhere && axis.round > axis.round_about_z + clearly_rounder)
       throw MeshError("The disc turns about the z axis, but it is round about the axis through " + print(axis.centre, 1e-6 * radius) +
                         " m in direction " + print(axis.direction, 1e-6),
                       where,

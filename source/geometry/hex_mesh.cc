@@ -1,6 +1,10 @@
 #include <squeal/base/checksum.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/geometry/hex_mesh.h>
 
+#include <boost/algorithm/string/join.hpp>
+
+#include <algorithm>
 #include <cmath>
 
 namespace Squeal
@@ -22,5 +26,15 @@ namespace Squeal
       for (const unsigned int node : hexahedron.nodes)
         volumes[node] = hexahedron.volume;
     return volumes;
+  }
+
+  unsigned int pin_number(const std::vector<std::string> &volume_names, const std::string &pin, const char *parameter)
+  {
+    const std::vector<std::string> pins(volume_names.begin() + 1, volume_names.end());
+    const auto                     found = std::find(pins.begin(), pins.end(), pin);
+    if (found == pins.end())
+      throw ParameterError("there is no pin `" + pin + "`", std::string("parameter ") + parameter,
+                           "name one of " + boost::algorithm::join(pins, ", "));
+    return found - pins.begin() + 1;
   }
 } // namespace Squeal

@@ -4,8 +4,11 @@
 #include <squeal/geometry/mesh_check.h>
 
 #include <boost/algorithm/string/join.hpp>
+#include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <set>
 
 namespace Squeal
@@ -29,6 +32,49 @@ namespace Squeal
     {
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
+
+    void check_connected(const HexMesh &mesh, const std::string &where)
+    {
+      boost::disjoint_sets_with_storage<> sets(mesh.points.size());
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        for (const unsigned int node : hexahedron.nodes)
+          sets.union_set(node, hexahedron.nodes[0]);
+      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.volume_names.size()); // elements, by root
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        ++pieces[hexahedron.volume][sets.find_set(hexahedron.nodes[0])];
+      for (std::size_t volume = 0; volume < pieces.size(); ++volume)
+        if (pieces[volume].size() > 1)
+          {
+            std::string sizes;
+            for (const auto &[root, size] : pieces[volume])
+              sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
+            throw MeshError("Volume '" + mesh.volume_names[volume] + "' is in " + std::to_string(pieces[volume].size()) +
+                              " pieces that share no node, of " + sizes + " elements",
+                            where, "join them (Coherence, BooleanUnion or common curves), or give every pin a physical volume of its own");
+          }
+    }
+
+    /// Nodes of a named surface, by the volume they belong to.
+    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh                   &mesh,
+                                                        const std::vector<unsigned int> &volume_of_node,
+                                                        const std::string               &name)
+    {
+      std::vector<std::set<unsigned int>> result(mesh.volume_names.size());
+      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+        if (mesh.surface_names[quadrilateral.surface] == name)
+          for (const unsigned int node : quadrilateral.nodes)
+            result[volume_of_node[node]].insert(node);
+      return result;
+    }
+
+    double distance(const HexMesh &mesh, const std::set<unsigned int> &some, const std::set<unsigned int> &others)
+    {
+      double nearest = std::numeric_limits<double>::infinity();
+      for (const unsigned int a : some)
+        for (const unsigned int b : others)
+          nearest = std::min(nearest, mesh.points[a].distance(mesh.points[b]));
+      return nearest;
+    }
   } // namespace
 
   MeshQuality mesh_quality(const HexMesh &mesh)
@@ -36,22 +82,19 @@ namespace Squeal
     if (mesh.hexahedra.empty())
       throw MeshError("The mesh has no elements", "mesh", "check the geometry");
 
-    MeshQuality quality{1., 0, 1.};
+    MeshQuality quality{1., 0};
     for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
       {
-        const auto &nodes    = mesh.hexahedra[element].nodes;
-        double      shortest = 1e300, longest = 0., scaled_jacobian = 1.;
+        const auto &nodes           = mesh.hexahedra[element].nodes;
+        double      scaled_jacobian = 1.;
         for (unsigned int corner = 0; corner < 8; ++corner)
           {
             dealii::Tensor<2, 3> edges;
             double               lengths = 1.;
             for (unsigned int e = 0; e < 3; ++e)
               {
-                edges[e]            = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
-                const double length = edges[e].norm();
-                shortest            = std::min(shortest, length);
-                longest             = std::max(longest, length);
-                lengths *= length;
+                edges[e] = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
+                lengths *= edges[e].norm();
               }
             const double jacobian = lengths > 0. ? determinant(edges) / lengths : 0.;
             scaled_jacobian       = std::min(scaled_jacobian, jacobian);
@@ -61,8 +104,6 @@ namespace Squeal
             quality.worst_scaled_jacobian = scaled_jacobian;
             quality.worst_element         = element;
           }
-        if (shortest > 0.)
-          quality.worst_edge_ratio = std::max(quality.worst_edge_ratio, longest / shortest);
       }
 
     return quality;
@@ -139,6 +180,34 @@ namespace Squeal
         if ((of_disc && !on_disc) || (of_pin && on_disc))
           throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'", where,
                           "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
+      }
+  }
+
+  void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
+  {
+    check_connected(mesh, where);
+
+    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
+    const std::set<unsigned int>    disc           = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
+    const auto                      contacts       = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
+    const auto                      clamps         = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
+    std::set<unsigned int>          mounted; // volumes
+    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+      if (std::count(mounted_surfaces.begin(), mounted_surfaces.end(), mesh.surface_names[quadrilateral.surface]) > 0)
+        mounted.insert(volume_of_node[quadrilateral.nodes[0]]);
+    for (std::size_t pin = 1; pin < mesh.volume_names.size(); ++pin)
+      {
+        const std::string &name = mesh.volume_names[pin];
+        if (contacts[pin].empty())
+          throw MeshError("'" + name + "' has no face on 'pin_contact', so it touches nothing", where,
+                          "put its face on the disc into the physical surface 'pin_contact', or leave the volume out");
+        if (clamps[pin].empty() && mounted.count(pin) == 0)
+          throw MeshError(
+            "'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
+            "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts");
+        if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
+          throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it",
+                          where, "exchange the names 'pin_clamp' and 'pin_contact' there");
       }
   }
 } // namespace Squeal

@@ -156,25 +156,19 @@ namespace Squeal
 
     // Elements carry their index, so that their order is kept
     const auto write_blocks = [&stream](const int dimension, const int type, const std::size_t n_blocks, const auto &elements,
-                                        const std::size_t first_tag) {
-      for (std::size_t block = 0; block < n_blocks; ++block)
+                                        std::size_t tag) {
+      std::vector<std::string> blocks(n_blocks);
+      std::vector<std::size_t> n_elements(n_blocks, 0);
+      for (const auto &[nodes, part] : elements)
         {
-          std::size_t        n = 0, tag = first_tag;
-          std::ostringstream lines;
-          for (const auto &[nodes, part] : elements)
-            {
-              if (part == block)
-                {
-                  lines << tag;
-                  for (const unsigned int node : nodes)
-                    lines << ' ' << node + 1;
-                  lines << '\n';
-                  ++n;
-                }
-              ++tag;
-            }
-          stream << dimension << ' ' << block + 1 << ' ' << type << ' ' << n << '\n' << lines.str();
+          blocks[part] += std::to_string(tag++);
+          for (const unsigned int node : nodes)
+            blocks[part] += ' ' + std::to_string(node + 1);
+          blocks[part] += '\n';
+          ++n_elements[part];
         }
+      for (std::size_t block = 0; block < n_blocks; ++block)
+        stream << dimension << ' ' << block + 1 << ' ' << type << ' ' << n_elements[block] << '\n' << blocks[block];
     };
     stream << "$Elements\n" << n_surfaces + n_volumes << ' ' << n_elements << " 1 " << n_elements << '\n';
     write_blocks(2, 3, n_surfaces, mesh.quadrilaterals, n_hexahedra + 1);

@@ -10,8 +10,6 @@ namespace Squeal
 {
   namespace
   {
-    constexpr double pi = 3.14159265358979323846;
-
     // Fit of ProblemSize::memory() [byte]
     constexpr double program            = 1.7e8;
     constexpr double per_dof            = 1e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
@@ -20,10 +18,15 @@ namespace Squeal
     constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
     constexpr double vectors_per_node = 2., vectors_per_mode = 3.;
 
-    /// Layers of nodes share those of neighbouring layers.
-    double nodes_of_stack(const double plan_nodes, const double layers)
+    /// Of a plan with numbers of faces and nodes, and of those under all pins together. Layers of nodes share those of neighbouring layers.
+    ProblemSize extruded(const double              faces,
+                         const double              nodes,
+                         const double              pin_faces,
+                         const double              pin_nodes,
+                         const GeometryParameters &parameters)
     {
-      return plan_nodes * (layers + 1.);
+      return {faces * parameters.disc_layers + pin_faces * parameters.pin_layers,
+              3. * (nodes * (parameters.disc_layers + 1.) + pin_nodes * (parameters.pin_layers + 1.)), pin_nodes};
     }
   } // namespace
 
@@ -35,29 +38,22 @@ namespace Squeal
 
   ProblemSize expected_size(const GeometryParameters &parameters)
   {
-    const auto   squared      = [](const double x) { return x * x; };
-    const double n_pins       = parameters.top.radii.size() + parameters.bottom.radii.size();
-    const double annulus      = pi * (squared(parameters.disc_outer_radius) - squared(parameters.disc_inner_radius));
-    const double plan_nodes   = annulus / squared(parameters.element_size);
-    const double pin_nodes    = parameters.nodes_per_pin_face;
-    const double disc_nodes   = nodes_of_stack(plan_nodes, parameters.disc_layers);
-    const double nodes_of_pin = nodes_of_stack(pin_nodes, parameters.pin_layers);
-    return {plan_nodes * parameters.disc_layers + n_pins * pin_nodes * parameters.pin_layers, 3. * (disc_nodes + n_pins * nodes_of_pin),
-            n_pins * pin_nodes};
+    const auto   squared    = [](const double x) { return x * x; };
+    const double annulus    = dealii::numbers::PI * (squared(parameters.disc_outer_radius) - squared(parameters.disc_inner_radius));
+    const double plan_nodes = annulus / squared(parameters.element_size);
+    const double pin_nodes  = parameters.nodes_per_pin_face * double(parameters.top.radii.size() + parameters.bottom.radii.size());
+    return extruded(plan_nodes, plan_nodes, pin_nodes, pin_nodes, parameters);
   }
 
   ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters)
   {
-    ProblemSize size{double(plan.faces.size()) * parameters.disc_layers, 3. * nodes_of_stack(plan.points.size(), parameters.disc_layers),
-                     0.};
+    double pin_faces = 0., pin_nodes = 0.;
     for (const Plan::Pin &pin : plan.pins)
       {
-        const double n_nodes = nodes_of(plan.faces_of(pin)).size();
-        size.hexahedra += double(pin.faces.size()) * parameters.pin_layers;
-        size.dofs += 3. * nodes_of_stack(n_nodes, parameters.pin_layers);
-        size.contact_nodes += n_nodes;
+        pin_faces += pin.faces.size();
+        pin_nodes += nodes_of(plan.faces_of(pin)).size();
       }
-    return size;
+    return extruded(plan.faces.size(), plan.points.size(), pin_faces, pin_nodes, parameters);
   }
 
   ProblemSize expected_size(const HexMesh &mesh, const unsigned int degree)

@@ -1,7 +1,7 @@
 #include "libraries.h"
 
 #include <squeal/base/decision.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <suitesparse/cholmod.h>
@@ -16,7 +16,7 @@ namespace Squeal
     {
     public:
       CholmodFactorization(const SparseMatrix &A, const std::string &what)
-        : row_map(A.RowMap())
+        : row_map(A.rows())
         , what(what)
       {
         cholmod_start(&common);
@@ -51,16 +51,16 @@ namespace Squeal
       {
         // Wide enough for matrix-matrix kernels, narrow enough to stay in the cache.
         const int block = 32;
-        for (int first = 0; first < X.NumVectors(); first += block)
+        for (int first = 0; first < X.n_columns(); first += block)
           {
-            const int n_columns = std::min(block, X.NumVectors() - first);
+            const int n_columns = std::min(block, X.n_columns() - first);
             for (int j = 0; j < n_columns; ++j)
-              std::copy(X[first + j], X[first + j] + row_map.NumMyElements(), right_hand_side(j, n_columns));
+              std::copy_n(X.col(first + j).begin(), row_map.n_local(), right_hand_side(j, n_columns));
             if (cholmod_solve2(CHOLMOD_A, L, B, nullptr, &solution, nullptr, &workspace_y, &workspace_e, &common) == 0)
               throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " while solving", what);
             const double *values = static_cast<const double *>(solution->x);
             for (int j = 0; j < n_columns; ++j)
-              std::copy(values + j * solution->d, values + j * solution->d + row_map.NumMyElements(), Y[first + j]);
+              std::copy_n(values + j * solution->d, row_map.n_local(), Y.col(first + j).begin());
           }
       }
 
@@ -74,7 +74,7 @@ namespace Squeal
         return common.lnz;
       }
 
-      const Epetra_Map &map() const override
+      const RowMap &map() const override
       {
         return row_map;
       }
@@ -174,7 +174,7 @@ namespace Squeal
         cholmod_finish(&common);
       }
 
-      const Epetra_Map  row_map;
+      const RowMap      row_map;
       const std::string what;
       cholmod_factor   *L = nullptr;
 
@@ -186,8 +186,6 @@ namespace Squeal
       mutable cholmod_dense *workspace_e = nullptr;
     };
   } // namespace
-
-
 
   std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what)
   {

@@ -2,29 +2,26 @@
 
 #include <squeal/base/exceptions.h>
 
-#include <Epetra_Comm.h>
-
 namespace Squeal
 {
   namespace
   {
     void check_square(const SparseMatrix &A, const std::string &what)
     {
-      if (!A.DomainMap().SameAs(A.RangeMap()) || !A.RowMap().SameAs(A.RangeMap()))
-        throw SolverError("a matrix of " + std::to_string(A.NumGlobalRows()) + " rows and " + std::to_string(A.NumGlobalCols()) +
+      if (!(A.columns() == A.rows()))
+        throw SolverError("a matrix of " + std::to_string(A.n_rows()) + " rows and " + std::to_string(A.n_columns()) +
                             " columns, or with rows and columns distributed differently, cannot be factorised",
                           what, "this is a mistake in the program: please report it");
     }
 
     void check_one_process(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
     {
-      if (A.Comm().NumProc() > 1)
-        throw SolverError(to_string(library) + " was asked for on " + std::to_string(A.Comm().NumProc()) + " processes but works on one",
+      if (A.rows().n_processes() > 1)
+        throw SolverError(to_string(library) + " was asked for on " + std::to_string(A.rows().n_processes()) +
+                            " processes but works on one",
                           what, "choose MUMPS or automatic as factorisation library, or run on one process");
     }
   } // namespace
-
-
 
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
@@ -32,23 +29,17 @@ namespace Squeal
                       "check the boundary conditions: a body that can move rigidly has a singular stiffness");
   }
 
-
-
   void throw_singular(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is singular to working precision (" + library + ")", what,
                       "check the boundary conditions, or move the shift away from an eigenvalue");
   }
 
-
-
   void throw_library_failure(const std::string &library, const std::string &failure, const std::string &what)
   {
     throw SolverError(library + " failed: " + failure, what,
                       "choose another factorisation library, a coarser mesh, or a machine with more memory");
   }
-
-
 
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,
                                                              const FactorizationLibrary library,
@@ -58,7 +49,7 @@ namespace Squeal
     switch (library)
       {
         case FactorizationLibrary::automatic:
-          if (A.Comm().NumProc() == 1)
+          if (A.rows().n_processes() == 1)
             return cholmod_factorization(A, what);
           return mumps_factorization(A, true, what);
         case FactorizationLibrary::cholmod:
@@ -76,15 +67,13 @@ namespace Squeal
     return mumps_factorization(A, true, what);
   }
 
-
-
   std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
   {
     check_square(A, what);
     switch (library)
       {
         case FactorizationLibrary::automatic:
-          if (A.Comm().NumProc() == 1)
+          if (A.rows().n_processes() == 1)
             return umfpack_factorization(A, what);
           break;
         case FactorizationLibrary::umfpack:

@@ -1,8 +1,7 @@
 #include "libraries.h"
 
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
-#include <Epetra_MpiComm.h>
 #include <dmumps_c.h>
 #include <mpi.h>
 
@@ -21,19 +20,13 @@ namespace Squeal
       symmetric         = 2
     };
 
-    MPI_Comm communicator(const SparseMatrix &A)
-    {
-      const auto *comm = dynamic_cast<const Epetra_MpiComm *>(&A.Comm());
-      return comm != nullptr ? comm->Comm() : MPI_COMM_SELF;
-    }
-
     /// An instance of MUMPS with the factors of one matrix.
     class Mumps
     {
     public:
       Mumps(const SparseMatrix &A, const Symmetry symmetry, const std::string &what)
         : what(what)
-        , comm(communicator(A))
+        , comm(A.communicator())
         , rows(A)
       {
         MPI_Comm_rank(comm, &rank);
@@ -91,9 +84,9 @@ namespace Squeal
       {
         // MUMPS wants right-hand sides whole on one process; a bound on their number bounds its memory there.
         const int block = 64;
-        for (int first = 0; first < X.NumVectors(); first += block)
+        for (int first = 0; first < X.n_columns(); first += block)
           {
-            const int n_columns = std::min(block, X.NumVectors() - first);
+            const int n_columns = std::min(block, X.n_columns() - first);
             if (rank == 0)
               centralised.resize(static_cast<std::size_t>(rows.n_rows) * n_columns);
             const auto column = [&](const int j) {
@@ -101,7 +94,8 @@ namespace Squeal
             };
 
             for (int j = 0; j < n_columns; ++j)
-              MPI_Gatherv(X[first + j], n_local_rows, MPI_DOUBLE, column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, 0, comm);
+              MPI_Gatherv(X.col(first + j).data(), n_local_rows, MPI_DOUBLE, column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, 0,
+                          comm);
             id.rhs       = centralised.data();
             id.nrhs      = n_columns;
             id.lrhs      = rows.n_rows;
@@ -110,7 +104,8 @@ namespace Squeal
             run(3);
             check("solution");
             for (int j = 0; j < n_columns; ++j)
-              MPI_Scatterv(column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, Y[first + j], n_local_rows, MPI_DOUBLE, 0, comm);
+              MPI_Scatterv(column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, Y.col(first + j).data(), n_local_rows, MPI_DOUBLE,
+                           0, comm);
           }
       }
 
@@ -192,7 +187,7 @@ namespace Squeal
     {
     public:
       MumpsFactorization(const SparseMatrix &A, const Symmetry symmetry, const std::string &what)
-        : row_map(A.RowMap())
+        : row_map(A.rows())
         , mumps(std::make_unique<Mumps>(A, symmetry, what))
       {
         if (symmetry == Symmetry::positive_definite && (mumps->n_negative_pivots() > 0 || mumps->n_null_pivots() > 0))
@@ -216,25 +211,21 @@ namespace Squeal
         return mumps->n_factor_entries();
       }
 
-      const Epetra_Map &map() const override
+      const RowMap &map() const override
       {
         return row_map;
       }
 
     private:
-      const Epetra_Map       row_map;
+      const RowMap           row_map;
       std::unique_ptr<Mumps> mumps;
     };
   } // namespace
-
-
 
   std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, const bool positive_definite, const std::string &what)
   {
     return std::make_unique<MumpsFactorization>(A, positive_definite ? Symmetry::positive_definite : Symmetry::general, what);
   }
-
-
 
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null)
   {

@@ -1,63 +1,59 @@
+#include "epetra_view.h"
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/replicate.h>
 
-#include <Epetra_Comm.h>
 #include <Epetra_Import.h>
-
-#include <algorithm>
 
 namespace Squeal
 {
   namespace
   {
     /// All rows of @p map on process 0.
-    Epetra_Map on_root(const Epetra_BlockMap &map)
+    RowMap on_root(const RowMap &map)
     {
-      const int n = map.NumGlobalElements();
-      return Epetra_Map(n, map.Comm().MyPID() == 0 ? n : 0, 0, map.Comm());
+      return RowMap::contiguous(map.rank() == 0 ? map.n() : 0, map.communicator());
+    }
+
+    /// The entries of @p X in the rows that @p Y has.
+    void redistribute(const MultiVector &X, MultiVector &Y)
+    {
+      if (X.n_columns() > 0)
+        epetra_view(Y).Import(epetra_view(X), Epetra_Import(Y.map().implementation(), X.map().implementation()), Insert);
     }
   } // namespace
 
   DenseMatrix replicate(const MultiVector &X)
   {
-    const int   n = X.GlobalLength(), k = X.NumVectors();
-    DenseMatrix local = DenseMatrix::Zero(n, k), result(n, k);
-    for (int j = 0; j < k; ++j)
-      for (int i = 0; i < X.MyLength(); ++i)
-        local(X.Map().GID(i), j) = X[j][i];
-    if (n * k > 0)
-      X.Comm().SumAll(local.data(), result.data(), n * k);
+    DenseMatrix result = DenseMatrix::Zero(X.map().n(), X.n_columns());
+    for (int i = 0; i < X.n_local_rows(); ++i)
+      result.row(X.map().number(i)) = X.local().row(i);
+    sum_over_processes(X.communicator(), result.data(), result.size());
     return result;
   }
 
-  MultiVector distribute(const DenseMatrix &X, const Epetra_Map &map)
+  MultiVector distribute(const DenseMatrix &X, const RowMap &map)
   {
-    MultiVector result(map, X.cols());
-    for (int j = 0; j < X.cols(); ++j)
-      for (int i = 0; i < map.NumMyElements(); ++i)
-        result[j][i] = X(map.GID(i), j);
+    MultiVector result(map, X.cols(), false);
+    for (int i = 0; i < map.n_local(); ++i)
+      result.local().row(i) = X.row(map.number(i));
     return result;
   }
 
   DenseMatrix gather(const MultiVector &X)
   {
-    const Epetra_Map map = on_root(X.Map());
-    MultiVector      whole(map, X.NumVectors(), false);
-    whole.Import(X, Epetra_Import(map, X.Map()), Insert);
-    DenseMatrix result(whole.MyLength(), whole.NumVectors());
-    for (int j = 0; j < result.cols(); ++j)
-      std::copy_n(whole[j], whole.MyLength(), result.col(j).begin());
-    return result;
+    MultiVector whole(on_root(X.map()), X.n_columns(), false);
+    redistribute(X, whole);
+    return whole.local();
   }
 
-  MultiVector scatter(const DenseMatrix &X, const Epetra_Map &map)
+  MultiVector scatter(const DenseMatrix &X, const RowMap &map)
   {
     int n_columns = X.cols();
-    map.Comm().Broadcast(&n_columns, 1, 0);
+    agree(map.communicator(), &n_columns, 1);
     MultiVector whole(on_root(map), n_columns, false), result(map, n_columns, false);
-    if (whole.MyLength() > 0)
-      for (int j = 0; j < n_columns; ++j)
-        std::copy_n(X.col(j).begin(), whole.MyLength(), whole[j]);
-    result.Import(whole, Epetra_Import(map, whole.Map()), Insert);
+    if (whole.n_local_rows() > 0)
+      whole.local() = X;
+    redistribute(whole, result);
     return result;
   }
 } // namespace Squeal

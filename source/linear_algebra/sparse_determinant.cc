@@ -1,10 +1,8 @@
 #include "libraries.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/linear_algebra/sparse_determinant.h>
-
-#include <Epetra_Comm.h>
 
 #include <suitesparse/umfpack.h>
 
@@ -70,22 +68,16 @@ namespace Squeal
     void                     *symbolic = nullptr;
   };
 
-
-
   SparseDeterminant::SparseDeterminant(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
   {
-    if (M.Comm().NumProc() > 1)
+    if (M.rows().n_processes() > 1)
       throw SolverError("determinants of sparse matrices are computed by UMFPACK, which runs on one process, not on " +
-                          std::to_string(M.Comm().NumProc()),
+                          std::to_string(M.rows().n_processes()),
                         what, "run on one process, or take the determinant condensed to the contact nodes");
     implementation = std::make_unique<Implementation>(M, C, K);
   }
 
-
-
   SparseDeterminant::~SparseDeterminant() = default;
-
-
 
   std::complex<double> SparseDeterminant::logarithm(const std::complex<double> lambda) const
   {

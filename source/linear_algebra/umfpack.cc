@@ -1,7 +1,7 @@
 #include "libraries.h"
 
 #include <squeal/base/decision.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <suitesparse/umfpack.h>
 
@@ -15,7 +15,7 @@ namespace Squeal
     {
     public:
       UmfpackFactorization(const SparseMatrix &A, const std::string &what)
-        : row_map(A.RowMap())
+        : row_map(A.rows())
         , what(what)
         , rows(A)
         , info(UMFPACK_INFO)
@@ -73,7 +73,7 @@ namespace Squeal
         return info[UMFPACK_LNZ] + info[UMFPACK_UNZ];
       }
 
-      const Epetra_Map &map() const override
+      const RowMap &map() const override
       {
         return row_map;
       }
@@ -83,24 +83,23 @@ namespace Squeal
       {
         std::vector<int>    integers(rows.n_rows);
         std::vector<double> reals(5 * static_cast<std::size_t>(rows.n_rows)), solve_info(UMFPACK_INFO);
-        for (int j = 0; j < X.NumVectors(); ++j)
+        for (int j = 0; j < X.n_columns(); ++j)
           {
-            const int status = umfpack_di_wsolve(system, rows.start.data(), rows.column.data(), rows.value.data(), Y[j], X[j], numeric,
-                                                 control.data(), solve_info.data(), integers.data(), reals.data());
+            const int status =
+              umfpack_di_wsolve(system, rows.start.data(), rows.column.data(), rows.value.data(), Y.col(j).data(), X.col(j).data(), numeric,
+                                control.data(), solve_info.data(), integers.data(), reals.data());
             if (status != UMFPACK_OK)
               throw_library_failure("UMFPACK", "status " + std::to_string(status) + " while solving", what);
           }
       }
 
-      const Epetra_Map    row_map;
+      const RowMap        row_map;
       const std::string   what;
       const LocalRows     rows;
       std::vector<double> info, control;
       void               *numeric = nullptr;
     };
   } // namespace
-
-
 
   std::unique_ptr<Factorization> umfpack_factorization(const SparseMatrix &A, const std::string &what)
   {

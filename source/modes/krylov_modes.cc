@@ -1,8 +1,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/eigen/quadratic_modes.h>
-#include <squeal/linear_algebra/matrix_operator.h>
 #include <squeal/modes/krylov_modes.h>
 
 #include <algorithm>
@@ -11,75 +11,52 @@ namespace Squeal
 {
   namespace
   {
-    /// A sparse matrix, which may be null, and terms in λ without sparse form.
-    class DampingOperator : public LinearOperator
+    /// All terms in λ, those without sparse form, too.
+    struct DampingOperator : LinearOperator
     {
-    public:
-      DampingOperator(const Epetra_Map                   &rows,
-                      std::shared_ptr<const SparseMatrix> matrix,
-                      std::vector<Term>                   others,
-                      const ParameterValues              &values)
-        : rows(rows)
-        , matrix(std::move(matrix))
-        , others(std::move(others))
+      DampingOperator(const CoupledSystem &system, const ParameterValues &values)
+        : system(system)
         , values(values)
       {}
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        if (matrix)
-          matrix->Multiply(false, X, Y);
-        if (!others.empty())
-          Y.Update(1., times(others, values, 1, X), matrix ? 1. : 0.);
+        Y = times(system.terms, values, 1, X);
       }
 
-      const Epetra_Map &map() const override
+      const RowMap &map() const override
       {
-        return rows;
+        return system.map();
       }
 
-    private:
-      const Epetra_Map                   &rows;
-      std::shared_ptr<const SparseMatrix> matrix;
-      std::vector<Term>                   others;
-      ParameterValues                     values;
+      const CoupledSystem   &system;
+      const ParameterValues &values;
     };
 
-    /// Whether UpdatedInverse, whose factor is that of a symmetric matrix, holds all terms.
-    bool is_symmetric(const std::vector<Term> &terms, const ParameterValues &values)
+    /// Modes at friction coefficient @p mu with Q(s)⁻¹ by @p inverse where it @p fits, else by LU factors.
+    ComplexModes attempt(const SecondOrderSystem     &matrices,
+                         const QuadraticPencil       &pencil,
+                         const QuadraticModesOptions &options,
+                         const double                 mu,
+                         const SolverParameters      &parameters,
+                         const bool                   fits,
+                         UpdatedInverse              &inverse)
     {
-      return std::none_of(terms.begin(), terms.end(),
-                          [&values](const Term &term) { return term.symmetry == Symmetry::skew && !term.vanishes(values); });
-    }
-
-    /// Q(s)⁻¹ at friction coefficient @p mu, by @p inverse where it @p fits, or by factors kept in @p lu.
-    const LinearOperator &inverse_with_friction(const SecondOrderSystem        &matrices,
-                                                const double                    shift,
-                                                const double                    mu,
-                                                const SolverParameters         &parameters,
-                                                const bool                      fits,
-                                                UpdatedInverse                 &inverse,
-                                                std::unique_ptr<Factorization> &lu)
-    {
-      if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || shift == 0.))
-        {
-          inverse.set_friction_coefficient(mu);
-          return inverse;
-        }
-      const auto library = parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library;
-      lu                 = factorize_general(*pencil_at(matrices, shift), library, "stiffness of the coupled system with friction");
-      return *lu;
-    }
-
-    ComplexModes complex_modes(const QuadraticModes &found)
-    {
-      ComplexModes modes;
+      std::unique_ptr<const LinearOperator> lu;
+      if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || options.shift == 0.))
+        inverse.set_friction_coefficient(mu);
+      else
+        lu = factorize_general(*pencil_at(matrices, options.shift),
+                               parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library,
+                               "stiffness of the coupled system with friction");
+      const QuadraticModes found = quadratic_modes(pencil, lu ? *lu : inverse, options);
+      ComplexModes         modes;
       modes.lambda         = found.values;
       modes.real_part      = found.real_part;
       modes.imaginary_part = found.imaginary_part;
       modes.real_values    = found.real_values;
       modes.n_rigid_body   = found.n_zero_values / 2;
-      modes.summary        = std::to_string(found.n_solves) + " solves, " + std::to_string(found.n_restarts) + " restarts";
+      modes.summary        = text(found.n_solves, " solves, ", found.n_restarts, " restarts");
       return modes;
     }
   } // namespace
@@ -97,7 +74,10 @@ namespace Squeal
     std::vector<Term>     sparse, others;
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
-    const bool has_full_terms = !terms_of(others, values, 1).empty(), symmetric = is_symmetric(sparse, values);
+    const bool has_full_terms = !terms_of(others, values, 1).empty();
+    // UpdatedInverse, whose factor is that of a symmetric matrix, holds all terms
+    const bool symmetric = std::none_of(sparse.begin(), sparse.end(),
+                                        [&](const Term &term) { return term.symmetry == Symmetry::skew && !term.vanishes(values); });
     // The inverse would hold them
     if (shift != 0. && has_full_terms)
       throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver", "complex modes",
@@ -106,9 +86,11 @@ namespace Squeal
 
     // The pencil: sparse matrices, but for modal damping
     const SecondOrderSystem matrices = sparse_matrices(sparse, values);
-    const MatrixOperator    mass(matrices.mass), stiffness(matrices.stiffness);
-    const DampingOperator   damping(system.map(), matrices.damping, has_full_terms ? others : std::vector<Term>(), values);
-    const QuadraticPencil   pencil{&mass, matrices.damping || has_full_terms ? &damping : nullptr, &stiffness};
+    const DampingOperator   full_damping(system, values);
+    const LinearOperator   *damping = matrices.damping.get();
+    if (has_full_terms)
+      damping = &full_damping;
+    const QuadraticPencil pencil{matrices.mass.get(), damping, matrices.stiffness.get()};
 
     QuadraticModesOptions options;
     options.shift                      = shift;
@@ -116,15 +98,13 @@ namespace Squeal
     options.largest_damping            = largest_rate_of_band;
     options.expected                   = n_expected;
     options.tolerance                  = parameters.complex_tolerance;
-    options.stiffness_norm             = matrices.stiffness->NormInf();
+    options.stiffness_norm             = row_sum_norm(*matrices.stiffness);
     options.report                     = [&](const std::string &state) { progress.update(state); };
 
-    ComplexModes                   modes;
-    std::unique_ptr<Factorization> lu;
+    ComplexModes modes;
     try
       {
-        modes =
-          complex_modes(quadratic_modes(pencil, inverse_with_friction(matrices, shift, mu, parameters, symmetric, inverse, lu), options));
+        modes = attempt(matrices, pencil, options, mu, parameters, symmetric, inverse);
       }
     catch (const SolverError &)
       {
@@ -134,8 +114,7 @@ namespace Squeal
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
-        modes = complex_modes(
-          quadratic_modes(pencil, inverse_with_friction(matrices, options.shift, mu, parameters, symmetric, shifted, lu), options));
+        modes = attempt(matrices, pencil, options, mu, parameters, symmetric, shifted);
         modes.summary += ", shifted";
       }
     finish_modes(system, values, inverse, modes);

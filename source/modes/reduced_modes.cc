@@ -1,9 +1,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/eigen/dense_quadratic.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/modes/reduced_modes.h>
-
-#include <Epetra_Comm.h>
 
 #include <algorithm>
 #include <cmath>
@@ -52,24 +51,21 @@ namespace Squeal
     }
 
     /// Replaces the modes by those of process 0: vectors of a multiple eigenvalue may differ between processes.
-    void agree_on_modes(const Epetra_Comm &comm, ReducedModes &modes)
+    void agree_on_modes(const MPI_Comm communicator, ReducedModes &modes)
     {
-      if (comm.NumProc() == 1)
-        return;
       const int r         = modes.mass.rows();
       int       counts[3] = {static_cast<int>(modes.lambda.size()), static_cast<int>(modes.real_values.size()), modes.n_zeros};
-      comm.Broadcast(counts, 3, 0);
+      agree(communicator, counts, 3);
       const int k = counts[0];
       modes.lambda.resize(k);
       modes.real_values.resize(counts[1]);
       modes.n_zeros = counts[2];
       if (modes.right.cols() != k)
         modes.right = modes.left = ComplexDenseMatrix(r, k);
-      const auto broadcast = [&](Complex *values, const int n) { comm.Broadcast(reinterpret_cast<double *>(values), 2 * n, 0); };
-      broadcast(modes.lambda.data(), k);
-      broadcast(modes.right.data(), r * k);
-      broadcast(modes.left.data(), r * k);
-      comm.Broadcast(modes.real_values.data(), counts[1], 0);
+      agree(communicator, modes.lambda.data(), k);
+      agree(communicator, modes.right.data(), r * k);
+      agree(communicator, modes.left.data(), r * k);
+      agree(communicator, modes.real_values.data(), counts[1]);
     }
 
     /// Every eigenvalue that dense_quadratic_modes() gives.
@@ -113,23 +109,21 @@ namespace Squeal
   ReducedModes reduced_modes(const ReducedModel &model, const double mu, const double largest_circular_frequency, const BandEnd end)
   {
     ReducedModes modes = local_reduced_modes(model, model.full_order().at(mu), largest_circular_frequency, end);
-    agree_on_modes(model.basis().Comm(), modes);
+    agree_on_modes(model.basis().communicator(), modes);
     return modes;
   }
 
-  ReducedModes real_eigenvalue_modes(const ReducedModel &model,
-                                     const double        mu,
-                                     const double        largest_circular_frequency,
-                                     const double        radius)
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, const double mu, const double largest_circular_frequency)
   {
     ReducedModes     modes = all_modes(model, model.full_order().at(mu), largest_circular_frequency, RealVectors::wanted);
     std::vector<int> real;
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-      if (const double size = std::abs(modes.lambda[j]);
-          is_real(modes.lambda[j], largest_circular_frequency) && size > zero_frequency * largest_circular_frequency && size <= radius)
+      if (const double size = std::abs(modes.lambda[j]); is_real(modes.lambda[j], largest_circular_frequency) &&
+                                                         size > zero_frequency * largest_circular_frequency &&
+                                                         size <= band_radius(largest_circular_frequency))
         real.push_back(static_cast<int>(j));
     modes = selected(modes, real);
-    agree_on_modes(model.basis().Comm(), modes);
+    agree_on_modes(model.basis().communicator(), modes);
     return modes;
   }
 
@@ -153,7 +147,7 @@ namespace Squeal
           modes.lambda.emplace_back(0., std::sqrt(squares[j]));
         }
     modes.right = modes.left = vectors(Eigen::all, kept).cast<Complex>();
-    agree_on_modes(model.basis().Comm(), modes);
+    agree_on_modes(model.basis().communicator(), modes);
     return modes;
   }
 

@@ -1,3 +1,4 @@
+#include <squeal/base/checksum.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
@@ -11,9 +12,11 @@
 #include <boost/serialization/string.hpp>
 
 #include <algorithm>
-#include <filesystem>
+#include <cerrno>
+#include <fstream>
 #include <iomanip>
 #include <sstream>
+#include <string_view>
 
 namespace Squeal
 {
@@ -28,6 +31,17 @@ namespace Squeal
 
     constexpr const char *csv_header =
       "line [-],mu [-],frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-]\n";
+
+    /// Stands before every record.
+    struct Head
+    {
+      std::uint64_t size = 0, checksum = 0;
+    };
+
+    std::string_view as_text(const std::vector<char> &record)
+    {
+      return {record.data(), record.size()};
+    }
 
     /// As many as a Table has on disk.
     constexpr int significant_digits = 12;
@@ -78,7 +92,7 @@ namespace Squeal
   class ChartCheckpoint::Part : public ChartStore
   {
   public:
-    Part(ChartCheckpoint &checkpoint, const std::string &name, const Epetra_Map &rows)
+    Part(ChartCheckpoint &checkpoint, const std::string &name, const RowMap &rows)
       : checkpoint(checkpoint)
       , contents(checkpoint.parts[name])
       , name(name)
@@ -119,7 +133,7 @@ namespace Squeal
     ChartCheckpoint  &checkpoint;
     Contents         &contents; ///< empty on all processes but one
     const std::string name;
-    const Epetra_Map  rows;
+    const RowMap      rows;
   };
 
   ChartCheckpoint::ChartCheckpoint(const std::string &folder,
@@ -170,10 +184,17 @@ namespace Squeal
       throw FileError("`" + folder + "` is a file, but an unfinished sweep is kept in a folder of that name", "file " + folder,
                       "choose another --output, or move the file");
     // A run may have ended before its archive was there
-    fs::remove(archive.file.string() + ".incomplete");
+    fs::remove(archive.string() + ".incomplete");
     if (!fs::exists(folder) || fs::is_empty(folder))
       return;
-    const std::string there = fs::exists(archive.file) ? archive.identity() : "";
+    std::string there; // what the archive begins with
+    if (fs::exists(archive))
+      {
+        std::ifstream stream(archive, std::ios::binary);
+        if (!stream)
+          throw fs::filesystem_error("read", archive, std::error_code(errno, std::generic_category()));
+        std::getline(stream, there, '\0');
+      }
     if (there.rfind(title, 0) != 0)
       throw FileError("the folder `" + folder + "` holds files that are not those of an unfinished sweep", "folder " + folder,
                       "choose another --output, or empty the folder");
@@ -181,7 +202,7 @@ namespace Squeal
       throw FileError("an unfinished sweep of other parameters, another mesh or another version of the program lies there: " +
                         first_difference(there, identity),
                       "folder " + folder,
-                      "run it to the end with its own parameters, with which `" + archive.file.string() +
+                      "run it to the end with its own parameters, with which `" + archive.string() +
                         "` begins; choose another --output; or delete the folder");
     if (!read())
       parts.clear(); // the first record begins another archive
@@ -198,19 +219,33 @@ namespace Squeal
 
   bool ChartCheckpoint::read()
   {
-    bool is_complete = true;
-    archive.read([&](const std::vector<char> &packed) {
-      Record    record   = dealii::Utilities::unpack<Record>(packed, false);
-      Contents &contents = parts[record.part];
-      is_complete        = is_complete && record.n_blocks == contents.n_blocks;
-      if (record.is_block())
-        {
-          contents.blocks.push_back(std::move(record.block));
-          ++contents.n_blocks;
-        }
-      else
-        contents.results[{record.line, record.point.friction_coefficient}] = std::move(record.point);
-    });
+    bool                 is_complete = true;
+    std::ifstream        stream(archive, std::ios::binary);
+    const std::uintmax_t size = fs::file_size(archive);
+    end                       = identity.size() + 1;
+    stream.seekg(static_cast<std::streamoff>(end));
+    for (Head head; end + sizeof(head) <= size; end += sizeof(head) + head.size)
+      {
+        stream.read(reinterpret_cast<char *>(&head), sizeof(head));
+        if (stream && head.size > size - end - sizeof(head))
+          break;
+        std::vector<char> packed(stream ? head.size : 0);
+        if (!stream.read(packed.data(), static_cast<std::streamsize>(packed.size())))
+          throw fs::filesystem_error("read", archive, std::make_error_code(std::errc::io_error));
+        if (checksum(as_text(packed)) != head.checksum)
+          continue;
+        Record    record   = dealii::Utilities::unpack<Record>(packed, false);
+        Contents &contents = parts[record.part];
+        is_complete        = is_complete && record.n_blocks == contents.n_blocks;
+        if (record.is_block())
+          {
+            contents.blocks.push_back(std::move(record.block));
+            ++contents.n_blocks;
+          }
+        else
+          contents.results[{record.line, record.point.friction_coefficient}] = std::move(record.point);
+      }
+    fs::resize_file(archive, end);
     return is_complete;
   }
 
@@ -219,11 +254,16 @@ namespace Squeal
     if (!is_begun)
       {
         fs::create_directories(folder);
-        archive.begin(identity);
+        end = identity.size() + 1;
+        replace_file(archive, {identity.c_str(), end});
         replace_file(fs::path(folder) / points_name, csv_header);
         is_begun = true;
       }
-    archive.append(dealii::Utilities::pack(record, false));
+    const std::vector<char> packed = dealii::Utilities::pack(record, false);
+    const Head              head{packed.size(), checksum(as_text(packed))};
+    fs::resize_file(archive, end); // what an attempt that failed has left
+    append_to_file(archive, {{reinterpret_cast<const char *>(&head), sizeof(head)}, as_text(packed)});
+    end += sizeof(head) + packed.size();
     if (record.is_block())
       ++parts[record.part].n_blocks;
     else
@@ -235,7 +275,7 @@ namespace Squeal
     return n_results;
   }
 
-  std::unique_ptr<ChartStore> ChartCheckpoint::part(const std::string &name, const Epetra_Map &rows)
+  std::unique_ptr<ChartStore> ChartCheckpoint::part(const std::string &name, const RowMap &rows)
   {
     return std::make_unique<Part>(*this, name, rows);
   }

@@ -3,8 +3,7 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/mapping_q.h>
-#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/reference_cell.h>
 #include <deal.II/numerics/data_out.h>
 
 #include <algorithm>
@@ -74,12 +73,6 @@ namespace Squeal
     private:
       const Model &model;
     };
-
-    std::array<long, 3> position_key(const double x, const double y, const double z)
-    {
-      constexpr double grid = 1e-6; // [m]
-      return {{std::lround(x / grid), std::lround(y / grid), std::lround(z / grid)}};
-    }
   } // namespace
 
   FieldWriter::FieldWriter(const Model                     &model,
@@ -91,44 +84,25 @@ namespace Squeal
     , folder(folder)
     , components(model.triangulation().n_active_cells())
     , closed(interface.size(), 0.)
-    , contact_fe(1)
   {
     for (const unsigned int c : closed_pairs)
       closed[c] = 1.;
     for (const auto &cell : model.triangulation().active_cell_iterators())
       components(cell->active_cell_index()) = cell->material_id();
 
-    // The pins' contact faces as a surface mesh of their own
+    // Vertices of the pins' contact faces are contact nodes; nodes between them (degree 2) are not shown
+    std::map<unsigned int, unsigned int> pair_of_node;
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      pair_of_node[interface[c].pin_node] = c;
     const types::boundary_id id = model.surface_id(PhysicalNames::pin_contact);
-    std::vector<Point<3>>    vertices(model.triangulation().get_vertices());
-    std::vector<CellData<2>> cells;
-    for (const auto &cell : model.triangulation().active_cell_iterators())
+    for (const auto &cell : model.dof_handler().active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary() && face->boundary_id() == id)
           {
-            CellData<2> data;
+            contact_faces.emplace_back();
             for (unsigned int v = 0; v < 4; ++v)
-              data.vertices[v] = face->vertex_index(v);
-            cells.push_back(data);
+              contact_faces.back()[v] = pair_of_node.at(model.node_of_dof(face->vertex_dof_index(v, 0)));
           }
-    SubCellData none;
-    GridTools::delete_unused_vertices(vertices, cells, none);
-    GridTools::consistently_order_cells(cells);
-    contact_mesh.create_triangulation(vertices, cells, none);
-    contact_dofs.reinit(contact_mesh);
-    contact_dofs.distribute_dofs(contact_fe);
-
-    // Its vertices are contact nodes; nodes between them (degree 2) are not shown
-    std::map<std::array<long, 3>, unsigned int> numbers;
-    for (unsigned int c = 0; c < interface.size(); ++c)
-      {
-        const auto &p                           = model.nodes()[interface[c].pin_node].position;
-        numbers[position_key(p[0], p[1], p[2])] = c;
-      }
-    std::vector<Point<3>> support(contact_dofs.n_dofs());
-    DoFTools::map_dofs_to_support_points(MappingQ<2, 3>(1), contact_dofs, support);
-    for (const auto &p : support)
-      contact_node_of_dof.push_back(numbers.at(position_key(p[0], p[1], p[2])));
   }
 
   template <typename Number, typename Function>
@@ -171,18 +145,25 @@ namespace Squeal
   void FieldWriter::write_contact(const std::string                                                       &file,
                                   const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const
   {
-    DataOut<2, 3> output;
-    output.set_flags(compressed());
-    output.attach_dof_handler(contact_dofs);
+    std::vector<DataOutBase::Patch<2, 3>> patches(contact_faces.size());
+    std::vector<std::string>              names;
     for (const auto &[values, name] : fields)
+      names.emplace_back(name);
+    for (std::size_t face = 0; face < patches.size(); ++face)
       {
-        Vector<double> vector(contact_dofs.n_dofs());
-        for (types::global_dof_index dof = 0; dof < vector.size(); ++dof)
-          vector(dof) = (*values)[contact_node_of_dof[dof]];
-        output.add_data_vector(vector, name);
+        patches[face].patch_index    = face;
+        patches[face].reference_cell = ReferenceCells::Quadrilateral;
+        patches[face].data.reinit(fields.size(), 4);
+        for (unsigned int v = 0; v < 4; ++v)
+          {
+            const unsigned int pair   = contact_faces[face][v];
+            const auto &[x, y, z]     = model.nodes()[interface[pair].pin_node].position;
+            patches[face].vertices[v] = {x, y, z};
+            for (std::size_t f = 0; f < fields.size(); ++f)
+              patches[face].data(f, v) = (*fields[f].first)[pair];
+          }
       }
-    output.build_patches();
-    folder.write(file, [&](std::ostream &stream) { output.write_vtu(stream); });
+    folder.write(file, [&](std::ostream &stream) { DataOutBase::write_vtu(patches, names, {}, compressed(), stream); });
   }
 
   void FieldWriter::write_contact_state(const ContactField &state) const

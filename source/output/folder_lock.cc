@@ -3,6 +3,11 @@
 #include <squeal/output/folder_lock.h>
 #include <squeal/output/run_record.h>
 
+#include <deal.II/base/utilities.h>
+
+#include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/trim.hpp>
+
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -19,27 +24,11 @@ namespace Squeal
     /// How the file of every lock begins.
     constexpr const char *mark = "squeal: ";
 
-    std::string host_name()
-    {
-      std::array<char, 256> name{};
-      return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "an unknown host";
-    }
-
-    std::string this_run(const std::string &command)
-    {
-      return mark + ("process " + std::to_string(::getpid())) + " on " + host_name() + " since " + utc_time() + ", `" + command + "`\n";
-    }
-
     std::string content(const int descriptor)
     {
       std::array<char, 8192> text;
       const ssize_t          n = ::pread(descriptor, text.data(), text.size(), 0);
       return n > 0 ? std::string(text.data(), n) : std::string();
-    }
-
-    bool begins_with(const std::string &text, const std::string &beginning)
-    {
-      return text.compare(0, beginning.size(), beginning) == 0;
     }
 
     /// Whether an open file still is the one that has this name.
@@ -48,15 +37,6 @@ namespace Squeal
       struct stat opened, named;
       return ::fstat(descriptor, &opened) == 0 && ::lstat(file.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
              opened.st_ino == named.st_ino;
-    }
-
-    FileError refusal(const std::string &folder, const std::string &holder)
-    {
-      std::string name = begins_with(holder, mark) ? holder.substr(std::strlen(mark)) : std::string("a process that has just begun");
-      while (!name.empty() && name.back() == '\n')
-        name.pop_back();
-      return FileError("another run writes to `" + folder + "`: " + name, "--output " + folder,
-                       "wait until it has ended, or choose another name");
     }
   } // namespace
 
@@ -77,9 +57,11 @@ namespace Squeal
                      "choose a folder beside which you may write");
         if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
           {
-            const FileError error = refusal(folder, content(descriptor));
+            const std::string holder = boost::trim_copy(content(descriptor));
             ::close(descriptor);
-            throw error;
+            throw FileError("another run writes to `" + folder + "`: " +
+                              (boost::starts_with(holder, mark) ? holder.substr(std::strlen(mark)) : "a process that has just begun"),
+                            "--output " + folder, "wait until it has ended, or choose another name");
           }
         if (!has_name(descriptor, file))
           {
@@ -88,10 +70,12 @@ namespace Squeal
           }
       }
     const std::string former = content(descriptor);
-    if (!former.empty() && !begins_with(former, mark))
+    if (!former.empty() && !boost::starts_with(former, mark))
       throw fail("the file has the name of the lock but is none", "move it, or choose another name");
-    left_behind = !former.empty();
-    if (const int problem = write_file(file, O_TRUNC, {this_run(command)}, false); problem != 0)
+    left_behind                = !former.empty();
+    const std::string this_run = mark + ("process " + std::to_string(::getpid())) + " on " + dealii::Utilities::System::get_hostname() +
+                                 " since " + utc_time() + ", `" + command + "`\n";
+    if (const int problem = write_file(file, O_TRUNC, {this_run}, false); problem != 0)
       throw fail(std::string("the result folder cannot be locked: ") + std::strerror(problem), "check permissions and free space");
   }
 

@@ -1,4 +1,5 @@
 #include <squeal/base/decision.h>
+#include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/output/run_record.h>
 
@@ -25,12 +26,6 @@ namespace Squeal
     using Json = nlohmann::ordered_json;
 
     constexpr const char *file_list = "files [byte]";
-
-    std::string cholmod_version()
-    {
-      return std::to_string(CHOLMOD_MAIN_VERSION) + "." + std::to_string(CHOLMOD_SUB_VERSION) + "." +
-             std::to_string(CHOLMOD_SUBSUB_VERSION);
-    }
   } // namespace
 
   std::string utc_time()
@@ -46,12 +41,17 @@ namespace Squeal
     Json tree;
     tree["command"]  = record.command;
     tree["finished"] = utc_time();
-    tree["versions"] = {
-      {"squeal", version},      {"revision", record.revision},  {"deal.II", DEAL_II_PACKAGE_VERSION}, {"Trilinos", TRILINOS_VERSION_STRING},
-      {"MUMPS", MUMPS_VERSION}, {"CHOLMOD", cholmod_version()}, {"UMFPACK", UMFPACK_VERSION},         {"Gmsh", GMSH_API_VERSION}};
-    tree["machine"] = {{"cores", std::thread::hardware_concurrency()},
-                       {"processes", record.n_processes},
-                       {"BLAS threads per process", record.blas_threads}};
+    tree["versions"] = {{"squeal", version},
+                        {"revision", record.revision},
+                        {"deal.II", DEAL_II_PACKAGE_VERSION},
+                        {"Trilinos", TRILINOS_VERSION_STRING},
+                        {"MUMPS", MUMPS_VERSION},
+                        {"CHOLMOD", text(CHOLMOD_MAIN_VERSION, ".", CHOLMOD_SUB_VERSION, ".", CHOLMOD_SUBSUB_VERSION)},
+                        {"UMFPACK", UMFPACK_VERSION},
+                        {"Gmsh", GMSH_API_VERSION}};
+    tree["machine"]  = {{"cores", std::thread::hardware_concurrency()},
+                        {"processes", record.n_processes},
+                        {"BLAS threads per process", record.blas_threads}};
     for (const auto &[name, count] : record.counts)
       tree["counts"][name] = count;
     for (const auto &[name, value] : record.quantities)

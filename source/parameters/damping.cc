@@ -37,14 +37,10 @@ namespace Squeal
   void DampingParameters::declare(Declarations &declarations)
   {
     declarations.enter("Damping");
-    declare_list(
-      declarations, "Modal damping ratio", modal_ratios,
-      "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, linear in "
-      "between and constant beyond the ends. Empty: none. Units: Hz and none.",
-      ratio_list, [](const ModalDampingRatio &entry) { return exact_text(entry.frequency) + ": " + exact_text(entry.ratio); },
-      [](const ListEntry &entry) {
-        return ModalDampingRatio{entry.numbers[0], entry.numbers[1]};
-      });
+    declare_list(declarations, "Modal damping ratio", modal_ratios,
+                 "Damping ratios of the real coupled modes as a list `frequency: ratio, ...` over ascending frequencies, linear in "
+                 "between and constant beyond the ends. Empty: none. Units: Hz and none.",
+                 ratio_list, {&ModalDampingRatio::frequency, &ModalDampingRatio::ratio});
   }
 
   void DampingParameters::check() const

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <sstream>
 #include <type_traits>
 
@@ -110,6 +111,20 @@ namespace Squeal
                    "give a number, or leave it empty for the value in the geometry");
         });
     }
+
+    /// Whether a Gmsh mesh has physical volumes; their names are text in binary files, too.
+    bool has_volumes(const std::string &mesh)
+    {
+      std::ifstream stream(mesh, std::ios::binary);
+      std::string   line;
+      while (std::getline(stream, line) && line.rfind("$PhysicalNames", 0) != 0)
+        ;
+      std::getline(stream, line); // their number
+      while (std::getline(stream, line) && line.rfind("$End", 0) != 0)
+        if (int dimension; std::istringstream(line) >> dimension && dimension == 3)
+          return true;
+      return false;
+    }
   } // namespace
 
   void GeometryParameters::set_file(const std::string &name, const std::string &parameter_directory)
@@ -149,6 +164,21 @@ namespace Squeal
             {"disc_layers", std::to_string(disc_layers)},
             {"element_size", exact_text(element_size)},
             {"pairing_tolerance", exact_text(pairing_tolerance)}};
+  }
+
+  std::set<std::string> GeometryParameters::used_variables() const
+  {
+    const std::string             geometry = path();
+    std::optional<GeometryScript> script;
+    if (is_script(geometry))
+      script.emplace(geometry);
+    std::set<std::string> used = {"pairing_tolerance"};
+    if (script ? !script->find({"Physical Volume"}) : !has_volumes(geometry))
+      used.insert({"disc_thickness", "pin_height", "disc_layers", "pin_layers"});
+    for (const auto &[name, value] : script_variables())
+      if (script && script->find({name}))
+        used.insert(name);
+    return used;
   }
 
   std::string GeometryParameters::path() const

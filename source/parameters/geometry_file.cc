@@ -5,9 +5,9 @@
 
 #include <boost/algorithm/string/predicate.hpp>
 #include <boost/algorithm/string/trim.hpp>
+#include <boost/xpressive/xpressive_dynamic.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -18,24 +18,26 @@ namespace Squeal
 
   namespace
   {
-    /// The text with blanks for comments, so that lines keep their numbers.
-    std::string without_comments(std::string text)
+    using Pattern = boost::xpressive::sregex; // without recursion, unlike std::regex: a text may be of any length
+    using Match   = boost::xpressive::smatch;
+    using Matches = boost::xpressive::sregex_iterator;
+
+    Pattern word(const std::string &text)
     {
-      bool in_string = false;
-      for (std::size_t i = 0; i < text.size(); ++i)
-        if (text[i] == '"')
-          in_string = !in_string;
-        else if (!in_string && text[i] == '/' && i + 1 < text.size() && (text[i + 1] == '/' || text[i + 1] == '*'))
-          {
-            const bool        is_line = text[i + 1] == '/';
-            const std::size_t end     = is_line ? text.find('\n', i) : text.find("*/", i + 2);
-            const std::size_t last    = end == std::string::npos ? text.size() : end + (is_line ? 0 : 2);
-            for (; i < last; ++i)
-              if (text[i] != '\n')
-                text[i] = ' ';
-            --i;
-          }
-      return text;
+      return Pattern::compile("\\b" + text + "\\b");
+    }
+
+    /// The text with blanks for comments, so that lines keep their numbers.
+    std::string without_comments(const std::string &text)
+    {
+      const Pattern string_or_comment = Pattern::compile(R"re("[^"]*"?|//[^\n]*|/\*.*?\*/|/\*.*)re");
+      return regex_replace(text, string_or_comment, [](const Match &match) {
+        std::string part = match.str();
+        if (part[0] == '/')
+          std::replace_if(
+            part.begin(), part.end(), [](const char c) { return c != '\n'; }, ' ');
+        return part;
+      });
     }
 
     /// How deep in brackets a text is where it has been read to, and whether in a string.
@@ -83,88 +85,30 @@ namespace Squeal
       return result;
     }
 
-    bool is_word_character(const char c)
-    {
-      return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
-    }
-
-    /// Where a whole word begins at or after a position; npos where it does not.
-    std::size_t find_word(const std::string &text, const std::string &word, std::size_t from = 0)
-    {
-      for (; (from = text.find(word, from)) != std::string::npos; ++from)
-        if ((from == 0 || !is_word_character(text[from - 1])) &&
-            (from + word.size() == text.size() || !is_word_character(text[from + word.size()])))
-          break;
-      return from;
-    }
-
-    /// What follows each occurrence of a word, blanks left out: the position of its first character.
-    std::vector<std::size_t> positions_after(const std::string &text, const std::string &word)
-    {
-      std::vector<std::size_t> result;
-      for (std::size_t at = 0; (at = find_word(text, word, at)) != std::string::npos;)
-        {
-          at = text.find_first_not_of(" \t\r\n", at + word.size());
-          if (at == std::string::npos)
-            break;
-          result.push_back(at);
-        }
-      return result;
-    }
-
-    /// The name at the beginning of a text; empty where it does not begin with one.
-    std::string leading_name(const std::string &text)
-    {
-      const std::size_t end = std::find_if_not(text.begin(), text.end(), is_word_character) - text.begin();
-      return end > 0 && std::isdigit(static_cast<unsigned char>(text[0])) ? "" : text.substr(0, end);
-    }
-
-    /// The text between the quotes with which a text begins; empty where it does not.
-    std::string leading_string(const std::string &text)
-    {
-      const std::size_t end = text.empty() || text[0] != '"' ? std::string::npos : text.find('"', 1);
-      return end == std::string::npos ? "" : text.substr(1, end - 1);
-    }
-
     /// The text of option Name "..." among the options of a number.
     std::string onelab_name(const std::vector<std::string> &options)
     {
+      const Pattern name = Pattern::compile(R"re(Name\s*"([^"]*)".*)re");
+      Match         match;
       for (const std::string &option : options)
-        if (leading_name(option) == "Name")
-          return leading_string(boost::trim_copy(option.substr(std::string("Name").size())));
+        if (regex_match(option, match, name))
+          return match[1];
       return "";
     }
 
     /// One item of DefineConstant[...]: name, name = value, or name = {value, options}.
     std::optional<GeometryVariable> constant(const std::string &item)
     {
-      const std::string name = leading_name(item), rest = boost::trim_copy(item.substr(name.size()));
-      if (name.empty() || (!rest.empty() && rest[0] != '='))
+      const Pattern assignment = Pattern::compile(R"re(([A-Za-z_]\w*)\s*(?:=\s*(.*))?)re");
+      Match         match;
+      if (!regex_match(item, match, assignment))
         return {};
-      std::string value = rest.empty() ? "0" : boost::trim_copy(rest.substr(1));
+      std::string value = match[2].matched ? match[2].str() : "0";
       if (!value.empty() && value[0] == '{')
         value = items(inside_brackets(value, 0))[0];
       if (value.empty() || value[0] == '"' || value[0] == '{')
         return {};
-      return GeometryVariable{name, value, ""};
-    }
-
-    /// The name to which the expression at a position is assigned; empty where it is not.
-    std::string assigned_name(const std::string &text, const std::size_t position)
-    {
-      const auto blank_before = [&](std::size_t at) {
-        while (at > 0 && std::isspace(static_cast<unsigned char>(text[at - 1])))
-          --at;
-        return at;
-      };
-      const std::size_t equal = blank_before(position);
-      if (equal == 0 || text[equal - 1] != '=')
-        return "";
-      const std::size_t end   = blank_before(equal - 1);
-      std::size_t       begin = end;
-      while (begin > 0 && is_word_character(text[begin - 1]))
-        --begin;
-      return leading_name(text.substr(begin, end - begin));
+      return GeometryVariable{match[1], value, ""};
     }
   } // namespace
 
@@ -215,19 +159,22 @@ namespace Squeal
     parts.push_back({file, without_comments(text.str())});
 
     const std::string here = parts.back().text;
-    for (const char *statement : {"Include", "Merge"})
-      for (const std::size_t at : positions_after(here, statement))
-        {
-          const std::string name  = leading_string(here.substr(at, here.find('\n', at) - at));
-          const fs::path    other = (fs::path(file).parent_path() / name).lexically_normal();
-          std::error_code   ignored;
-          if (name.empty() || !fs::is_regular_file(other, ignored))
-            continue;
-          if (statement == std::string("Include") || is_script(other.string()))
-            read(other.string());
-          else
-            merged.push_back(other.string());
-        }
+    for (const std::string statement : {"Include", "Merge"})
+      {
+        const Pattern named_file = Pattern::compile("\\b" + statement + R"re(\s*"([^"\n]*)")re");
+        for (Matches match(here.begin(), here.end(), named_file), end; match != end; ++match)
+          {
+            const std::string name  = (*match)[1];
+            const fs::path    other = (fs::path(file).parent_path() / name).lexically_normal();
+            std::error_code   ignored;
+            if (name.empty() || !fs::is_regular_file(other, ignored))
+              continue;
+            if (statement == "Include" || is_script(other.string()))
+              read(other.string());
+            else
+              merged.push_back(other.string());
+          }
+      }
   }
 
   std::vector<GeometryVariable> GeometryScript::variables() const
@@ -239,18 +186,21 @@ namespace Squeal
     };
     for (const Part &part : parts)
       {
-        const std::string &text = part.text;
-        for (const std::size_t at : positions_after(text, "DefineConstant"))
-          for (const std::string &item : items(inside_brackets(text, at)))
+        const std::string &text     = part.text;
+        const auto         for_each = [&text](const Pattern &pattern, const auto &action) {
+          for (Matches match(text.begin(), text.end(), pattern), end; match != end; ++match)
+            action(*match, match->position() + match->length());
+        };
+        for_each(Pattern::compile(R"re(\bDefineConstant\b\s*)re"), [&](const Match &, const std::size_t end) {
+          for (const std::string &item : items(inside_brackets(text, end)))
             if (const auto variable = constant(item))
               add(*variable);
-        for (std::size_t at = 0; (at = find_word(text, "DefineNumber", at)) != std::string::npos; ++at)
-          {
-            const auto        options = items(inside_brackets(text, text.find_first_of("[(", at)));
-            const std::string name = assigned_name(text, at), onelab = onelab_name(options);
-            if (!name.empty() && !onelab.empty())
-              add({name, options[0], onelab});
-          }
+        });
+        for_each(Pattern::compile(R"re(\b([A-Za-z_]\w*)\s*=\s*DefineNumber\b)re"), [&](const Match &match, const std::size_t end) {
+          const auto options = items(inside_brackets(text, text.find_first_of("[(", end)));
+          if (const std::string onelab = onelab_name(options); !onelab.empty())
+            add({match[1], options[0], onelab});
+        });
       }
     return result;
   }
@@ -271,8 +221,8 @@ namespace Squeal
         std::istringstream lines(part.text);
         std::string        line;
         for (unsigned int number = 1; std::getline(lines, line); ++number)
-          for (const std::string &word : words)
-            if (find_word(single_spaced(line), word) != std::string::npos)
+          for (const std::string &sought : words)
+            if (regex_search(single_spaced(line), word(sought)))
               return part.file + ", line " + std::to_string(number) + ": " + boost::trim_copy(line);
       }
     return {};

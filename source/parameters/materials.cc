@@ -15,6 +15,12 @@ namespace Squeal
                                    "surface",
                                    {3}};
 
+    const ListFormat pin_list = {"Pin material/Single pins",
+                                 "not the material of a pin",
+                                 "pin: Young modulus, Poisson ratio, density; pin: ... [Pa, -, kg/m^3]",
+                                 "pin",
+                                 {3}};
+
     void declare_material(Declarations &declarations, const std::string &section, Material &material)
     {
       declarations.enter(section);
@@ -61,25 +67,23 @@ namespace Squeal
     declare_material(declarations, "Disc material", disc);
     declare_material(declarations, "Pin material", pin);
 
-    declarations.enter("Mounts");
     declare_list(
-      declarations, "Elastic mounts", mounts,
-      "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per "
-      "area in the directions of the disc's axis. Empty: the disc turns freely. Units: N/m^3.",
-      mount_list,
-      [](const ElasticMount &mount) {
-        return mount.surface + ": " + exact_text({mount.radial, mount.tangential, mount.axial});
-      },
-      [](const ListEntry &entry) {
-        return ElasticMount{entry.key, entry.numbers[0], entry.numbers[1], entry.numbers[2]};
-      });
+      declarations, "Single pins", single_pins,
+      "Pins of another material, as a list `pin: Young modulus, Poisson ratio, density; ...`; their Rayleigh damping is that of all "
+      "pins. Units: Pa, none, kg/m^3.",
+      pin_list, {&PinMaterial::young_modulus, &PinMaterial::poisson_ratio, &PinMaterial::density}, &PinMaterial::pin);
+
+    declarations.enter("Mounts");
+    declare_list(declarations, "Elastic mounts", mounts,
+                 "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per "
+                 "area in the directions of the disc's axis. Empty: the disc turns freely. Units: N/m^3.",
+                 mount_list, {&ElasticMount::radial, &ElasticMount::tangential, &ElasticMount::axial}, &ElasticMount::surface);
   }
 
   void MaterialParameters::check() const
   {
-    check_material("Disc material", disc);
-    check_material("Pin material", pin);
-
+    for (const auto &[section, material] : all())
+      check_material(section, material);
     for (const ElasticMount &mount : mounts)
       {
         const std::string where = "parameter Mounts/Elastic mounts, surface " + legible(mount.surface);
@@ -88,6 +92,27 @@ namespace Squeal
             throw ParameterError("the stiffness " + exact_text(stiffness) + " N/m^3 is not a finite value >= 0", where,
                                  "give zero or a positive stiffness per area");
       }
+  }
+
+  Material MaterialParameters::of(const std::string &body) const
+  {
+    Material result = body == "disc" ? disc : pin;
+    for (const PinMaterial &single : single_pins)
+      if (single.pin == body)
+        {
+          result.young_modulus = single.young_modulus;
+          result.poisson_ratio = single.poisson_ratio;
+          result.density       = single.density;
+        }
+    return result;
+  }
+
+  std::vector<std::pair<std::string, Material>> MaterialParameters::all() const
+  {
+    std::vector<std::pair<std::string, Material>> result = {{"Disc material", disc}, {"Pin material", pin}};
+    for (const PinMaterial &single : single_pins)
+      result.emplace_back("Pin material/Single pins, " + single.pin, of(single.pin));
+    return result;
   }
 
   std::vector<std::string> MaterialParameters::mounted_surfaces() const

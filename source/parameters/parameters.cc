@@ -266,12 +266,12 @@ namespace Squeal
     // Waves with β ω > 2 are overdamped, and one of their two real λ tends to −1/β the faster they are: the finer the mesh, the
     // more eigenvalues lie there. The list of eigenvalues must end before.
     const double radius = clear_of_accumulation * band_radius(circular_frequency(discretization.maximum_frequency));
-    for (const auto &[section, material] : {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
+    for (const auto &[section, material] : materials.all())
       if (const double beta = material.rayleigh_beta; beta * radius >= 1.)
         throw ParameterError("the damping in proportion to the stiffness, " + exact_text(beta) +
                                " s, gathers the real eigenvalues of all overdamped waves at -1/beta = " + exact_text(-1. / beta) +
                                " 1/s, within reach of the band",
-                             std::string("parameter ") + section + "/Rayleigh beta",
+                             "parameter " + section + "/Rayleigh beta",
                              text("give less than ", 1. / radius, " s, let the band end below ",
                                   hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius)),
                                   " Hz, or give Damping/Modal damping ratio instead"));

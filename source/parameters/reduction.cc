@@ -53,15 +53,22 @@ namespace Squeal
           if (!name.empty())
             bases.push_back(name);
       });
-    declare_list(
-      declarations, "Component modes", truncations,
+    declarations.add_text(
+      "Component modes",
       "Truncations of the component modes, separated by semicolons: a frequency (all modes below it) or three numbers of "
       "modes `disc, pins free, pins sliding`, those of all pins together. Units: Hz.",
-      truncation_list,
-      [](const ModeTruncation &t) {
-        return t.frequency > 0. ? exact_text(t.frequency) : exact_text({double(t.disc), double(t.pins_free), double(t.pins_sliding)});
+      [this] {
+        std::vector<std::string> texts;
+        for (const ModeTruncation &t : truncations)
+          texts.push_back(t.frequency > 0. ? exact_text(t.frequency) :
+                                             exact_text({double(t.disc), double(t.pins_free), double(t.pins_sliding)}));
+        return boost::algorithm::join(texts, "; ");
       },
-      parse_truncation);
+      [this](const std::string &text) {
+        truncations.clear();
+        for (const ListEntry &entry : parse_list(text, truncation_list))
+          truncations.push_back(parse_truncation(entry));
+      });
     declarations.add("Coupled frequency", coupled_frequency,
                      "Real coupled modes below this frequency go into the bases `real ...`; 0: those of the band. Units: Hz.", {0.});
     declarations.add("Rank tolerance", rank_tolerance,

@@ -24,32 +24,20 @@ namespace Squeal
                      "which nodes may lift off. All other parameters of this section belong to steady sliding.");
     declarations.add("Control", control,
                      "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
-                     "displacement, the way of both backplates; load per pin, a force on each pin.");
+                     "displacement, the travel of both backplates; load per pin, a force on each pin.");
     declarations.add("Displacement", displacement,
                      "Way of each backplate along the disc's axis towards the disc, from where a pin without gap touches it, for "
                      "Control = displacement. Units: m.",
                      {0.});
-    declare_list(
-      declarations, "Loads", pin_loads,
-      "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
-      "share of Operation/Load per side. Units: N.",
-      load_list, [](const PinLoad &entry) { return entry.pin + ": " + exact_text(entry.load); },
-      [](const ListEntry &entry) {
-        return PinLoad{entry.key, entry.numbers[0]};
-      });
-    declare_list(
-      declarations, "Gaps", gaps,
-      "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, "
-      "along the disc's axis, positive where the pin does not touch. The gap grows by the tapers per distance from the "
-      "centre of the face along the sliding direction and outwards. Units: m, none, none.",
-      gap_list,
-      [](const PinGap &gap) {
-        return gap.pin + ": " + exact_text({gap.gap, gap.sliding_taper, gap.radial_taper});
-      },
-      [](const ListEntry &entry) {
-        const bool is_tapered = entry.numbers.size() > 1;
-        return PinGap{entry.key, entry.numbers[0], is_tapered ? entry.numbers[1] : 0., is_tapered ? entry.numbers[2] : 0.};
-      });
+    declare_list(declarations, "Loads", pin_loads,
+                 "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
+                 "share of Operation/Load per side. Units: N.",
+                 load_list, {&PinLoad::load}, &PinLoad::pin);
+    declare_list(declarations, "Gaps", gaps,
+                 "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, "
+                 "along the disc's axis, positive where the pin does not touch. The gap grows by the tapers per distance from the "
+                 "centre of the face along the sliding direction and outwards. Units: m, none, none.",
+                 gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 
   void SlidingParameters::check_steady() const

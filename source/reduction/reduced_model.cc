@@ -49,41 +49,6 @@ namespace Squeal
       }
   }
 
-  int ReducedModel::size() const
-  {
-    return mass_matrix.rows();
-  }
-
-  const MultiVector &ReducedModel::basis() const
-  {
-    return *T;
-  }
-
-  const CoupledSystem &ReducedModel::full_order() const
-  {
-    return *system;
-  }
-
-  const DenseMatrix &ReducedModel::mass() const
-  {
-    return mass_matrix;
-  }
-
-  const DenseMatrix &ReducedModel::stiffness() const
-  {
-    return stiffness_matrix;
-  }
-
-  const DenseMatrix &ReducedModel::projected(const std::size_t term) const
-  {
-    return matrices[term];
-  }
-
-  const DenseMatrix &ReducedModel::motions(const LowRankFactor &factor) const
-  {
-    return factors.at(&factor);
-  }
-
   ReducedPencil ReducedModel::at(const ParameterValues &values) const
   {
     std::array<DenseMatrix, 3> sums;

@@ -3,7 +3,6 @@
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace Squeal
 {
@@ -66,7 +65,7 @@ namespace Squeal
 
   DenseMatrix ProjectedResiduals::factor_products(const MultiVector &X) const
   {
-    DenseMatrix result(n_left + n_shared + n_right, X.NumVectors());
+    DenseMatrix result(n_left + n_shared + n_right, X.n_columns());
     for (const Factor &f : factors)
       result.middleRows(f.first, f.factor->rank()) = f.factor->transpose_times(X);
     return result;
@@ -110,7 +109,7 @@ namespace Squeal
         for (std::size_t l = 0; l < n; ++l)
           {
             MultiVector F = *sparse[l].term->matrix * U;
-            F.Scale(sparse[l].sign);
+            F *= sparse[l].sign;
             columns[l + n * k] = gram(T, F);
           }
       }
@@ -162,18 +161,18 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  transposed) const
   {
-    const int          k        = static_cast<int>(lambda.size());
-    const int          first    = transposed ? 0 : n_left; // column of W that belongs to the first row
-    ComplexDenseMatrix result   = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), k);
-    const auto         add_rows = [&](const ComplexDenseMatrix &part, const int row, const std::function<Complex(int)> &factor) {
-      for (int j = 0; j < k; ++j)
-        result.col(j).segment(row, part.rows()) += factor(j) * part.col(j);
+    const int          first  = transposed ? 0 : n_left; // column of W that belongs to the first row
+    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), lambda.size());
+    // θ λ^p of each mode
+    const auto theta = [&](const Term &term) {
+      return as_column(lambda).unaryExpr([&](const Complex &l) { return term.factor(l, values); }).eval();
     };
 
     for (std::size_t s = 0; s < sparse.size(); ++s)
-      add_rows(vectors, n_left - first + static_cast<int>(s) * r, [&](const int j) {
-        return (transposed ? sparse[s].sign : 1.) * sparse[s].term->factor(lambda[j], values) - sparse[s].sigma;
-      });
+      {
+        const Eigen::VectorXcd factor = (transposed ? sparse[s].sign : 1.) * theta(*sparse[s].term).array() - sparse[s].sigma;
+        result.middleRows(n_left - first + static_cast<int>(s) * r, r) += vectors * factor.asDiagonal();
+      }
     std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
     for (const Term *term : low_rank)
       {
@@ -183,8 +182,8 @@ namespace Squeal
         if (moved.count(&source) == 0)
           moved[&source] = multiply(motions.at(&source), vectors);
         const auto factor = std::find_if(factors.begin(), factors.end(), [&target](const Factor &f) { return f.factor == &target; });
-        add_rows(term->weighted(moved.at(&source), values), column_of(*factor) - first,
-                 [&](const int j) { return term->factor(lambda[j], values); });
+        result.middleRows(column_of(*factor) - first, target.rank()) +=
+          term->weighted(moved.at(&source), values) * theta(*term).asDiagonal();
       }
     return halves(result);
   }

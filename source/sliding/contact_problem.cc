@@ -1,5 +1,6 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/sliding/contact_problem.h>
@@ -10,7 +11,6 @@
 #include <optional>
 #include <random>
 #include <set>
-#include <sstream>
 
 namespace Squeal
 {
@@ -44,13 +44,10 @@ namespace Squeal
         : problem(problem)
         , G(problem.flexibility(mu))
       {
-        unit = G.diagonal().cwiseAbs().mean();
-        for (Eigen::Index k = 0; k < problem.motions.cols(); ++k)
-          {
-            const double motion = max_norm(problem.motions.col(k)), force = max_norm(problem.balance.row(k));
-            motion_sizes.push_back(motion > 0. ? motion : 1.);
-            balance_sizes.push_back(force > 0. ? force : 1.);
-          }
+        const auto one_for_zero = [](const double size) { return size > 0. ? size : 1.; };
+        unit                    = G.diagonal().cwiseAbs().mean();
+        motion_sizes            = problem.motions.cwiseAbs().colwise().maxCoeff().transpose().unaryExpr(one_for_zero);
+        balance_sizes           = problem.balance.cwiseAbs().rowwise().maxCoeff().unaryExpr(one_for_zero);
       }
 
       /// Throws SolverError if the active set leaves the reactions undetermined.
@@ -65,9 +62,9 @@ namespace Squeal
 
         // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
         DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, 1);
-        A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::all) * as_column(motion_sizes).cwiseInverse().asDiagonal(),
-          as_column(balance_sizes).cwiseInverse().asDiagonal() * problem.balance(Eigen::all, nodes), DenseMatrix::Zero(n_z, n_z);
-        b << -as_column(problem.initial_gap)(nodes) / unit, as_column(problem.forces).cwiseQuotient(as_column(balance_sizes));
+        A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::all) * motion_sizes.cwiseInverse().asDiagonal(),
+          balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::all, nodes), DenseMatrix::Zero(n_z, n_z);
+        b << -as_column(problem.initial_gap)(nodes) / unit, as_column(problem.forces).cwiseQuotient(balance_sizes);
         for (const int k : problem.held)
           A(n + k, n + k) = 1.;
         const RealLU lu = regular_lu(A, "steady sliding, equations of the closed contact nodes");
@@ -75,34 +72,26 @@ namespace Squeal
         // One step of refinement: the reactions are to balance the load to rounding.
         x += lu.solve(b - A * x);
 
-        Iterate result{{std::vector<double>(G.rows(), 0.), problem.initial_gap, {}, std::move(closed), 0}, {}, 0., 0.};
-        auto &[r, g, z, active, n_steps] = result.solution;
-        for (int i = 0; i < n; ++i)
-          r[nodes[i]] = x(i, 0);
-        for (int k = 0; k < n_z; ++k)
-          z.push_back(unit * x(n + k, 0) / motion_sizes[k]);
-        const Eigen::VectorXd change           = problem.motions * as_column(z) + G * as_column(r);
-        double                largest_reaction = 0., largest_gap = 0.;
-        for (int c = 0; c < G.rows(); ++c)
-          {
-            g[c] += change[c];
-            if (active[c])
-              g[c] = 0.;
-            largest_reaction = std::max(largest_reaction, std::abs(r[c]));
-            largest_gap      = std::max({largest_gap, std::abs(g[c]), unit * std::abs(r[c])});
-          }
+        const Eigen::VectorXd z = unit * x.bottomRows(n_z).cwiseQuotient(motion_sizes);
+        Eigen::VectorXd       r = Eigen::VectorXd::Zero(G.rows());
+        r(nodes)                = x.topRows(n);
+        Eigen::VectorXd g       = as_column(problem.initial_gap) + problem.motions * z + G * r;
+        g(nodes).setZero();
+        const double largest_reaction = max_norm(r), largest_gap = std::max(max_norm(g), unit * largest_reaction);
+        Iterate      result{{}, {}, 0., 0.};
         for (int c = 0; c < G.rows(); ++c)
           {
             // Without any reaction or gap there is no violation: NaN does not exceed
-            const bool pulls    = active[c] && tension.exceeded_by(r[c] / largest_reaction);
-            const bool overlaps = !active[c] && overlap_of_open.exceeded_by(g[c] / largest_gap);
+            const bool pulls    = closed[c] && tension.exceeded_by(r[c] / largest_reaction);
+            const bool overlaps = !closed[c] && overlap_of_open.exceeded_by(g[c] / largest_gap);
             if (pulls || overlaps)
               result.violated.push_back(c);
             result.pull    = std::max(result.pull, pulls ? r[c] : 0.);
             result.overlap = std::max(result.overlap, overlaps ? g[c] : 0.);
-            r[c]           = std::min(r[c], 0.);
-            g[c]           = std::min(g[c], 0.);
           }
+        r               = r.cwiseMin(0.);
+        g               = g.cwiseMin(0.);
+        result.solution = {{r.begin(), r.end()}, {g.begin(), g.end()}, {z.begin(), z.end()}, std::move(closed), 0};
         return result;
       }
 
@@ -136,8 +125,8 @@ namespace Squeal
     private:
       const ContactProblem &problem;
       DenseMatrix           G;
-      double                unit = 0.;                   ///< mean diagonal entry of G [m/N]
-      std::vector<double>   motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
+      double                unit;                        ///< mean diagonal entry of G [m/N]
+      Eigen::VectorXd       motion_sizes, balance_sizes; ///< largest entries of columns of B, rows of L
     };
 
     /// The best iterate of an attempt; a solution if it violates nothing.
@@ -203,11 +192,6 @@ namespace Squeal
     }
   } // namespace
 
-  DenseMatrix ContactProblem::flexibility(const double mu) const
-  {
-    return normal_flexibility + mu * tangential_flexibility;
-  }
-
   ContactSolution solve_contact(const ContactProblem &problem)
   {
     const std::size_t     n  = problem.initial_gap.size();
@@ -242,15 +226,12 @@ namespace Squeal
       if (succeeds(pivot(solver, random_set(generator, n), problem.initial_gap)))
         return best->solution;
 
-    std::ostringstream text;
-    text << "no state of steady sliding was found at friction coefficient " << mu;
-    if (best)
-      text << ": of the best iterate " << best->violated.size() << " of " << n << " contact nodes violate the contact conditions, by "
-           << best->pull << " N of tension and " << best->overlap << " m of overlap";
-    else
-      text << ": with all nodes closed, the reactions are not determined";
-    throw SolverError(text.str(), "steady sliding",
-                      "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
+    throw SolverError(
+      text("no state of steady sliding was found at friction coefficient ", mu, ": ",
+           best ? text("of the best iterate ", best->violated.size(), " of ", n, " contact nodes violate the contact conditions, by ",
+                       best->pull, " N of tension and ", best->overlap, " m of overlap") :
+                  "with all nodes closed, the reactions are not determined"),
+      "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
   }
 
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, const unsigned int n_searches)
@@ -277,13 +258,8 @@ namespace Squeal
         if (attempt && attempt->violated.empty() && attempt->solution.closed != solution.closed)
           {
             // Nodes that just touch may count as closed or open: only other reactions are another solution.
-            double difference = 0., largest = 0.;
-            for (std::size_t c = 0; c < n; ++c)
-              {
-                difference = std::max(difference, std::abs(attempt->solution.reactions[c] - solution.reactions[c]));
-                largest    = std::max(largest, std::abs(solution.reactions[c]));
-              }
-            result.found_other = difference_of_solutions.exceeded_by(difference / largest);
+            const auto r       = as_column(solution.reactions);
+            result.found_other = difference_of_solutions.exceeded_by(max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r));
             result.other       = attempt->solution;
           }
       }

@@ -117,22 +117,19 @@ namespace Squeal
     const SlidingState state      = solve_sliding(scene, operation, sliding, run);
 
     std::optional<FrictionlessModes> frictionless;
-    std::vector<unsigned int>        closed; // of these modes
     std::vector<Reading>             all = readings();
     std::vector<ModeLabel>           shapes;
     for (Reading &reading : all)
       {
         operation.radial_dissipation = reading.dissipation;
-        Linearisation linearisation  = linearise(scene, reading.state == ContactState::steady_sliding ? &state : nullptr, operation);
+        Linearisation linearisation =
+          linearise(scene, reading.state == ContactState::steady_sliding ? std::make_optional(state) : std::nullopt, operation);
         // The modes without friction belong to a contact set, not to a damping
-        if (!frictionless || closed != linearisation.closed)
-          {
-            frictionless = frictionless_modes(scene, linearisation, run);
-            closed       = linearisation.closed;
-          }
-        add_modal_damping(*frictionless, parameters, linearisation);
-        const FrictionModes friction =
-          friction_modes(scene, linearisation, *frictionless, operation.friction_coefficient, run, reading.name);
+        if (!frictionless || frictionless->linearisation.closed != linearisation.closed)
+          frictionless = frictionless_modes(linearisation, run);
+        frictionless->linearisation = linearisation;
+        add_modal_damping(*frictionless, parameters);
+        const FrictionModes friction = friction_modes(*frictionless, operation.friction_coefficient, run, reading.name);
         for (std::size_t j = 0; j < friction.labels.size(); ++j)
           {
             // Of a doublet first the one marked `-`

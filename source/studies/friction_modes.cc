@@ -1,9 +1,10 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/estimates/residual_iteration.h>
+#include <squeal/linear_algebra/replicate.h>
 #include <squeal/modes/krylov_modes.h>
+#include <squeal/modes/verdict.h>
 #include <squeal/studies/friction_modes.h>
 
 #include <algorithm>
@@ -12,27 +13,21 @@ namespace Squeal
 {
   namespace
   {
-    const Decision growing("divergence rate of a complex mode / its uncertainty", 1.);
-
-    /// Modes with R > ω grow by e^(2π) and more within a period: rather a slow oscillation about a divergence than a sound [-].
+    /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// The largest of the estimated errors of λ may be that much too small.
-    constexpr double estimate_safety = 3.;
-
     /**
-     * Which modes grow beyond what their accuracy leaves open. The largest of
+     * Modes that grow beyond their uncertainty. The largest of
      * the estimated errors counts for all: that of a single mode can be much too
      * small by chance.
      */
     std::vector<bool> unstable_modes(const ComplexModes &modes)
     {
-      double uncertainty = negligible_divergence;
-      for (const double error : modes.estimated_errors)
-        uncertainty = std::max(uncertainty, estimate_safety * error);
+      const auto       &errors  = modes.estimated_errors;
+      const double      largest = errors.empty() ? 0. : *std::max_element(errors.begin(), errors.end());
       std::vector<bool> result;
       for (const auto &lambda : modes.lambda)
-        result.push_back(growing.exceeded_by(modal_quantities(lambda).divergence_rate / uncertainty));
+        result.push_back(verdict_of(lambda, largest * std::abs(lambda)) == Verdict::unstable);
       return result;
     }
 
@@ -56,15 +51,10 @@ namespace Squeal
     return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
   }
 
-  FrictionModes friction_modes(const Scene             &scene,
-                               const Linearisation     &linearisation,
-                               const FrictionlessModes &frictionless,
-                               const double             mu,
-                               Run                     &run,
-                               const std::string       &step)
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run, const std::string &step)
   {
     const Parameters     &parameters = run.parameters;
-    const CoupledSystem  &coupled    = linearisation.coupled;
+    const CoupledSystem  &coupled    = frictionless.linearisation.coupled;
     const SymmetricModes &real       = frictionless.real;
     const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
@@ -88,7 +78,7 @@ namespace Squeal
     modes.n_rigid_body = real.n_rigid_body;
 
     result.unstable = unstable_modes(modes);
-    result.labels   = identify_coupled(scene, linearisation, frictionless, *modes.real_part, modes.imaginary_part.get());
+    result.labels   = frictionless.identify(*modes.real_part, modes.imaginary_part.get());
     mark_doublets(result.labels, growth_rates(result));
     result.cost = run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
                                            modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
@@ -99,7 +89,7 @@ namespace Squeal
 
   namespace
   {
-    /// What a reader hears first of the unstable modes: those that oscillate while they grow.
+    /// Summary of the unstable modes, led by the one that grows fastest among those that oscillate.
     std::string squeal(const FrictionModes &friction, const double mu)
     {
       const auto &lambda = friction.modes.lambda;
@@ -154,5 +144,24 @@ namespace Squeal
     if (2 * n_complex + n_values == 2 * n_real_modes)
       return counts + real;
     return counts + (n_values > 0 ? real + ", and " : "") + "with friction modes crossed its end";
+  }
+
+  ModeField mode_field(const Linearisation        &linearisation,
+                       const std::string          &name,
+                       const std::complex<double> &lambda,
+                       const MultiVector          &real_part,
+                       const MultiVector          &imaginary_part)
+  {
+    const CoupledSystem             &system    = linearisation.coupled;
+    const std::vector<unsigned int> &closed    = linearisation.closed;
+    const auto                       reactions = normal_reactions(system, {lambda}, real_part, imaginary_part);
+    const DenseMatrix                re = replicate(*system.kernel * real_part), im = replicate(*system.kernel * imaginary_part);
+
+    ModeField field{name, lambda, {}, std::vector<std::complex<double>>(linearisation.scene->interface.size())};
+    for (int i = 0; i < re.rows(); ++i)
+      field.displacement.emplace_back(re(i, 0), im(i, 0));
+    for (std::size_t c = 0; c < closed.size(); ++c)
+      field.reactions[closed[c]] = reactions(c, 0);
+    return field;
   }
 } // namespace Squeal

@@ -1,7 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/frictionless_modes.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ namespace Squeal
     return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
-  void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation)
+  void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters)
   {
     if (parameters.damping.modal_ratios.empty())
       return;
@@ -44,20 +44,16 @@ namespace Squeal
     eigenvalues.resize(n_in_band(eigenvalues, omega_max * omega_max));
     for (const double eigenvalue : eigenvalues)
       ratios.push_back(parameters.damping.modal_ratio(hertz(std::sqrt(eigenvalue))));
-    Squeal::add_modal_damping(linearisation.coupled, view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size())), eigenvalues,
-                              ratios);
+    const MultiVector vectors = view(*modes.real.vectors, 0, static_cast<int>(eigenvalues.size()));
+    add_modal_damping(modes.linearisation.coupled, vectors, eigenvalues, ratios);
   }
 
-  std::vector<ModeLabel> identify_coupled(const Scene             &scene,
-                                          const Linearisation     &linearisation,
-                                          const FrictionlessModes &modes,
-                                          const MultiVector       &real_part,
-                                          const MultiVector       *imaginary_part)
+  std::vector<ModeLabel> FrictionlessModes::identify(const MultiVector &real_part, const MultiVector *imaginary_part) const
   {
     const SparseMatrix &T_c  = *linearisation.coupled.kernel;
     const MultiVector   u_re = T_c * real_part;
     const MultiVector   u_im = imaginary_part ? T_c * *imaginary_part : u_re;
-    return identify({&modes.disc, &modes.pins_sliding}, *scene.system.mass, u_re, imaginary_part ? &u_im : nullptr);
+    return Squeal::identify({&disc, &pins_sliding}, *linearisation.scene->system.mass, u_re, imaginary_part ? &u_im : nullptr);
   }
 
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, const double shift)
@@ -71,14 +67,16 @@ namespace Squeal
     return options;
   }
 
-  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, const double margin)
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
   {
+    const Scene         &scene      = *linearisation.scene;
     const Parameters    &parameters = run.parameters;
     const CoupledSystem &coupled    = linearisation.coupled;
     const double         omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
     const double         limit      = omega_max * omega_max;
     FrictionlessModes    result;
-    result.shift = stabilizing_shift(*scene.model, coupled, omega_max);
+    result.linearisation = linearisation;
+    result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
     // -------------------------------------------------------- component modes
     check_number_of_modes(coupled, (1. + margin) * omega_max, run);
@@ -127,7 +125,7 @@ namespace Squeal
                                n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                                result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
-    result.labels = identify_coupled(scene, linearisation, result, *result.real.vectors, nullptr);
+    result.labels = result.identify(*result.real.vectors, nullptr);
     for (int j = 0; j < result.real.n_rigid_body; ++j)
       result.labels[j] = {ModeFamily::rigid_body, 0, 0, 0, DoubletSign::none, result.labels[j].participation};
     mark_doublets(result.labels);

@@ -60,47 +60,43 @@ namespace Squeal
     constexpr double largest_distance = 0.1;
 
     /// Frequencies in Hz, divergence rates in per cent; empty: not given or negligible.
-    const std::vector<Row> &rows()
-    {
-      static const std::vector<Row> table = {{disc(A, 0, 1, minus), Match::label, 251, 295, 295, none, 296, none},
-                                             {disc(A, 0, 1, plus), Match::frequency, 251, 312, 312, none, 313, none},
-                                             {disc(A, 0, 0), Match::label, 352, none, none, none, none, none},
-                                             {disc(A, 0, 2, minus), Match::label, 569, 489, 489, none, 489, none},
-                                             {disc(A, 0, 2, plus), Match::label, 569, 697, 700, none, 700, none},
-                                             {disc(C, 0, 0), Match::label, 644, 644, 645, none, 644, none},
-                                             {disc(R, 0, 1, minus), Match::label, 649, 643, 644, none, 644, none},
-                                             {disc(R, 0, 1, plus), Match::label, 649, 647, 648, none, 648, -0.093},
-                                             {{}, Match::frequency, none, 1057, 1061, none, 1061, none},
-                                             {disc(A, 0, 3, minus), Match::label, 1267, 1374, 1379, none, 1379, none},
-                                             {disc(A, 0, 3, plus), Match::label, 1267, 1567, 1576, none, 1576, none},
-                                             {disc(A, 1, 0), Match::label, 1404, 1449, 1450, none, 1450, none},
-                                             {disc(R, 0, 2, minus), Match::label, 1822, 1823, 1823, none, 1823, none},
-                                             {disc(R, 0, 2, plus), Match::label, 1822, 1825, 1826, none, 1826, none},
-                                             {disc(A, 1, 1, minus), Match::label, 2082, 2087, 2087, none, 2087, none},
-                                             {disc(A, 1, 1, plus), Match::label, 2082, 2150, 2153, none, 2153, none},
-                                             {disc(A, 0, 4, minus), Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
-                                             {disc(A, 0, 4, plus), Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
-                                             {disc(A, 0, 5, minus), Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
-                                             {disc(A, 0, 5, plus), Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
-                                             {disc(A, 1, 2, minus), Match::label, 3365, 3350, 3352, none, 3352, none},
-                                             {disc(A, 1, 2, plus), Match::label, 3365, 3371, 3386, none, 3387, -0.078},
-                                             {F1, Match::lowest, 3553, 3551, 3516, none, 3521, none},
-                                             {F1, Match::highest, 3553, 3562, 3564, none, 3563, none},
-                                             {F1, Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
-                                             {F1, Match::second_unstable, none, none, 3550, 0.10, none, none},
-                                             {disc(R, 0, 0), Match::label, 3704, 3704, 3704, none, 3704, none},
-                                             {T1, Match::lowest, 3934, 3934, 3934, none, 3933, none},
-                                             {T1, Match::highest, 3934, 3934, 3934, none, 3933, none},
-                                             {disc(R, 0, 3, minus), Match::label, 3990, 3989, 3989, none, 3989, none},
-                                             {disc(R, 0, 3, plus), Match::label, 3990, 3991, 3989, none, 3990, none},
-                                             {disc(C, 0, 1, minus), Match::label, 4500, 4499, 4499, none, 4499, none},
-                                             {disc(C, 0, 1, plus), Match::label, 4500, 4500, 4500, none, 4500, none},
-                                             {disc(A, 0, 6, minus), Match::label, 4659, 4641, 4641, none, 4641, none},
-                                             {disc(A, 0, 6, plus), Match::label, 4659, 4653, 4652, none, 4652, none},
-                                             {disc(A, 1, 3, minus), Match::label, 4794, 4800, 4799, none, 4800, none},
-                                             {disc(A, 1, 3, plus), Match::label, 4794, 4815, 4814, none, 4815, none}};
-      return table;
-    }
+    const std::vector<Row> rows = {{disc(A, 0, 1, minus), Match::label, 251, 295, 295, none, 296, none},
+                                   {disc(A, 0, 1, plus), Match::frequency, 251, 312, 312, none, 313, none},
+                                   {disc(A, 0, 0), Match::label, 352, none, none, none, none, none},
+                                   {disc(A, 0, 2, minus), Match::label, 569, 489, 489, none, 489, none},
+                                   {disc(A, 0, 2, plus), Match::label, 569, 697, 700, none, 700, none},
+                                   {disc(C, 0, 0), Match::label, 644, 644, 645, none, 644, none},
+                                   {disc(R, 0, 1, minus), Match::label, 649, 643, 644, none, 644, none},
+                                   {disc(R, 0, 1, plus), Match::label, 649, 647, 648, none, 648, -0.093},
+                                   {{}, Match::frequency, none, 1057, 1061, none, 1061, none},
+                                   {disc(A, 0, 3, minus), Match::label, 1267, 1374, 1379, none, 1379, none},
+                                   {disc(A, 0, 3, plus), Match::label, 1267, 1567, 1576, none, 1576, none},
+                                   {disc(A, 1, 0), Match::label, 1404, 1449, 1450, none, 1450, none},
+                                   {disc(R, 0, 2, minus), Match::label, 1822, 1823, 1823, none, 1823, none},
+                                   {disc(R, 0, 2, plus), Match::label, 1822, 1825, 1826, none, 1826, none},
+                                   {disc(A, 1, 1, minus), Match::label, 2082, 2087, 2087, none, 2087, none},
+                                   {disc(A, 1, 1, plus), Match::label, 2082, 2150, 2153, none, 2153, none},
+                                   {disc(A, 0, 4, minus), Match::label, 2220, 2284, 2297, -0.64, 2297, -0.67},
+                                   {disc(A, 0, 4, plus), Match::label, 2220, 2305, 2297, 0.64, 2297, 0.65},
+                                   {disc(A, 0, 5, minus), Match::label, 3345, 3380, 3376, -0.98, 3376, -1.02},
+                                   {disc(A, 0, 5, plus), Match::label, 3345, 3392, 3376, 0.98, 3377, 0.95},
+                                   {disc(A, 1, 2, minus), Match::label, 3365, 3350, 3352, none, 3352, none},
+                                   {disc(A, 1, 2, plus), Match::label, 3365, 3371, 3386, none, 3387, -0.078},
+                                   {F1, Match::lowest, 3553, 3551, 3516, none, 3521, none},
+                                   {F1, Match::highest, 3553, 3562, 3564, none, 3563, none},
+                                   {F1, Match::most_unstable, none, none, 3542, 0.89, 3537, 0.88},
+                                   {F1, Match::second_unstable, none, none, 3550, 0.10, none, none},
+                                   {disc(R, 0, 0), Match::label, 3704, 3704, 3704, none, 3704, none},
+                                   {T1, Match::lowest, 3934, 3934, 3934, none, 3933, none},
+                                   {T1, Match::highest, 3934, 3934, 3934, none, 3933, none},
+                                   {disc(R, 0, 3, minus), Match::label, 3990, 3989, 3989, none, 3989, none},
+                                   {disc(R, 0, 3, plus), Match::label, 3990, 3991, 3989, none, 3990, none},
+                                   {disc(C, 0, 1, minus), Match::label, 4500, 4499, 4499, none, 4499, none},
+                                   {disc(C, 0, 1, plus), Match::label, 4500, 4500, 4500, none, 4500, none},
+                                   {disc(A, 0, 6, minus), Match::label, 4659, 4641, 4641, none, 4641, none},
+                                   {disc(A, 0, 6, plus), Match::label, 4659, 4653, 4652, none, 4652, none},
+                                   {disc(A, 1, 3, minus), Match::label, 4794, 4800, 4799, none, 4800, none},
+                                   {disc(A, 1, 3, plus), Match::label, 4794, 4815, 4814, none, 4815, none}};
 
     /// The mode that a row asks for; null if the run has none.
     const ModalQuantities *find(const Row &row, const Match match, const std::vector<ComparedMode> &modes, const Value paper_frequency)
@@ -142,10 +138,11 @@ namespace Squeal
     /// Whether one of the parameters that the @p paths name, "Section/Name" or "Section/", differs from its default.
     bool differs(const Parameters &parameters, const std::vector<std::string> &paths)
     {
-      const std::vector<std::string> changed = changed_parameters(parameters);
-      return std::any_of(changed.begin(), changed.end(), [&](const std::string &parameter) {
-        return std::any_of(paths.begin(), paths.end(), [&](const std::string &path) { return concerns(path, parameter); });
-      });
+      for (const std::string &changed : changed_parameters(parameters))
+        for (const std::string &path : paths)
+          if (concerns(path, changed))
+            return true;
+      return false;
     }
 
     /// A quantity of a mode in the paper and in the run.
@@ -167,10 +164,10 @@ namespace Squeal
       Pair        component, coupled, complex, divergence;
     };
 
-    Agreement agreement_of(const std::vector<Comparison> &rows, Pair Comparison::*frequency)
+    Agreement agreement_of(const std::vector<Comparison> &comparisons, Pair Comparison::*frequency)
     {
       Agreement agreement;
-      for (const Comparison &row : rows)
+      for (const Comparison &row : comparisons)
         if (const Value difference = (row.*frequency).difference())
           {
             agreement.difference += *difference * *difference / 1e4;
@@ -202,7 +199,7 @@ namespace Squeal
 
   std::optional<double> paper_divergence_damped(const ModeLabel &label)
   {
-    for (const Row &row : rows())
+    for (const Row &row : rows)
       if (row.match == Match::label && row.label == label)
         return row.divergence_damped;
     return {};
@@ -212,13 +209,13 @@ namespace Squeal
   {
     const bool              damped = dissipation != RadialDissipation::none;
     std::vector<Comparison> comparisons;
-    for (const Row &row : rows())
+    for (const Row &row : rows)
       {
         const auto frequency = [&](const Value paper, const std::vector<ComparedMode> &modes, const Match match) {
           const ModalQuantities *mode = paper ? find(row, match, modes, paper) : nullptr;
           return Pair{paper, mode ? Value(mode->frequency) : none};
         };
-        // Component modes are beyond doubt.
+        // Component modes are named without ambiguity.
         const Match            component = row.match == Match::frequency ? Match::label : row.match;
         const Value            paper     = damped ? row.complex_damped : row.complex_undamped;
         const ModalQuantities *complex   = paper || row.match != Match::frequency ? find(row, row.match, results.complex, paper) : nullptr;

@@ -1,4 +1,3 @@
-#include <squeal/geometry/geometry_usage.h>
 #include <squeal/studies/parameter_usage.h>
 
 #include <boost/algorithm/string.hpp>
@@ -20,6 +19,11 @@ namespace Squeal
     Reason no_damping(const Parameters &p)
     {
       return unless(p.has_friction(), "the frictionless problem has no damping");
+    }
+
+    Reason no_friction(const Parameters &p)
+    {
+      return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless");
     }
 
     Reason no_krylov(const Parameters &p)
@@ -52,10 +56,8 @@ namespace Squeal
         {"Pin material/Rayleigh beta", no_damping},
         {"Damping/", no_damping},
 
-        {"Operation/Friction coefficient",
-         [](const Parameters &p) { return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless"); }},
-        {"Operation/Rotation",
-         [](const Parameters &p) { return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless"); }},
+        {"Operation/Friction coefficient", no_friction},
+        {"Operation/Rotation", no_friction},
         {"Operation/Rotation speed",
          // Tables of the steady sliding state show the sliding speeds
          [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
@@ -150,7 +152,7 @@ namespace Squeal
         if (const std::string variable = script_variable(path); variables.count(variable) > 0)
           {
             if (!used)
-              used = used_variables(parameters.geometry);
+              used = parameters.geometry.used_variables();
             if (used->count(variable) == 0)
               reason = "the geometry does not use it";
           }
@@ -162,10 +164,10 @@ namespace Squeal
 
   std::string unused_parameters_note(const Parameters &parameters)
   {
-    std::string text;
+    std::string note;
     for (const UnusedParameter &parameter : unused_parameters(parameters))
-      text += (text.empty() ? "  note: not used here: " : ", ") + parameter.path + " (" + parameter.why + ")";
-    return text;
+      note += (note.empty() ? "  note: not used here: " : ", ") + parameter.path + " (" + parameter.why + ")";
+    return note;
   }
 
   std::vector<std::string> conditional_parameters()

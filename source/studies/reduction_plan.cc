@@ -3,6 +3,8 @@
 #include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/reduction_plan.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 
 namespace Squeal
@@ -30,12 +32,13 @@ namespace Squeal
 
     void refuse_unknown(const std::vector<std::string> &names)
     {
-      std::string known;
+      std::vector<std::string> known;
       for (const BasisRecipe &recipe : basis_recipes())
-        known += (known.empty() ? "" : ", ") + std::string(recipe.name);
+        known.emplace_back(recipe.name);
       for (const std::string &name : names)
-        if (std::none_of(basis_recipes().begin(), basis_recipes().end(), [&](const BasisRecipe &recipe) { return recipe.name == name; }))
-          throw ParameterError("there is no basis `" + name + "`", "parameter Reduction/Bases", "choose among " + known);
+        if (find_recipe(name) == nullptr)
+          throw ParameterError("there is no basis `" + name + "`", "parameter Reduction/Bases",
+                               "choose among " + boost::algorithm::join(known, ", "));
     }
 
     // ---------------------------------------------------------------- in use
@@ -55,7 +58,7 @@ namespace Squeal
 
     bool has_real_modes(const BasisRecipe &recipe)
     {
-      return std::any_of(recipe.parts.begin(), recipe.parts.end(), [](const BasisPart *part) { return part->count == &BasisCounts::real; });
+      return std::any_of(recipe.parts.begin(), recipe.parts.end(), [](const BasisPart *part) { return part->set == BasisSource::real; });
     }
 
     Reason no_snapshots(const Parameters &p)

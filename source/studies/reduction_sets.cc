@@ -9,18 +9,13 @@
 
 namespace Squeal
 {
-  ReductionSets::ReductionSets(const ReductionPlan     &plan,
-                               const Scene             &scene,
-                               const Linearisation     &linearisation,
-                               const FrictionlessModes &frictionless,
-                               const CoupledSystem     &system,
-                               Run                     &run)
+  ReductionSets::ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run)
     : plan(plan)
-    , scene(scene)
-    , linearisation(linearisation)
     , frictionless(frictionless)
     , system(system)
     , run(run)
+    , scene(*frictionless.linearisation.scene)
+    , linearisation(frictionless.linearisation)
   {
     seconds[BasisSource::coupled_factor] = frictionless.factorisation.cpu_seconds;
     seconds[BasisSource::real]           = frictionless.solution.cpu_seconds;
@@ -29,17 +24,12 @@ namespace Squeal
     available.coupled                    = &system;
     available.inverse                    = frictionless.inverse.get();
     available.friction_coefficient       = plan.friction_coefficient;
-    available.real                       = frictionless.real.vectors.get();
+    available.sets[BasisSource::real]    = frictionless.real.vectors.get();
     if (run.parameters.reduction.coupled_frequency > 0.)
       compute_real_modes();
     compute_static_modes();
     if (plan.rests_on(BasisSource::snapshots))
       compute_snapshots();
-  }
-
-  const BasisIngredients &ReductionSets::ingredients() const
-  {
-    return available;
   }
 
   double ReductionSets::cost(const BasisRecipe &recipe) const
@@ -61,11 +51,12 @@ namespace Squeal
   }
 
   template <typename Function>
-  const MultiVector *ReductionSets::compute(const BasisSource source, Function &&function)
+  int ReductionSets::compute(const BasisSource source, Function &&function)
   {
     vectors[source].reset();
-    vectors[source] = std::make_unique<MultiVector>(timed(source, function));
-    return vectors[source].get();
+    vectors[source]        = std::make_unique<MultiVector>(timed(source, function));
+    available.sets[source] = vectors[source].get();
+    return vectors[source]->n_columns();
   }
 
   // ------------------------------------------------------------- for all bases
@@ -77,14 +68,14 @@ namespace Squeal
     const CoupledSystem        &coupled = linearisation.coupled;
     const SymmetricModesOptions options =
       real_modes_options(run.parameters.solvers, "real modes of the coupled system for reduced bases", frictionless.shift);
-    available.real = compute(BasisSource::real, [&] {
+    const int n = compute(BasisSource::real, [&] {
       const SymmetricModes modes = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
       if (modes.eigenvalues.empty())
         throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
                           "raise it, or give 0 for the modes of the band");
       return *modes.vectors;
     });
-    run.progress.finish(text(available.real->NumVectors(), " below ", frequency, " Hz"));
+    run.progress.finish(text(n, " below ", frequency, " Hz"));
   }
 
   void ReductionSets::compute_static_modes()
@@ -92,16 +83,16 @@ namespace Squeal
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
     response                           = timed(BasisSource::uncoupled_factor, [&] {
-      return std::make_unique<StaticResponse>(*scene.model, scene.system, plan.largest_circular_frequency, library);
+      return std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
     });
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
                                                  plan.largest_circular_frequency, library);
     const StaticModes                                 &modes  = *static_modes;
     const std::pair<BasisSource, std::function<int()>> sets[] = {
-      {BasisSource::normal_attachment, [&] { return modes.normal_attachment().NumVectors(); }},
-      {BasisSource::tangential_attachment, [&] { return modes.tangential_attachment().NumVectors(); }},
-      {BasisSource::constraint_disc, [&] { return modes.constraint(Component::disc).NumVectors(); }},
-      {BasisSource::constraint_pins, [&] { return modes.constraint(Component::pins).NumVectors(); }}};
+      {BasisSource::normal_attachment, [&] { return modes.normal_attachment().n_columns(); }},
+      {BasisSource::tangential_attachment, [&] { return modes.tangential_attachment().n_columns(); }},
+      {BasisSource::constraint_disc, [&] { return modes.constraint(Component::disc).n_columns(); }},
+      {BasisSource::constraint_pins, [&] { return modes.constraint(Component::pins).n_columns(); }}};
     for (const auto &[source, set] : sets)
       if (plan.rests_on(source))
         timed(source, set);
@@ -113,21 +104,21 @@ namespace Squeal
   {
     run.progress.begin("Snapshots");
     const std::vector<double> &values = run.parameters.reduction.snapshots;
-    available.snapshots               = compute(BasisSource::snapshots, [&] {
+    const int                  n      = compute(BasisSource::snapshots, [&] {
       std::vector<ComplexModes>        sets;
       std::vector<const MultiVector *> parts;
       for (const double value : values)
         {
           run.progress.update(text("mu = ", value));
           sets.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
-                                                    plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
-                                                    run.progress));
+                                                            plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
+                                                            run.progress));
           for (const auto &part : {sets.back().real_part, sets.back().imaginary_part})
             parts.push_back(part.get());
         }
       return join(parts);
     });
-    run.progress.finish(text(available.snapshots->NumVectors(), " vectors from ", values.size(), " friction coefficients"));
+    run.progress.finish(text(n, " vectors from ", values.size(), " friction coefficients"));
   }
 
   // ------------------------------------------------------------- for some bases
@@ -136,23 +127,23 @@ namespace Squeal
   {
     run.progress.begin("Component modes for bases");
     const double frequency = truncation.frequency > 0. ? truncation.frequency : run.parameters.discretization.maximum_frequency;
-    const auto   set       = [&](const BasisSource source, const Component component, const ContactBoundary boundary, const int count) {
-      return compute(source, [&] { return lowest_modes(component, boundary, frequency, count); });
+    std::map<BasisSource, int> n;
+    const auto compute_if = [&](const bool is_used, const BasisSource source, const Component component, const ContactBoundary boundary,
+                                const int count) {
+      if (is_used)
+        n[source] = compute(source, [&] { return lowest_modes(component, boundary, frequency, count); });
     };
     // The disc has as many sliding as free modes in a basis (Table 3)
-    BasisIngredients &a      = available;
-    const bool        slides = plan.rests_on(BasisSource::disc_sliding);
-    if (plan.rests_on(BasisSource::disc_free) || slides)
-      a.disc_free = set(BasisSource::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
-    if (slides)
-      a.disc_sliding = set(BasisSource::disc_sliding, Component::disc, ContactBoundary::sliding, a.disc_free->NumVectors());
-    if (plan.rests_on(BasisSource::pins_free))
-      a.pins_free = set(BasisSource::pins_free, Component::pins, ContactBoundary::free, truncation.pins_free);
-    if (plan.rests_on(BasisSource::pins_sliding))
-      a.pins_sliding = set(BasisSource::pins_sliding, Component::pins, ContactBoundary::sliding, truncation.pins_sliding);
-    const auto number = [](const MultiVector *modes) { return modes ? std::to_string(modes->NumVectors()) : "-"; };
-    run.progress.finish(truncation.text() + ": disc " + number(a.disc_free) + ", pins free " + number(a.pins_free) + ", pins sliding " +
-                        number(a.pins_sliding));
+    using Source      = BasisSource;
+    const bool slides = plan.rests_on(Source::disc_sliding);
+    compute_if(slides || plan.rests_on(Source::disc_free), Source::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
+    compute_if(slides, Source::disc_sliding, Component::disc, ContactBoundary::sliding, n[Source::disc_free]);
+    compute_if(plan.rests_on(Source::pins_free), Source::pins_free, Component::pins, ContactBoundary::free, truncation.pins_free);
+    compute_if(plan.rests_on(Source::pins_sliding), Source::pins_sliding, Component::pins, ContactBoundary::sliding,
+               truncation.pins_sliding);
+    const auto number = [&](const Source source) { return n[source] > 0 ? std::to_string(n[source]) : "-"; };
+    run.progress.finish(truncation.text() + ": disc " + number(Source::disc_free) + ", pins free " + number(Source::pins_free) +
+                        ", pins sliding " + number(Source::pins_sliding));
   }
 
   void ReductionSets::grow(const double tolerance)
@@ -162,12 +153,12 @@ namespace Squeal
     iteration.largest_circular_frequency = plan.largest_circular_frequency;
     iteration.tolerance                  = tolerance;
     iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
-    available.residuals                  = compute(BasisSource::residuals, [&] {
+    const int n                          = compute(BasisSource::residuals, [&] {
       return grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration,
-                                                  run.progress)
+                                                          run.progress)
         .model.basis();
     });
-    run.progress.finish(text(available.residuals->NumVectors(), " vectors for an estimated error of ", tolerance));
+    run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));
   }
 
   MultiVector ReductionSets::lowest_modes(const Component       component,

@@ -1,16 +1,200 @@
 #include <squeal/base/conventions.h>
+#include <squeal/bases/reduced_basis.h>
+#include <squeal/estimates/reduction_errors.h>
+#include <squeal/output/table.h>
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/reduction_plan.h>
 #include <squeal/studies/reduction_sets.h>
-#include <squeal/studies/reduction_tables.h>
 
 #include <algorithm>
+#include <functional>
+#include <cmath>
 #include <ostream>
+#include <string>
+#include <vector>
 
 namespace Squeal
 {
   namespace
   {
+    // ------------------------------------------------------------------ tables
+
+    /// Estimates count as good within this factor of the true error.
+    constexpr double good_factor = 3.;
+
+    /// Relative differences of λ below this are rounding errors of the reference and say nothing about an estimate.
+    constexpr double reference_accuracy = 1e-11;
+
+    /// A condition number; nothing where the matrix is singular to rounding.
+    Cell condition_cell(const double condition)
+    {
+      return std::isfinite(condition) ? Cell(condition) : Cell();
+    }
+
+    /// A basis of a study with what was measured of it.
+    struct Candidate
+    {
+      const BasisRecipe     *recipe;
+      std::string            name;       ///< with the variant where there are several
+      std::string            truncation; ///< of the component modes
+      ReducedBasis           basis;      ///< its vectors go when it has been measured
+      int                    n_r           = 0;
+      double                 build_seconds = 0., solve_seconds = 0.;
+      std::vector<ModeError> errors = {};
+    };
+
+    /// Largest errors in each group of modes, and times.
+    Table reduction_error_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups)
+    {
+      struct Row : GroupError
+      {
+        const Candidate &candidate;
+      };
+      std::vector<Row> rows;
+      for (const Candidate &candidate : candidates)
+        for (const GroupError &largest : largest_errors(candidate.errors, groups))
+          rows.push_back({largest, candidate});
+      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                                {"n_r0", "-", [](const Row &row) { return row.candidate.basis.n_r0; }},
+                                {"n_r", "-", [](const Row &row) { return row.candidate.n_r; }},
+                                {"group", "", &Row::group},
+                                {"res", "-", &Row::residual, 1, true},
+                                {"mac", "-", &Row::shape, 1, true},
+                                {"frq", "-", &Row::frequency, 1, true},
+                                {"div", "-", &Row::divergence, 1, true},
+                                {"div estimated", "-", &Row::estimated_divergence, 1, true},
+                                {"div corrected", "-", &Row::corrected_divergence, 1, true},
+                                {"build time", "s", [](const Row &row) { return row.candidate.build_seconds; }, 2},
+                                {"solve time", "s", [](const Row &row) { return row.candidate.solve_seconds; }, 3},
+                                {"subspace", "-", &Row::subspace, 1, true},
+                                {"lambda", "-", &Row::eigenvalue, 1, true},
+                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }}},
+                   rows);
+    }
+
+    /**
+     * Columns, sizes, decisions on rank, gains and times.
+     *
+     * @param n            dofs of the coupled system
+     * @param full_seconds of the solution at full order
+     */
+    Table reduction_basis_table(const std::vector<Candidate> &candidates, const int n, const double full_seconds)
+    {
+      using Row = Candidate;
+      return Table(
+        Columns<Row>{{"basis", "", &Row::name},
+                     {"columns", "", [](const Row &row) { return row.recipe->columns(); }},
+                     {"component modes", "", &Row::truncation},
+                     {"n_r0", "-", [](const Row &row) { return row.basis.n_r0; }},
+                     {"n_r by formula", "-", [](const Row &row) { return row.basis.n_nominal; }},
+                     {"n_r", "-", &Row::n_r},
+                     {"dropped", "-", [](const Row &row) { return row.basis.n_dropped; }},
+                     {"rank tolerance", "-", [](const Row &row) { return row.basis.tolerance; }, 0, true},
+                     {"condition", "-", [](const Row &row) { return condition_cell(row.basis.condition); }, 1, true},
+                     {"orthonormality", "-", [](const Row &row) { return row.basis.orthonormality; }, 1, true},
+                     {"rank of P_n T_r0", "-", [](const Row &row) { return row.basis.connection.rank; }},
+                     {"smallest kept", "-", [](const Row &row) { return row.basis.connection.smallest_kept; }, 1, true},
+                     {"largest dropped", "-", [](const Row &row) { return row.basis.connection.largest_dropped; }, 1, true},
+                     {"G_n", "-", [n](const Row &row) { return static_cast<double>(n) / row.n_r; }, 1},
+                     {"build time", "s", &Row::build_seconds, 2},
+                     {"solve time", "s", &Row::solve_seconds, 3},
+                     {"G_t", "-", [full_seconds](const Row &row) { return full_seconds / (row.build_seconds + row.solve_seconds); }, 2}},
+        candidates);
+    }
+
+    /// Every mode of every basis beside the reference.
+    Table reduction_mode_table(const std::vector<Candidate>   &candidates,
+                               const std::vector<ModeLabel>   &labels,
+                               const std::vector<std::string> &groups)
+    {
+      struct Row : ModeError
+      {
+        const Candidate &candidate;
+        ModeLabel        label;
+        std::string      group;
+        ModalQuantities  mode, exact, better;
+      };
+      std::vector<Row> rows;
+      for (const Candidate &candidate : candidates)
+        for (std::size_t j = 0; j < labels.size(); ++j)
+          {
+            const ModeError &e = candidate.errors[j];
+            rows.push_back({e, candidate, labels[j], groups[j], modal_quantities(e.reduced), modal_quantities(e.reference),
+                            modal_quantities(e.corrected)});
+          }
+      const auto frequency_bar  = [](const Row &row) { return std::abs(row.better.frequency - row.mode.frequency); };
+      const auto divergence_bar = [](const Row &row) { return 100. * std::abs(row.better.divergence_rate - row.mode.divergence_rate); };
+      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
+                                {"label", "", &Row::label},
+                                {"group", "", &Row::group},
+                                {"frequency", "Hz", [](const Row &row) { return row.mode.frequency; }, 3},
+                                {"divergence rate", "%", [](const Row &row) { return 100. * row.mode.divergence_rate; }, 4},
+                                {"error bar of frequency", "Hz", frequency_bar, 1, true},
+                                {"error bar of divergence rate", "%", divergence_bar, 1, true},
+                                {"verdict", "", &Row::verdict},
+                                {"reference frequency", "Hz", [](const Row &row) { return row.exact.frequency; }, 3},
+                                {"reference divergence rate", "%", [](const Row &row) { return 100. * row.exact.divergence_rate; }, 4},
+                                {"eps_res", "-", &Row::residual, 1, true},
+                                {"eps_mac", "-", &Row::shape, 1, true},
+                                {"eps_frq", "-", &Row::frequency, 1, true},
+                                {"eps_div", "-", &Row::divergence, 1, true},
+                                {"error of lambda", "-", &Row::eigenvalue, 1, true},
+                                {"estimated error of lambda", "-", &Row::estimated_error, 1, true},
+                                {"error of corrected lambda", "-", &Row::corrected_error, 1, true},
+                                {"condition", "-", [](const Row &row) { return condition_cell(row.condition); }, 1, true},
+                                {"estimate claimed", "", [](const Row &row) { return row.claimed ? "yes" : "no"; }},
+                                {"cluster", "-", &Row::cluster_size},
+                                {"subspace", "-", &Row::subspace, 1, true}},
+                   rows);
+    }
+
+    /// How far the estimates are to be trusted: they know nothing of the reference, by which modes are @p unstable.
+    Table reduction_estimate_table(const std::vector<Candidate> &candidates, const std::vector<bool> &unstable)
+    {
+      struct Row
+      {
+        const Candidate    &candidate;
+        int                 n_claimed = 0, n_good = 0, n_undecided = 0, n_wrong = 0;
+        std::vector<double> ratios = {}, gains = {};
+      };
+      std::vector<Row> rows;
+      for (const Candidate &candidate : candidates)
+        {
+          rows.push_back({candidate});
+          Row &row = rows.back();
+          for (std::size_t j = 0; j < candidate.errors.size(); ++j)
+            {
+              const ModeError &e = candidate.errors[j];
+              row.n_undecided += e.verdict == Verdict::undecided;
+              row.n_wrong += e.verdict != Verdict::undecided && (e.verdict == Verdict::unstable) != unstable[j];
+              row.n_claimed += e.claimed;
+              if (!e.claimed || !(e.eigenvalue > reference_accuracy))
+                continue;
+              row.ratios.push_back(e.estimate_ratio);
+              row.n_good += e.estimate_ratio > 1. / good_factor && e.estimate_ratio < good_factor;
+              if (e.corrected_error > 0.)
+                row.gains.push_back(e.eigenvalue / e.corrected_error);
+            }
+        }
+      const auto median = [](std::vector<double> values) {
+        std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+        return values.empty() ? Cell() : Cell(values[values.size() / 2]);
+      };
+      const auto good_share = [](const Row &row) { return row.ratios.empty() ? Cell() : Cell(100. * row.n_good / row.ratios.size()); };
+      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
+                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
+                                {"modes", "-", [](const Row &row) { return row.candidate.errors.size(); }},
+                                {"claimed", "-", &Row::n_claimed},
+                                {"judged", "-", [](const Row &row) { return row.ratios.size(); }},
+                                {"median ratio to the true error", "-", [&](const Row &row) { return median(row.ratios); }, 2},
+                                {"within a factor of 3", "%", good_share, 0},
+                                {"median gain of the correction", "-", [&](const Row &row) { return median(row.gains); }, 1},
+                                {"undecided", "-", &Row::n_undecided},
+                                {"wrong verdicts", "-", &Row::n_wrong}},
+                   rows);
+    }
+
     /// Solutions of a reduced problem of which the fastest is reported.
     constexpr int n_timed_solutions = 3;
 
@@ -24,16 +208,12 @@ namespace Squeal
       double                   seconds; ///< of the processor for the solution, its factorisation included
     };
 
-    Reference reference_modes(const ReductionPlan     &plan,
-                              const Scene             &scene,
-                              const Linearisation     &linearisation,
-                              const FrictionlessModes &frictionless,
-                              Run                     &run)
+    Reference reference_modes(const ReductionPlan &plan, const FrictionlessModes &frictionless, Run &run)
     {
       const double factorisation = frictionless.factorisation.cpu_seconds;
       if (plan.has_friction)
         {
-          const FrictionModes full = friction_modes(scene, linearisation, frictionless, plan.friction_coefficient, run);
+          const FrictionModes full = friction_modes(frictionless, plan.friction_coefficient, run);
           return {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
                   factorisation + full.cost.cpu_seconds};
         }
@@ -57,31 +237,30 @@ namespace Squeal
       return modes;
     }
 
-    /// Builds a basis and holds it against the reference, as a step of the run called @p name.
-    Candidate measured(const ReductionPlan &plan,
-                       const CoupledSystem &system,
+    /// Builds a basis and compares its modes with the reference, as a step of the run called @p name.
+    Candidate measured(const ReductionSets &sets,
                        const Reference     &reference,
-                       const ReductionSets &sets,
                        const BasisRecipe   &recipe,
                        const std::string   &name,
-                       const std::string   &truncation,
-                       Run                 &run)
+                       const std::string   &truncation = "")
     {
-      run.progress.begin(name);
+      Progress                  &progress  = sets.run.progress;
+      const ReductionParameters &reduction = sets.run.parameters.reduction;
+      progress.begin(name);
       BasisOptions options;
-      options.tolerance     = run.parameters.reduction.rank_tolerance;
-      options.pod_tolerance = run.parameters.reduction.pod_tolerance;
+      options.tolerance     = reduction.rank_tolerance;
+      options.pod_tolerance = reduction.pod_tolerance;
       const Stopwatch watch;
-      Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe.kind, sets.ingredients(), options)};
-      ReducedModel    model(system);
+      Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe, sets.ingredients(), options)};
+      ReducedModel    model(sets.system);
       model.extend(*candidate.basis.vectors);
       candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
-      const ReducedModes modes = timed_modes(plan, model, candidate.solve_seconds);
-      candidate.errors         = reduction_errors(system, *sets.ingredients().inverse, model, modes, reference.modes);
+      const ReducedModes modes = timed_modes(sets.plan, model, candidate.solve_seconds);
+      candidate.errors         = reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, reference.modes);
       double largest           = 0.;
       for (const ModeError &e : candidate.errors)
         largest = std::max(largest, e.eigenvalue);
-      run.progress.finish(
+      progress.finish(
         text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(), " after connection and rank, largest error of lambda ", largest));
       // Hundreds of vectors each: they are not needed any more
       candidate.n_r = candidate.basis.size();
@@ -90,36 +269,27 @@ namespace Squeal
     }
 
     /// Bases of component modes of every truncation, then the others.
-    std::vector<Candidate> candidates_of(const ReductionPlan &plan,
-                                         const CoupledSystem &system,
-                                         const Reference     &reference,
-                                         ReductionSets       &sets,
-                                         Run                 &run)
+    std::vector<Candidate> candidates_of(ReductionSets &sets, const Reference &reference)
     {
-      const ReductionParameters &reduction = run.parameters.reduction;
+      const ReductionParameters &reduction = sets.run.parameters.reduction;
       std::vector<Candidate>     result;
-      const auto                 measure = [&](const BasisRecipe &recipe, const std::string &name, const std::string &truncation) {
-        result.push_back(measured(plan, system, reference, sets, recipe, name, truncation, run));
-      };
-      std::vector<const BasisRecipe *> connected, others;
-      std::partition_copy(plan.recipes.begin(), plan.recipes.end(), std::back_inserter(connected), std::back_inserter(others),
-                          [](const BasisRecipe *recipe) { return recipe->is_connected(); });
-      if (!connected.empty())
+      if (std::any_of(sets.plan.recipes.begin(), sets.plan.recipes.end(), std::mem_fn(&BasisRecipe::is_connected)))
         for (const ModeTruncation &truncation : reduction.truncations)
           {
             sets.truncate(truncation);
-            for (const BasisRecipe *recipe : connected)
-              measure(*recipe, recipe->name, truncation.text());
+            for (const BasisRecipe *recipe : sets.plan.recipes)
+              if (recipe->is_connected())
+                result.push_back(measured(sets, reference, *recipe, recipe->name, truncation.text()));
           }
-      for (const BasisRecipe *recipe : others)
-        if (!recipe->rests_on(BasisSource::residuals))
-          measure(*recipe, recipe->name, "");
-        else
+      for (const BasisRecipe *recipe : sets.plan.recipes)
+        if (recipe->rests_on(BasisSource::residuals))
           for (const double tolerance : reduction.grown_tolerances)
             {
               sets.grow(tolerance);
-              measure(*recipe, text(recipe->name, " ", tolerance), "");
+              result.push_back(measured(sets, reference, *recipe, text(recipe->name, " ", tolerance)));
             }
+        else if (!recipe->is_connected())
+          result.push_back(measured(sets, reference, *recipe, recipe->name));
       return result;
     }
   } // namespace
@@ -132,19 +302,18 @@ namespace Squeal
    */
   static void run_reduction_study(Scene &scene, Run &run)
   {
-    const ReductionPlan     plan          = reduction_plan(run.parameters);
-    Linearisation           linearisation = linearised_scene(scene, run);
-    const FrictionlessModes frictionless  = frictionless_modes(scene, linearisation, run);
-    add_modal_damping(frictionless, run.parameters, linearisation);
-    const CoupledSystem &coupled = linearisation.coupled;
+    const ReductionPlan plan         = reduction_plan(run.parameters);
+    FrictionlessModes   frictionless = frictionless_modes(linearised_scene(scene, run), run);
+    add_modal_damping(frictionless, run.parameters);
+    const CoupledSystem &coupled = frictionless.linearisation.coupled;
     const CoupledSystem  system  = plan.has_friction ? coupled : undamped(coupled);
 
-    const Reference              reference = reference_modes(plan, scene, linearisation, frictionless, run);
-    ReductionSets                sets(plan, scene, linearisation, frictionless, system, run);
-    const std::vector<Candidate> candidates = candidates_of(plan, system, reference, sets, run);
+    const Reference              reference = reference_modes(plan, frictionless, run);
+    ReductionSets                sets(plan, frictionless, system, run);
+    const std::vector<Candidate> candidates = candidates_of(sets, reference);
 
     // ----------------------------------------------------------------- results
-    run.write_table("reduction_bases", reduction_basis_table(candidates, coupled.map().NumGlobalElements(), reference.seconds));
+    run.write_table("reduction_bases", reduction_basis_table(candidates, coupled.map().n(), reference.seconds));
     run.write_table("reduction_errors", reduction_error_table(candidates, reference.groups));
     run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference.unstable));
     run.store_table("reduction_modes", reduction_mode_table(candidates, reference.labels, reference.groups));

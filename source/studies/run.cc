@@ -34,21 +34,6 @@ namespace Squeal
       results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);
   }
 
-  const ResultFolder &Run::folder() const
-  {
-    return *results;
-  }
-
-  void Run::count(const std::string &name, const long value)
-  {
-    record.counts.emplace_back(name, value);
-  }
-
-  void Run::measure(const std::string &name, const double value)
-  {
-    record.quantities.emplace_back(name, value);
-  }
-
   void Run::keep_geometry()
   {
     for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)

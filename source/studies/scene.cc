@@ -5,7 +5,7 @@
 #include <squeal/bases/rigid_body.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/scene.h>
 #include <squeal/studies/scene_summary.h>
 
@@ -13,11 +13,6 @@
 
 namespace Squeal
 {
-  unsigned int Scene::n_pins() const
-  {
-    return mesh.volume_names.size() - 1;
-  }
-
   namespace
   {
     /**
@@ -28,9 +23,7 @@ namespace Squeal
 
     void warn_of_locking(Run &run)
     {
-      const MaterialParameters &materials = run.parameters.materials;
-      for (const auto &[section, material] :
-           {std::make_pair("Disc material", materials.disc), std::make_pair("Pin material", materials.pin)})
+      for (const auto &[section, material] : run.parameters.materials.all())
         if (run.parameters.discretization.degree == 1 && material.poisson_ratio >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
                                  locking_poisson_ratio,
@@ -52,6 +45,8 @@ namespace Squeal
     run.progress.begin("Mesh");
     scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces(), run.communicator);
     const MeshQuality quality = check_mesh(scene.mesh);
+    for (const PinMaterial &single : parameters.materials.single_pins)
+      pin_number(scene.mesh.volume_names, single.pin, "Pin material/Single pins");
     run.count("elements", scene.mesh.hexahedra.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(
@@ -69,7 +64,7 @@ namespace Squeal
     scene.contact   = contact_operators(*scene.model, scene.interface);
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
-    const int n = scene.model->free_map().NumGlobalElements(), n_coupled = scene.contact.kernel->NumGlobalCols();
+    const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);
     run.count("contact nodes", scene.interface.size());
@@ -93,22 +88,32 @@ namespace Squeal
       }
     scene.bodies = merged(bodies.terms, bodies.values);
     scene.system = sparse_matrices(scene.bodies, bodies.values);
-    run.progress.finish(text(scene.system.stiffness->NumGlobalNonzeros(), " entries in K"));
+    run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
+  }
+
+  SlidingModel sliding_model(const Scene &scene, const Parameters &parameters)
+  {
+    return {*scene.model,
+            scene.interface,
+            scene.contact,
+            scene.system,
+            circular_frequency(parameters.discretization.maximum_frequency),
+            parameters.solvers.library};
   }
 
   SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run)
   {
     run.progress.begin("Steady sliding");
-    const StaticResponse response(*scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency),
-                                  run.parameters.solvers.library);
-    SlidingState         state  = steady_sliding(*scene.model, scene.interface, scene.contact, scene.system, response, operation, sliding);
-    const auto           n_open = std::count(state.closed.begin(), state.closed.end(), false);
+    SlidingState state  = steady_sliding(sliding_model(scene, run.parameters), operation, sliding);
+    const auto   n_open = std::count(state.closed.begin(), state.closed.end(), false);
     run.progress.finish(
       text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
     return state;
   }
 
-  StateOfContact state_of_contact(const ContactInterface &interface, const SlidingState *state, const OperationParameters &operation)
+  StateOfContact state_of_contact(const ContactInterface            &interface,
+                                  const std::optional<SlidingState> &state,
+                                  const OperationParameters         &operation)
   {
     StateOfContact            result;
     const std::vector<double> reactions = state ? state->reactions : equal_load_shares(interface, operation.load_per_side);
@@ -130,13 +135,13 @@ namespace Squeal
     return {select(damping.radial), select(damping.sliding)};
   }
 
-  Linearisation linearise(const Scene &scene, const SlidingState *sliding, const OperationParameters &operation)
+  Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation)
   {
     const StateOfContact state = state_of_contact(scene.interface, sliding, operation);
     Linearisation        result;
-    if (sliding)
-      result.sliding = *sliding;
-    result.closed = state.closed;
+    result.scene   = &scene;
+    result.sliding = sliding;
+    result.closed  = state.closed;
     for (const unsigned int c : state.closed)
       result.interface.push_back(scene.interface[c]);
     const bool all = state.closed.size() == scene.interface.size();
@@ -153,6 +158,6 @@ namespace Squeal
     std::optional<SlidingState> sliding;
     if (parameters.sliding.state == ContactState::steady_sliding)
       sliding = solve_sliding(scene, parameters.operation, parameters.sliding, run);
-    return linearise(scene, sliding ? &*sliding : nullptr, parameters.operation);
+    return linearise(scene, sliding, parameters.operation);
   }
 } // namespace Squeal

@@ -2,7 +2,6 @@
 #include <squeal/base/memory_limit.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/geometry/disc_axis.h>
-#include <squeal/geometry/faces.h>
 #include <squeal/geometry/problem_size.h>
 #include <squeal/studies/scene_summary.h>
 
@@ -23,15 +22,64 @@ namespace Squeal
     constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
     constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
 
+    /// Disc, or pins that are alike.
+    struct BodySummary : BodyShape
+    {
+      std::vector<std::string> names;     ///< of all bodies
+      double                   mass;      ///< of one body [kg]
+      double                   bar_speed; ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+    };
+
     bool are_alike(const BodySummary &a, const BodySummary &b)
     {
       const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
-      return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume);
+      return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume) && close(a.mass, b.mass) &&
+             close(a.bar_speed, b.bar_speed);
     }
 
-    std::string range_text(const Range &range, const char *unit)
+    double bar_speed(const Material &material)
     {
-      return text(range.least, " to ", range.greatest, " ", unit);
+      return std::sqrt(material.young_modulus / material.density);
+    }
+
+    /// The disc first, then the pins: those with the same height, contact area, volume and material as one.
+    std::vector<BodySummary> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
+    {
+      std::vector<BodySummary> result;
+      for (const BodyShape &shape : body_shapes(mesh))
+        {
+          const Material    material = materials.of(shape.name);
+          const BodySummary body{shape, {shape.name}, shape.volume * material.density, bar_speed(material)};
+          const auto        same =
+            std::find_if(result.begin() + !result.empty(), result.end(), [&](const BodySummary &other) { return are_alike(other, body); });
+          if (same != result.end())
+            same->names.push_back(body.name);
+          else
+            result.push_back(body);
+        }
+      return result;
+    }
+
+    /// What in bodies and materials suggests other units than those that the program takes.
+    void warn_of_units(const std::vector<BodySummary> &bodies, const MaterialParameters &materials, Run &run)
+    {
+      const BodySummary &disc = bodies[0];
+      if (!disc_radii.contains(disc.outer_radius))
+        run.warn(text("the disc has an outer radius of ", disc.outer_radius, " m; lengths are in metres"));
+      for (const BodySummary &body : bodies)
+        if (!heights.contains(body.height))
+          run.warn(text(body.name, " extends ", body.height, " m along z; lengths are in metres"));
+      if (!disc_masses.contains(disc.mass))
+        run.warn(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
+      const auto range_text = [](const Range &range, const char *unit) { return text(range.least, " to ", range.greatest, " ", unit); };
+      for (const auto &[section, material] : materials.all())
+        {
+          if (!densities.contains(material.density))
+            run.warn(text(section, "/Density is ", material.density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
+          if (const double speed = bar_speed(material); !bar_speeds.contains(speed))
+            run.warn(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
+                          "; moduli are in Pa, densities in kg/m^3"));
+        }
     }
 
     std::string describe(const BodySummary &body, const bool is_disc)
@@ -45,76 +93,6 @@ namespace Squeal
                   " kg", body.names.size() == 1 ? "; " : " each; ", waves);
     }
   } // namespace
-
-  std::vector<BodySummary> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
-  {
-    // Each body by itself
-    constexpr double         infinity = std::numeric_limits<double>::infinity();
-    std::vector<BodySummary> bodies;
-    std::vector<Range>       z(mesh.volume_names.size(), {infinity, -infinity});
-    for (const std::string &name : mesh.volume_names)
-      {
-        const Material &material = name == PhysicalNames::disc ? materials.disc : materials.pin;
-        bodies.push_back({{name}, infinity, 0., 0., 0., 0., 0., std::sqrt(material.young_modulus / material.density)});
-      }
-    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
-    for (std::size_t node = 0; node < mesh.points.size(); ++node)
-      {
-        BodySummary &body   = bodies[volume_of_node[node]];
-        Range       &extent = z[volume_of_node[node]];
-        const double radius = std::hypot(mesh.points[node][0], mesh.points[node][1]);
-        body.inner_radius   = std::min(body.inner_radius, radius);
-        body.outer_radius   = std::max(body.outer_radius, radius);
-        extent.least        = std::min(extent.least, mesh.points[node][2]);
-        extent.greatest     = std::max(extent.greatest, mesh.points[node][2]);
-      }
-    for (const HexFace &face : outer_faces(mesh))
-      {
-        const auto [centre, area_normal] = face_geometry(mesh, face.nodes);
-        bodies[face.volume].volume += centre * area_normal / 3.; // divergence theorem
-      }
-    for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
-      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
-        bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
-
-    // Pins that are alike
-    std::vector<BodySummary> result;
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      {
-        bodies[b].height = z[b].greatest - z[b].least;
-        bodies[b].mass   = bodies[b].volume * (b == 0 ? materials.disc : materials.pin).density;
-        const auto same  = std::find_if(result.begin(), result.end(),
-                                        [&](const BodySummary &other) { return &other != &result[0] && are_alike(other, bodies[b]); });
-        if (b > 0 && same != result.end())
-          same->names.push_back(bodies[b].names[0]);
-        else
-          result.push_back(bodies[b]);
-      }
-    return result;
-  }
-
-  std::vector<std::string> implausible(const std::vector<BodySummary> &bodies, const MaterialParameters &materials)
-  {
-    std::vector<std::string> result;
-    const BodySummary       &disc = bodies[0];
-    if (!disc_radii.contains(disc.outer_radius))
-      result.push_back(text("the disc has an outer radius of ", disc.outer_radius, " m; lengths are in metres"));
-    for (const BodySummary &body : bodies)
-      if (!heights.contains(body.height))
-        result.push_back(text(body.names[0], " extends ", body.height, " m along z; lengths are in metres"));
-    if (!disc_masses.contains(disc.mass))
-      result.push_back(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
-    const auto doubt = [&result](const Material &material, const char *section) {
-      if (!densities.contains(material.density))
-        result.push_back(text(section, "/Density is ", material.density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
-      if (const double speed = std::sqrt(material.young_modulus / material.density); !bar_speeds.contains(speed))
-        result.push_back(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
-                              "; moduli are in Pa, densities in kg/m^3"));
-    };
-    doubt(materials.disc, "Disc material");
-    doubt(materials.pin, "Pin material");
-    return result;
-  }
 
   void summarise_scene(const HexMesh &mesh, Run &run)
   {
@@ -136,7 +114,7 @@ namespace Squeal
 
     // Modes and memory
     const unsigned int degree  = parameters.discretization.degree;
-    const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band)).coupled();
+    const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band));
     const unsigned int allowed = parameters.solvers.maximum_modes;
     const ProblemSize  size    = expected_size(mesh, degree);
     const double       bytes   = size.memory(degree, std::min<double>(n_modes, allowed));
@@ -151,8 +129,7 @@ namespace Squeal
     if (axis.round_about_z < least_round)
       run.warn(text("the disc is not round about the z axis, about which it turns: ", std::round(100. * axis.round_about_z),
                     " % of its surface is"));
-    for (const std::string &doubt : implausible(bodies, parameters.materials))
-      run.warn(doubt);
+    warn_of_units(bodies, parameters.materials, run);
     if (n_modes > allowed)
       run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
                     ": lower Band/Maximum frequency, or check units"));

@@ -65,8 +65,7 @@ namespace Squeal
 
   void write_sliding_tables(const Scene &scene, const SlidingState &state, const OperationParameters &operation, Run &run)
   {
-    const std::vector<PinContact> pins =
-      pin_contacts(*scene.model, scene.interface, state.reactions, state.gaps, state.approach, operation);
+    const std::vector<PinContact> pins = pin_contacts(*scene.model, scene.interface, state, operation);
     run.store_table("sliding_pins", pin_table(pins));
     run.store_table("sliding_certificate", sliding_table(state, pins));
 

@@ -1,12 +1,12 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
-#include <squeal/studies/mode_fields.h>
-#include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
+
+#include <boost/range/irange.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -21,6 +21,110 @@ namespace Squeal
     /// Unstable modes that the screen shows.
     constexpr std::size_t n_shown_modes = 20;
 
+    // ------------------------------------------------------------------ tables
+
+    /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
+    Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
+    {
+      struct Row
+      {
+        const char *component, *contact;
+        ModeLabel   label;
+        double      frequency, residual;
+      };
+      std::vector<Row> rows;
+      const auto       add = [&](const char *component, const char *contact, const ComponentModes &set) {
+        const std::size_t      n = n_in_band(set.eigenvalues, largest_eigenvalue);
+        std::vector<ModeLabel> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
+        mark_doublets(labels);
+        for (std::size_t j = 0; j < n; ++j)
+          rows.push_back({component, contact, labels[j], hertz(std::sqrt(set.eigenvalues[j])), set.residuals[j]});
+      };
+      add("disc", "free", modes.disc);
+      add("pins", "sliding", modes.pins_sliding);
+      add("pins", "free", modes.pins_free);
+      return Table(Columns<Row>{{"component", "", &Row::component},
+                                {"contact", "", &Row::contact},
+                                {"label", "", &Row::label},
+                                {"frequency", "Hz", &Row::frequency, 2},
+                                {"residual", "-", &Row::residual, 1, true}},
+                   rows);
+    }
+
+    /// Real coupled modes: label, share, frequency, residual.
+    Table real_table(const FrictionlessModes &modes)
+    {
+      return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
+                                {"share", "-", [&](const int j) { return modes.labels[j].participation; }, 3},
+                                {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
+                                {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
+                   boost::irange<int>(0, modes.labels.size()));
+    }
+
+    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
+    Column<int> column_of(const FrictionModes &friction,
+                          const std::string   &name,
+                          const std::string   &unit,
+                          double ModalQuantities::*quantity,
+                          const int                digits)
+    {
+      const double factor = unit == "%" ? 100. : 1.;
+      return {name, unit,
+              [&friction, quantity, factor](const int j) { return factor * (modal_quantities(friction.modes.lambda[j]).*quantity); },
+              digits};
+    }
+
+    /**
+     * Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are
+     * unstable, and estimates where there are any.
+     */
+    Table complex_table(const FrictionModes &friction)
+    {
+      const ComplexModes &modes   = friction.modes;
+      Columns<int>        columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
+                                     {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
+                                     column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
+                                     column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
+                                     column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                                     column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
+                                     {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
+                                     {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
+                                     {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }}};
+      if (!modes.estimated_errors.empty())
+        columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
+      return Table(columns, boost::irange<int>(0, friction.labels.size()));
+    }
+
+    /**
+     * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most
+     * @p n_largest rows.
+     */
+    Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
+    {
+      std::vector<int> growing;
+      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
+        if (friction.unstable[j])
+          growing.push_back(static_cast<int>(j));
+      const auto rate = [&](const int j) { return modal_quantities(friction.modes.lambda[j]).divergence_rate; };
+      std::stable_sort(growing.begin(), growing.end(), [&](const int a, const int b) { return rate(a) > rate(b); });
+      growing.resize(std::min(growing.size(), n_largest));
+      return Table(Columns<int>{{"unstable mode", "", [&](const int j) { return friction.labels[j]; }},
+                                column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
+                                column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
+                                column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                                {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3}},
+                   growing);
+    }
+
+    /// Real eigenvalues, fastest growth first: growth rate, kind.
+    Table real_eigenvalue_table(std::vector<double> values)
+    {
+      std::reverse(values.begin(), values.end());
+      return Table(Columns<double>{{"growth rate", "1/s", [](const double value) { return value; }, 4},
+                                   {"kind", "", [](const double value) { return value > 0. ? "static divergence" : "decay"; }}},
+                   values);
+    }
+
     // ------------------------------------------------------------------ fields
 
     /// File name of a mode: its place in the table and its label.
@@ -31,11 +135,7 @@ namespace Squeal
       return name.str();
     }
 
-    void write_modes(const Scene         &scene,
-                     const Linearisation &linearisation,
-                     const FrictionModes &friction,
-                     const FieldWriter   &writer,
-                     Run                 &run)
+    void write_modes(const Linearisation &linearisation, const FrictionModes &friction, const FieldWriter &writer, Run &run)
     {
       const Parameters   &parameters = run.parameters;
       const ComplexModes &modes      = friction.modes;
@@ -48,8 +148,8 @@ namespace Squeal
           const ModeLabel &label = friction.labels[j];
           run.progress.update(text(to_string(label), ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
           const int       column = static_cast<int>(j);
-          const ModeField field  = mode_field(scene, linearisation.coupled, linearisation.closed, file_name(j, label), modes.lambda[j],
-                                              view(*modes.real_part, column, 1), view(*modes.imaginary_part, column, 1));
+          const ModeField field  = mode_field(linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
+                                              view(*modes.imaginary_part, column, 1));
           writer.write_mode(field);
           ++n_modes;
           if (friction.unstable[j] && parameters.output.animation_frames > 0)
@@ -63,8 +163,9 @@ namespace Squeal
 
     // ---------------------------------------------------------------- matrices
 
-    void write_matrices(const Scene &scene, const Linearisation &linearisation, Run &run)
+    void write_matrices(const Linearisation &linearisation, Run &run)
     {
+      const Scene             &scene     = *linearisation.scene;
       const Model             &model     = *scene.model;
       const ContactInterface  &interface = linearisation.interface;
       const ContactOperators  &contact   = linearisation.contact;
@@ -79,9 +180,8 @@ namespace Squeal
       write(*system.mass, "M", MatrixMarketSymmetry::symmetric);
       write(*system.stiffness, "K", MatrixMarketSymmetry::symmetric);
       // A matrix without entries where there is no damping, so that readers need no special case
-      SparseMatrix zero(Copy, model.free_map(), 0);
-      zero.FillComplete();
-      const Term *symmetric = nullptr;
+      const SparseMatrix zero(model.free_map(), model.free_map(), [](int, SparseMatrix::Row &) {});
+      const Term        *symmetric = nullptr;
       for (const Term &term : scene.bodies)
         if (term.symmetry == Symmetry::skew)
           write(*term.matrix, "G", MatrixMarketSymmetry::general);
@@ -185,13 +285,11 @@ namespace Squeal
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    Linearisation                      linearisation = linearised_scene(scene, run);
+    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, run), run);
+    add_modal_damping(frictionless, parameters);
+    const FrictionModes                friction      = friction_modes(frictionless, operation.friction_coefficient, run);
+    const Linearisation               &linearisation = frictionless.linearisation;
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
-
-    // ------------------------------------------------------------------- modes
-    const FrictionlessModes frictionless = frictionless_modes(scene, linearisation, run);
-    add_modal_damping(frictionless, parameters, linearisation);
-    const FrictionModes friction = friction_modes(scene, linearisation, frictionless, operation.friction_coefficient, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
     run.count("real eigenvalues", friction.modes.real_values.size());
@@ -216,10 +314,10 @@ namespace Squeal
         const FieldWriter writer(*scene.model, scene.interface, linearisation.closed, run.folder());
         if (sliding)
           write_sliding_fields(scene, *sliding, operation, writer);
-        write_modes(scene, linearisation, friction, writer, run);
+        write_modes(linearisation, friction, writer, run);
       }
     if (parameters.output.write_matrices)
-      write_matrices(scene, linearisation, run);
+      write_matrices(linearisation, run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }

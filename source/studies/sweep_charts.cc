@@ -54,7 +54,7 @@ namespace Squeal
       else
         {
           const auto vectors = model.reduced->new_vectors(sets);
-          if (!vectors || model.reduced->size() + vectors->NumVectors() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
+          if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
             return;
           store.keep(*vectors);
           model.reduced->extend(*vectors);
@@ -146,7 +146,7 @@ namespace Squeal
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
   {
     return checkpoint.part(text("contact set ", model.regime.number, " of ", model.regime.closed.size(), " nodes, ", phase),
-                           model.linearisation.coupled.map());
+                           model.frictionless.linearisation.coupled.map());
   }
 
   void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts)
@@ -162,39 +162,25 @@ namespace Squeal
           }
   }
 
-  namespace
+  std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
   {
-    /// A growing mode of a chart.
     struct Growing
     {
       double          friction_coefficient;
       ModalQuantities mode;
       std::string     label;
     };
-
-    /// All of them in the band, by friction coefficient.
-    std::vector<Growing> growing_modes(const SweepChart &line, const double largest_circular_frequency)
-    {
-      std::vector<Growing> result;
-      const auto          &points = line.chart.points;
-      for (std::size_t i = 0; i < points.size(); ++i)
-        for (std::size_t b = 0; b < line.chart.branches.size(); ++b)
-          if (const int j = line.chart.branches[b].modes[i];
-              j >= 0 && points[i].lambda[j].imag() <= largest_circular_frequency && points[i].verdicts[j] == Verdict::unstable)
-            result.push_back({points[i].friction_coefficient, modal_quantities(points[i].lambda[j]), to_string(line.labels[b])});
-      return result;
-    }
-  } // namespace
-
-  std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
-  {
-    std::vector<Growing> growing;
+    std::vector<Growing> growing;     // in the band, by friction coefficient
     std::size_t          n_known = 0; // of the values asked for
-    for (const SweepChart &line : charts)
+    for (const auto &[chart, labels] : charts)
       {
-        n_known += std::count(line.chart.is_refinement.begin(), line.chart.is_refinement.end(), false);
-        for (Growing &mode : growing_modes(line, largest_circular_frequency))
-          growing.push_back(std::move(mode));
+        n_known += std::count(chart.is_refinement.begin(), chart.is_refinement.end(), false);
+        for (std::size_t i = 0; i < chart.points.size(); ++i)
+          for (std::size_t b = 0; b < labels.size(); ++b)
+            if (const ChartPoint &point = chart.points[i]; chart.branches[b].modes[i] >= 0)
+              if (const int j = chart.branches[b].modes[i];
+                  point.lambda[j].imag() <= largest_circular_frequency && point.verdicts[j] == Verdict::unstable)
+                growing.push_back({point.friction_coefficient, modal_quantities(point.lambda[j]), to_string(labels[b])});
       }
     if (growing.empty())
       return n_known == n_asked ?

@@ -23,9 +23,8 @@ namespace Squeal
     }
   } // namespace
 
-  SweepModel::SweepModel(const Scene &scene, const SweepPlan &plan, const ContactRegime &regime, Run &run)
-    : scene(scene)
-    , plan(plan)
+  SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run)
+    : plan(plan)
     , regime(regime)
     , run(run)
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
@@ -34,18 +33,18 @@ namespace Squeal
       *std::max_element(regime.points.begin(), regime.points.end(),
                         [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
     const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
-    const auto                sliding   = plan.states.sliding(operation);
-    linearisation                       = linearise(scene, sliding ? &*sliding : nullptr, operation);
+    const Linearisation       damped    = linearise(plan.scene, plan.sliding_state(operation), operation);
 
     // Neither real modes nor the factor know of damping
-    Linearisation bare = linearisation;
-    bare.coupled       = undamped(linearisation.coupled);
-    frictionless       = frictionless_modes(scene, bare, run, band_margin);
-    add_modal_damping(frictionless, run.parameters, linearisation);
+    Linearisation bare         = damped;
+    bare.coupled               = undamped(damped.coupled);
+    frictionless               = frictionless_modes(bare, run, band_margin);
+    frictionless.linearisation = damped;
+    add_modal_damping(frictionless, run.parameters);
 
     run.progress.begin("Reduced model");
-    reduced = std::make_unique<ChartModel>(linearisation.coupled, *frictionless.inverse, frictionless.shift, *frictionless.real.vectors,
-                                           largest_circular_frequency, band_margin);
+    reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
+                                           *frictionless.real.vectors, largest_circular_frequency, band_margin);
     run.progress.finish(text(reduced->size(), " vectors to start from"));
   }
 
@@ -81,17 +80,14 @@ namespace Squeal
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const auto [re, im] = shapes(point, modes);
-    return identify_coupled(scene, linearisation, frictionless, re, &im);
+    return frictionless.identify(re, &im);
   }
 
-  CoupledSystem SweepModel::system_at(const double friction_coefficient) const
+  Linearisation SweepModel::linearisation_at(const double friction_coefficient) const
   {
-    return with_values(linearisation.coupled, plan.point(0, friction_coefficient, regime.closed).values);
-  }
-
-  bool SweepModel::is_in_band(const std::complex<double> &lambda) const
-  {
-    return lambda.imag() <= largest_circular_frequency;
+    Linearisation result = frictionless.linearisation;
+    result.coupled       = with_values(result.coupled, plan.point(0, friction_coefficient, regime.closed).values);
+    return result;
   }
 
   int SweepModel::leading_mode(const ChartPoint &point) const

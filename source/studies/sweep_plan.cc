@@ -1,36 +1,9 @@
-#include <squeal/base/conventions.h>
 #include <squeal/studies/sweep_plan.h>
 
 #include <algorithm>
 
 namespace Squeal
 {
-  ContactStates::ContactStates(const Scene &scene, Run &run)
-    : scene(scene)
-    , parameters(run.parameters.sliding)
-  {
-    if (parameters.state != ContactState::steady_sliding)
-      return;
-    run.progress.begin("Contact flexibility");
-    response = std::make_unique<StaticResponse>(
-      *scene.model, scene.system, circular_frequency(run.parameters.discretization.maximum_frequency), run.parameters.solvers.library);
-    responses = std::make_unique<SlidingResponses>(sliding_responses(scene.contact, *response));
-    run.progress.finish(text(2 * scene.interface.size(), " attachment modes"));
-  }
-
-  std::optional<SlidingState> ContactStates::sliding(const OperationParameters &operation) const
-  {
-    if (!response)
-      return {};
-    return steady_sliding(*scene.model, scene.interface, scene.contact, scene.system, *response, *responses, operation, parameters);
-  }
-
-  StateOfContact ContactStates::at(const OperationParameters &operation) const
-  {
-    const auto state = sliding(operation);
-    return state_of_contact(scene.interface, state ? &*state : nullptr, operation);
-  }
-
   namespace
   {
     std::vector<SweepLine> lines_of(const Parameters &parameters)
@@ -72,27 +45,41 @@ namespace Squeal
     return result;
   }
 
-  std::vector<unsigned int> SweepPlan::closed_at(const double friction_coefficient) const
+  std::optional<SlidingState> SweepPlan::sliding_state(const OperationParameters &operation) const
   {
-    return states.at(lines[0].at(friction_coefficient)).closed;
+    if (!sliding)
+      return {};
+    return steady_sliding(*sliding, operation, sliding_parameters);
+  }
+
+  StateOfContact SweepPlan::state_at(const int line, const double friction_coefficient) const
+  {
+    const OperationParameters operation = lines[line].at(friction_coefficient);
+    return state_of_contact(scene.interface, sliding_state(operation), operation);
   }
 
   OperatingPoint SweepPlan::point(const int line, const double friction_coefficient, const std::vector<unsigned int> &closed) const
   {
-    return {friction_coefficient, selected(states.at(lines[line].at(friction_coefficient)).damping, closed).values(), line};
+    return {friction_coefficient, selected(state_at(line, friction_coefficient).damping, closed).values(), line};
   }
 
   SweepPlan sweep_plan(const Scene &scene, Run &run)
   {
-    SweepPlan                   plan{lines_of(run.parameters), ContactStates(scene, run), {}};
+    SweepPlan                   plan{scene, run.parameters.sliding, nullptr, lines_of(run.parameters), {}};
     std::vector<ContactRegime> &regimes  = plan.regimes;
     std::size_t                 n_points = 0;
+    if (plan.sliding_parameters.state == ContactState::steady_sliding)
+      {
+        run.progress.begin("Contact flexibility");
+        plan.sliding = std::make_unique<SlidingModel>(sliding_model(scene, run.parameters));
+        run.progress.finish(text(2 * scene.interface.size(), " attachment modes"));
+      }
     run.progress.begin("States of contact");
     for (std::size_t l = 0; l < plan.lines.size(); ++l)
       for (const double mu : plan.lines[l].friction_coefficients)
         {
           run.progress.update(text("state ", ++n_points));
-          const StateOfContact state = plan.states.at(plan.lines[l].at(mu));
+          const StateOfContact state = plan.state_at(static_cast<int>(l), mu);
           auto                 regime =
             std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &other) { return other.closed == state.closed; });
           if (regime == regimes.end())

@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/studies/mode_fields.h>
+#include <squeal/studies/friction_modes.h>
 #include <squeal/studies/sweep_results.h>
 
 #include <algorithm>
@@ -51,7 +51,8 @@ namespace Squeal
         const SweepLine &line = model.plan.lines[operating.line];
         if (line.kind != SweepLine::Kind::map)
           continue;
-        cells.push_back({operating.friction_coefficient, line.value, model.scene.interface.size() - model.regime.closed.size(), {}, {}});
+        cells.push_back(
+          {operating.friction_coefficient, line.value, model.plan.scene.interface.size() - model.regime.closed.size(), {}, {}});
         const auto found = model.known.find({operating.line, operating.friction_coefficient});
         if (found == model.known.end())
           continue;
@@ -82,7 +83,7 @@ namespace Squeal
         if (model.plan.closed_at(mu) != model.regime.closed)
           continue;
         run.progress.begin("Argument principle");
-        const CoupledSystem system = model.system_at(mu);
+        const CoupledSystem system = model.linearisation_at(mu).coupled;
         ContourOptions      options;
         options.largest_circular_frequency = omega_max;
         options.lowest_frequency           = 1e-3 * omega_max;
@@ -109,7 +110,7 @@ namespace Squeal
     const auto &wanted = run.parameters.sweep.mode_shapes;
     if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
       return;
-    const FieldWriter writer(*model.scene.model, model.scene.interface, model.regime.closed, run.folder());
+    const FieldWriter writer(*model.plan.scene.model, model.plan.scene.interface, model.regime.closed, run.folder());
     run.progress.begin("Mode shapes");
     int n_written = 0;
     for (const double mu : wanted)
@@ -118,14 +119,14 @@ namespace Squeal
           continue;
         const ChartPoint point = modes_at(model, mu);
         const int        mode  = model.leading_mode(point);
-        if (mode < 0 || !is_growing(point.lambda[mode]))
+        if (mode < 0 || verdict_of(point.lambda[mode]) != Verdict::unstable)
           {
             run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
             continue;
           }
         const auto [re, im] = model.shapes(point, {mode});
         const auto name     = text("mu_", mu, "_", file_text(model.labels(point, {mode}).front()));
-        const auto field    = mode_field(model.scene, model.system_at(mu), model.regime.closed, name, point.lambda[mode], re, im);
+        const auto field    = mode_field(model.linearisation_at(mu), name, point.lambda[mode], re, im);
         writer.write_mode(field);
         if (run.parameters.output.animation_frames > 0)
           writer.write_animation(field, run.parameters.output.animation_frames);

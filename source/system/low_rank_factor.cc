@@ -13,7 +13,7 @@ namespace Squeal
 
   int LowRankFactor::rank() const
   {
-    return rows ? rows->NumGlobalRows() : full->NumVectors();
+    return rows ? rows->n_rows() : full->n_columns();
   }
 
   DenseMatrix LowRankFactor::transpose_times(const MultiVector &X) const
@@ -23,7 +23,7 @@ namespace Squeal
 
   MultiVector LowRankFactor::operator*(const DenseMatrix &Y) const
   {
-    return rows ? Squeal::transpose_times(*rows, distribute(Y, rows->RangeMap())) : *full * Y;
+    return rows ? Squeal::transpose_times(*rows, distribute(Y, rows->rows())) : *full * Y;
   }
 
   MultiVector LowRankFactor::columns(const int first, const int n) const

@@ -1,8 +1,6 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
-
-#include <Epetra_Vector.h>
 
 #include <algorithm>
 #include <array>
@@ -21,12 +19,7 @@ namespace Squeal
       if (term.weights.empty())
         return multiply(L, R, true, false);
       const std::vector<double> &d = values.at(term.weights);
-      Epetra_Vector              scale(R.RowMap());
-      for (int i = 0; i < scale.MyLength(); ++i)
-        scale[i] = d[R.RowMap().GID(i)];
-      SparseMatrix scaled(R);
-      scaled.LeftScale(scale);
-      return multiply(L, scaled, true, false);
+      return multiply(L, *scale_rows(R, [&d](const int i) { return d[i]; }), true, false);
     }
 
   } // namespace
@@ -83,13 +76,7 @@ namespace Squeal
 
   Term sparse_term(std::string name, const int power, Monomial coefficient, Matrix matrix, const Symmetry symmetry)
   {
-    Term term;
-    term.name        = std::move(name);
-    term.power       = power;
-    term.coefficient = std::move(coefficient);
-    term.matrix      = std::move(matrix);
-    term.symmetry    = symmetry;
-    return term;
+    return {std::move(name), power, std::move(coefficient), std::move(matrix), symmetry};
   }
 
   Term low_rank_term(std::string                          name,
@@ -99,14 +86,7 @@ namespace Squeal
                      std::shared_ptr<const LowRankFactor> right,
                      std::string                          weights)
   {
-    Term term;
-    term.name        = std::move(name);
-    term.power       = power;
-    term.coefficient = std::move(coefficient);
-    term.left        = std::move(left);
-    term.right       = std::move(right);
-    term.weights     = std::move(weights);
-    return term;
+    return {std::move(name), power, std::move(coefficient), {}, Symmetry::symmetric, std::move(left), std::move(right), std::move(weights)};
   }
 
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, const int power)
@@ -124,13 +104,13 @@ namespace Squeal
                     const MultiVector       &X,
                     const bool               transposed)
   {
-    MultiVector                                                result(X.Map(), X.NumVectors());
+    MultiVector                                                result(X.map(), X.n_columns());
     std::vector<std::pair<const LowRankFactor *, DenseMatrix>> onto; // what each factor maps, once for all of its terms
     for (const Term *term : terms_of(terms, values, power))
       {
         const double theta = term->coefficient.at(values);
         if (term->matrix)
-          result.Update(transposed && term->symmetry == Symmetry::skew ? -theta : theta, *term->matrix * X, 1.);
+          result.local() += (transposed && term->symmetry == Symmetry::skew ? -theta : theta) * (*term->matrix * X).local();
         else
           {
             const DenseMatrix    Y      = term->weighted(term->source(transposed).transpose_times(X), values);
@@ -142,7 +122,7 @@ namespace Squeal
           }
       }
     for (const auto &[factor, Y] : onto)
-      result.Update(1., *factor * Y, 1.);
+      result += *factor * Y;
     return result;
   }
 

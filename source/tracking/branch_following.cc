@@ -2,6 +2,7 @@
 
 #include <squeal/base/assignment.h>
 #include <squeal/base/decision.h>
+#include <squeal/base/groups.h>
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,6 @@ namespace Squeal
       ComplexDenseMatrix   right, left;
       std::vector<Complex> lambda; ///< at the last point where it was not multiple
     };
-
 
     void begin_branch(TrackedModes &modes, const int k, const int mode)
     {
@@ -70,7 +70,7 @@ namespace Squeal
             }
         }
 
-      // Vectors where they say who is who, else λ that would lie on a smooth curve
+      // Vectors where they tell modes apart, else λ that would lie on a smooth curve
       const int            r        = std::max(carried.right.rows(), modes.points[k + 1].right.rows());
       DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
       std::vector<Complex> predicted;
@@ -96,19 +96,6 @@ namespace Squeal
       });
     }
 
-    /// The mode at point k + 1 of each mode at point k, or -1.
-    std::vector<int> images(const TrackedModes &modes, const int k, const Carried &carried)
-    {
-      std::vector<int> image(modes.points[k].lambda.size(), -1);
-      for (const ModeBlock &block : modes.intervals[k].links->blocks)
-        {
-          const std::vector<int> match = match_in_block(modes, k, block, carried);
-          for (std::size_t i = 0; i < match.size(); ++i)
-            image[block.first[i]] = block.second[match[i]];
-        }
-      return image;
-    }
-
     /// Columns @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
     void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, ComplexDenseMatrix &Y, const std::vector<int> &to)
     {
@@ -123,18 +110,14 @@ namespace Squeal
     /// Carries vectors from point k to the next.
     void carry(const TrackedModes &modes, const int k, const std::vector<int> &image, Carried &carried)
     {
-      const ChartPoint             &next    = modes.points[k + 1];
-      const std::vector<int>        cluster = mode_clusters(next.lambda);
-      std::vector<std::vector<int>> members(next.lambda.size());
-      std::vector<int>              origin(next.lambda.size(), -1);
+      const ChartPoint &next = modes.points[k + 1];
+      std::vector<int>  origin(next.lambda.size(), -1);
       for (std::size_t i = 0; i < image.size(); ++i)
         if (image[i] >= 0)
           origin[image[i]] = static_cast<int>(i);
-      for (std::size_t j = 0; j < cluster.size(); ++j)
-        members[cluster[j]].push_back(static_cast<int>(j));
 
       Carried result{next.right, next.left, next.lambda};
-      for (const std::vector<int> &all : members)
+      for (const std::vector<int> &all : members_of(mode_clusters(next.lambda)))
         {
           std::vector<int> from, to;
           for (const int j : all)
@@ -165,7 +148,13 @@ namespace Squeal
       begin_branch(modes, 0, static_cast<int>(j));
     for (int k = 0; k + 1 < modes.n_points(); ++k)
       {
-        const std::vector<int> image = images(modes, k, carried);
+        std::vector<int> image(modes.points[k].lambda.size(), -1); // the mode at point k + 1 of each mode at point k
+        for (const ModeBlock &block : modes.intervals[k].links->blocks)
+          {
+            const std::vector<int> match = match_in_block(modes, k, block, carried);
+            for (std::size_t i = 0; i < match.size(); ++i)
+              image[block.first[i]] = block.second[match[i]];
+          }
         modes.branch_of[k + 1].assign(modes.points[k + 1].lambda.size(), -1);
         for (std::size_t i = 0; i < image.size(); ++i)
           if (image[i] >= 0)

@@ -1,7 +1,5 @@
 #include "tracked_modes.h"
 
-#include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 
 #include <algorithm>
@@ -13,8 +11,6 @@ namespace Squeal
 {
   namespace
   {
-    const Decision divergent("divergence rate of a mode of a chart", negligible_divergence);
-
     void insert(TrackedModes &modes, const EvaluateChart &evaluate, const std::vector<double> &values, const bool refines)
     {
       if (values.empty())
@@ -53,16 +49,6 @@ namespace Squeal
   {
     return std::max(options.threshold_tolerance,
                     8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
-  }
-
-  bool is_neutral(const std::complex<double> &lambda)
-  {
-    return !divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag());
-  }
-
-  bool is_growing(const std::complex<double> &lambda)
-  {
-    return lambda.real() > 0. && divergent.exceeded_by(lambda.real() / lambda.imag());
   }
 
   StabilityChart stability_chart(const std::vector<double> &grid, const EvaluateChart &evaluate, const ChartOptions &options)

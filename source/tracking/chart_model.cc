@@ -1,3 +1,4 @@
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/tracking/chart_model.h>
 #include <squeal/tracking/mode_links.h>
 
@@ -7,15 +8,6 @@
 
 namespace Squeal
 {
-  namespace
-  {
-    /// Columns of X of unit |λ|⁻¹: real parts, then imaginary ones.
-    DenseMatrix scaled_halves(const ComplexDenseMatrix &X, const std::vector<std::complex<double>> &lambda)
-    {
-      return halves(X * as_column(lambda).cwiseAbs().cwiseInverse().cast<std::complex<double>>().asDiagonal());
-    }
-  } // namespace
-
   ChartModel::ChartModel(const CoupledSystem  &system,
                          const UpdatedInverse &inverse,
                          const double          shift,
@@ -37,11 +29,6 @@ namespace Squeal
   int ChartModel::size() const
   {
     return model.size();
-  }
-
-  int ChartModel::n_real_modes() const
-  {
-    return real_modes.NumVectors();
   }
 
   const ReducedModel &ChartModel::reduced() const
@@ -76,9 +63,8 @@ namespace Squeal
   double ChartModel::largest_error(const ChartPoint &point) const
   {
     double result = 0.;
-    for (std::size_t j = 0; j < point.lambda.size(); ++j)
-      if (point.lambda[j].imag() <= largest_circular_frequency)
-        result = std::max(result, point.errors[j]);
+    for (const int j : inaccurate_modes(point, 0.))
+      result = std::max(result, point.errors[j]);
     return result;
   }
 
@@ -108,12 +94,7 @@ namespace Squeal
         std::iota(all.begin(), all.end(), 0);
         directions.push_back(residual_directions(residual_vectors(system, inverse, model, modes), modes, all));
       }
-    if (directions.empty())
-      return {};
-    std::vector<const MultiVector *> parts;
-    for (const MultiVector &part : directions)
-      parts.push_back(&part);
-    return Squeal::new_vectors(system, model, join(parts));
+    return Squeal::new_vectors(system, model, directions);
   }
 
   void ChartModel::extend(const MultiVector &vectors)
@@ -122,28 +103,36 @@ namespace Squeal
     residuals.extend(model);
   }
 
-  MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance) const
+  MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance, const int maximum) const
   {
     const SparseMatrix &M = *system.mass;
     const MultiVector  &T = model.basis();
     DenseMatrix         Y;
     for (const ChartPoint &chart : charts)
       for (const ComplexDenseMatrix *X : {&chart.right, &chart.left})
-        Y = append_columns(Y, scaled_halves(orthonormal_in_clusters(*X, chart.lambda), chart.lambda));
+        {
+          // Of unit strain energy
+          const Eigen::VectorXcd scales = as_column(chart.lambda).cwiseAbs().cwiseInverse().cast<std::complex<double>>();
+          Y                             = append_columns(Y, halves(orthonormal_in_clusters(*X, chart.lambda) * scales.asDiagonal()));
+        }
     const DenseMatrix R = gram(T, M * real_modes);
     Y -= R * (R.transpose() * Y);
 
     // Strain energy: K_r = V diag(w) Vᵀ, the squares of Y are those of √w VᵀY
-    const auto [w, V]          = agreed(T.Comm(), symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
+    const auto [w, V]          = agreed(T.communicator(), symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
     const DenseMatrix Y_w      = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);
-    const auto [squares, axes] = agreed(T.Comm(), symmetric_eigenpairs(Y_w * Y_w.transpose())); // ascending
+    const auto [squares, axes] = agreed(T.communicator(), symmetric_eigenpairs(Y_w * Y_w.transpose())); // ascending
     const int r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
     if (first == r)
       return real_modes;
     const DenseMatrix Z                    = as_column(w).cwiseSqrt().cwiseInverse().asDiagonal() * axes.rightCols(r - first);
     constexpr double  dependence_tolerance = 1e-10;
     const auto        rest                 = orthonormalize_if_any(M, &real_modes, T * DenseMatrix(V * Z), dependence_tolerance);
-    return rest ? join({&real_modes, &*rest}) : real_modes;
+    const int         n_rest               = rest ? std::min(rest->n_columns(), maximum - real_modes.n_columns()) : 0;
+    if (n_rest <= 0)
+      return real_modes;
+    const MultiVector largest = view(*rest, 0, n_rest);
+    return join({&real_modes, &largest});
   }
 
   void ChartModel::restart(const MultiVector &vectors)

@@ -18,11 +18,6 @@ namespace Squeal
       return (x - y) * (x - y);
     }
 
-    int n_real(const TrackedModes &modes, const int k)
-    {
-      return static_cast<int>(modes.points[k].real_values.size()) + modes.points[k].n_zeros;
-    }
-
     bool in_band(const TrackedModes &modes, const int branch, const int k)
     {
       return modes.mode(branch, k) >= 0 && modes.lambda(branch, k).imag() <= modes.options.largest_circular_frequency;
@@ -39,11 +34,10 @@ namespace Squeal
     /// The branch with −R + iω where this one has R + iω, or -1.
     int mirror_branch(const TrackedModes &modes, const int branch, const int k)
     {
-      const Complex here  = modes.lambda(branch, k);
-      int           best  = -1;
-      double        least = mirror_tolerance * std::abs(here.real());
+      const Complex here = modes.lambda(branch, k);
+      int           best = -1;
       // Close to a coalescence, R is small and known to rounding errors of λ only
-      least = std::max(least, 1e-13 * std::abs(here));
+      double least = std::max(mirror_tolerance * std::abs(here.real()), 1e-13 * std::abs(here));
       for (std::size_t j = 0; j < modes.points[k].lambda.size(); ++j)
         if (const double distance = std::abs(modes.points[k].lambda[j] + std::conj(here));
             static_cast<int>(j) != modes.mode(branch, k) && distance <= least)
@@ -66,29 +60,29 @@ namespace Squeal
           const auto f = search_value(modes, search, k);
           if (f && *f <= 0.)
             search.interval = search.upward ? k : k - 1;
-          if (!f || *f <= 0. || !is_neutral(modes.lambda(search.branch, k)))
+          if (!f || *f <= 0. || modes.verdict(search.branch, k) != Verdict::neutral)
             return;
         }
     }
 
     std::optional<EventSearch> find_threshold(const TrackedModes &modes, const int k, const int branch)
     {
-      const Complex before = modes.lambda(branch, k), after = modes.lambda(branch, k + 1);
-      if (is_growing(before) == is_growing(after))
+      const auto grows   = [&](const int point) { return modes.verdict(branch, point) == Verdict::unstable; };
+      const auto neutral = [&](const int of, const int point) { return modes.verdict(of, point) == Verdict::neutral; };
+      const bool onset   = grows(k + 1);
+      if (grows(k) == onset)
         return {};
-      const bool  onset   = is_growing(after);
       const int   growing = onset ? k + 1 : k, other = onset ? k : k + 1;
       const int   partner = mirror_branch(modes, branch, growing);
       EventSearch search{EventSearch::growth, k, branch, -1, onset};
-      if (partner >= 0 && modes.mode(partner, other) >= 0 && is_neutral(modes.lambda(branch, other)) &&
-          is_neutral(modes.lambda(partner, other)))
+      if (partner >= 0 && modes.mode(partner, other) >= 0 && neutral(branch, other) && neutral(partner, other))
         {
           search.kind    = EventSearch::coalescence;
           search.partner = partner;
         }
       enclose(modes, search);
-      search.at_once = search.interval == 0 && onset && is_neutral(modes.lambda(branch, 0)) &&
-                       (search.kind == EventSearch::growth || is_double(modes, search, 0));
+      search.at_once =
+        search.interval == 0 && onset && neutral(branch, 0) && (search.kind == EventSearch::growth || is_double(modes, search, 0));
       if (onset && search.kind == EventSearch::coalescence && search.interval > 0)
         {
           search.multiple = true;
@@ -110,7 +104,7 @@ namespace Squeal
         if (const double distance = std::abs(0.5 * (values[i] + values[i + 1]) - centre); distance < least)
           {
             least = distance;
-            best  = 0.25 * (values[i] - values[i + 1]) * (values[i] - values[i + 1]);
+            best  = 0.25 * square_difference(values[i], values[i + 1]).real();
           }
       return best;
     }
@@ -120,18 +114,21 @@ namespace Squeal
   {
     if (k < 0 || k >= modes.n_points())
       return std::nullopt;
-    const int                   m = modes.mode(search.branch, k), n = search.partner >= 0 ? modes.mode(search.partner, k) : -1;
-    const std::vector<Complex> &lambda = modes.points[k].lambda;
+    if (modes.mode(search.branch, k) < 0)
+      return search.kind == EventSearch::real_axis ? real_pair(modes, search, k) : std::nullopt;
+    const Complex lambda = modes.lambda(search.branch, k);
     switch (search.kind)
       {
         case EventSearch::growth:
-          return m >= 0 ? std::optional(lambda[m].real()) : std::nullopt;
+          return lambda.real();
         case EventSearch::coalescence:
-          return m >= 0 && n >= 0 ? std::optional(square_difference(lambda[m], lambda[n]).real()) : std::nullopt;
+          if (modes.mode(search.partner, k) < 0)
+            return std::nullopt;
+          return square_difference(lambda, modes.lambda(search.partner, k)).real();
         case EventSearch::end_of_band:
-          return m >= 0 ? std::optional(lambda[m].imag() - modes.options.largest_circular_frequency) : std::nullopt;
+          return lambda.imag() - modes.options.largest_circular_frequency;
         case EventSearch::real_axis:
-          return m >= 0 ? -lambda[m].imag() * lambda[m].imag() : real_pair(modes, search, k);
+          return -lambda.imag() * lambda.imag();
       }
     return std::nullopt;
   }
@@ -141,7 +138,7 @@ namespace Squeal
     if (modes.width(0) <= modes.options.smallest_step)
       return true;
     const auto near = search_value(modes, search, 1), far = search_value(modes, search, 2);
-    if (!near || !far || !is_growing(modes.lambda(search.branch, 2)))
+    if (!near || !far || modes.verdict(search.branch, 2) != Verdict::unstable)
       return false;
     const double power = search.kind == EventSearch::coalescence ? 2. : 1., h1 = modes.mu(1) - modes.mu(0), h2 = modes.mu(2) - modes.mu(0);
     const double q1 = *near / std::pow(h1, power), q2 = *far / std::pow(h2, power), q0 = q1 + (q1 - q2) * h1 / (h2 - h1);
@@ -153,21 +150,17 @@ namespace Squeal
     std::vector<EventSearch> searches;
     for (int k = 0; k + 1 < modes.n_points(); ++k)
       {
-        for (std::size_t branch = 0; branch < modes.branches.size(); ++branch)
-          {
-            const int b = static_cast<int>(branch), m0 = modes.mode(b, k), m1 = modes.mode(b, k + 1);
-            if (m0 >= 0 && m1 >= 0)
-              {
-                if (const auto threshold = find_threshold(modes, k, b))
-                  searches.push_back(*threshold);
-                const bool before = in_band(modes, b, k), after = in_band(modes, b, k + 1);
-                if (before != after)
-                  searches.push_back({EventSearch::end_of_band, k, b, -1, after});
-              }
-          }
+        for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
+          if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
+            {
+              if (const auto threshold = find_threshold(modes, k, b))
+                searches.push_back(*threshold);
+              if (const bool after = in_band(modes, b, k + 1); after != in_band(modes, b, k))
+                searches.push_back({EventSearch::end_of_band, k, b, -1, after});
+            }
         // A list that is cut may lose modes beyond the band
         const ModeLinks &links = *modes.intervals[k].links;
-        const int        n_new = n_real(modes, k + 1) - n_real(modes, k);
+        const int        n_new = modes.points[k + 1].n_real() - modes.points[k].n_real();
         for (const int i : links.lost)
           if (n_new > 0 && modes.points[k].lambda[i].imag() <= modes.options.largest_circular_frequency)
             searches.push_back({EventSearch::real_axis, k, modes.branch_of[k][i], -1, false});

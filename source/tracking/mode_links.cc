@@ -1,5 +1,6 @@
 #include <squeal/base/assignment.h>
 #include <squeal/base/decision.h>
+#include <squeal/base/groups.h>
 #include <squeal/tracking/mode_links.h>
 
 #include <Eigen/Eigenvalues>
@@ -7,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numeric>
 
 namespace Squeal
 {
@@ -50,32 +49,15 @@ namespace Squeal
       return squares.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
     }
 
-    /// Gives two groups the same number.
-    void join(std::vector<int> &group, const int x, const int y)
+    /// |xᴴy|² of unit vectors; of several y with one λ the share of x in their span.
+    DenseMatrix shares(const ComplexDenseMatrix &X, const ComplexDenseMatrix &Y, const std::vector<int> &cluster)
     {
-      std::replace(group.begin(), group.end(), std::max(x, y), std::min(x, y));
-    }
-
-    /// Connected components of a graph of n nodes on the left and m on the right: number of the component of each.
-    std::vector<int> components(const int n, const int m, const std::function<bool(int, int)> &connected)
-    {
-      std::vector<int> component(n + m);
-      std::iota(component.begin(), component.end(), 0);
-      for (int i = 0; i < n; ++i)
-        for (int j = 0; j < m; ++j)
-          if (component[i] != component[n + j] && connected(i, j))
-            join(component, component[i], component[n + j]);
-      return component;
-    }
-
-    /// Lists of the members of each group.
-    std::vector<std::vector<int>> members_of(const std::vector<int> &group)
-    {
-      std::vector<std::vector<int>> members(group.size());
-      for (std::size_t i = 0; i < group.size(); ++i)
-        members[group[i]].push_back(static_cast<int>(i));
-      members.erase(std::remove_if(members.begin(), members.end(), [](const auto &list) { return list.empty(); }), members.end());
-      return members;
+      DenseMatrix result = (X.adjoint() * Y).cwiseAbs2();
+      for (const std::vector<int> &members : members_of(cluster))
+        if (members.size() > 1)
+          result(Eigen::all, members).colwise() =
+            (X.adjoint() * orthonormal_basis(Y(Eigen::all, members)).Q).rowwise().squaredNorm().eval();
+      return result;
     }
 
     std::vector<int> chosen_from(const std::vector<int> &list, const std::vector<int> &positions)
@@ -108,18 +90,11 @@ namespace Squeal
       /// Positions in @p modes that belong together: multiple λ and, where asked, pairs about to coalesce.
       std::vector<std::vector<int>> groups(const std::vector<int> &modes, const bool join_parallel) const
       {
-        std::vector<int> group(modes.size());
-        std::iota(group.begin(), group.end(), 0);
-        for (std::size_t i = 0; i < modes.size(); ++i)
-          for (std::size_t j = 0; j < i; ++j)
-            if (group[i] != group[j] && (cluster[modes[i]] == cluster[modes[j]] || (join_parallel && are_parallel(modes[i], modes[j]))))
-              join(group, group[i], group[j]);
-        return members_of(group);
-      }
-
-      bool are_parallel(const int i, const int j) const
-      {
-        return std::norm(right.col(i).dot(right.col(j))) > parallel && std::norm(left.col(i).dot(left.col(j))) > parallel;
+        return members_of(connected_groups(static_cast<int>(modes.size()), [&](const int i, const int j) {
+          const int  p = modes[i], q = modes[j];
+          const auto are_parallel = [p, q](const ComplexDenseMatrix &X) { return std::norm(X.col(p).dot(X.col(q))) > parallel; };
+          return cluster[p] == cluster[q] || (join_parallel && are_parallel(right) && are_parallel(left));
+        }));
       }
 
       /// Whether all these modes are one cluster.
@@ -141,9 +116,13 @@ namespace Squeal
 
       ModeLinks run()
       {
-        overlap_modes();
-        const auto component = components(a.size(), b.size(), [&](const int i, const int j) { return overlaps(i, j) > weakest_overlap; });
-        for (const std::vector<int> &members : members_of(component))
+        overlaps = DenseMatrix::Zero(a.size(), b.size());
+        for (const auto vectors : {&Side::right, &Side::left})
+          overlaps += 0.5 * shares(a.*vectors, b.*vectors, b.cluster).cwiseMax(shares(b.*vectors, a.*vectors, a.cluster).transpose());
+        const auto overlap = [&](const int j, const int i) {
+          return i < a.size() && j >= a.size() && overlaps(i, j - a.size()) > weakest_overlap;
+        };
+        for (const std::vector<int> &members : members_of(connected_groups(a.size() + b.size(), overlap)))
           {
             std::vector<int> first, second;
             for (const int m : members)
@@ -152,58 +131,19 @@ namespace Squeal
             if (!first.empty())
               sort_block(first, second);
           }
-        links.resolved = std::all_of(links.blocks.begin(), links.blocks.end(),
-                                     [&](const ModeBlock &block) {
-                                       return block.resolved || (in_band(a, block.first) == 0 && in_band(b, block.second) == 0);
-                                     }) &&
-                         real_values_account_for_the_rest();
+        // Modes of the band without counterpart have to be as many as pairs of real values came and went
+        const int lost = in_band(a, links.lost), gained = in_band(b, links.gained);
+        links.resolved = 2 * (lost - gained) == b.point.n_real() - a.point.n_real() && (lost == 0 || gained == 0);
+        for (const ModeBlock &block : links.blocks)
+          links.resolved &= block.resolved || (in_band(a, block.first) == 0 && in_band(b, block.second) == 0);
         return links;
       }
 
     private:
-      /// Mean of right and left overlaps; for multiple λ the share in their span, from either side.
-      void overlap_modes()
-      {
-        overlaps = DenseMatrix::Zero(a.size(), b.size());
-        for (const auto vectors : {&Side::right, &Side::left})
-          {
-            const ComplexDenseMatrix &X = a.*vectors, &Y = b.*vectors;
-            DenseMatrix               share = (X.adjoint() * Y).cwiseAbs2();
-            for (const std::vector<int> &cluster : members_of(b.cluster))
-              if (cluster.size() > 1)
-                {
-                  const Eigen::VectorXd in_span = (X.adjoint() * span(Y, cluster)).rowwise().squaredNorm();
-                  for (const int j : cluster)
-                    share.col(j) = share.col(j).cwiseMax(in_span);
-                }
-            for (const std::vector<int> &cluster : members_of(a.cluster))
-              if (cluster.size() > 1)
-                {
-                  const Eigen::RowVectorXd in_span = (span(X, cluster).adjoint() * Y).colwise().squaredNorm();
-                  for (const int i : cluster)
-                    share.row(i) = share.row(i).cwiseMax(in_span);
-                }
-            overlaps += 0.5 * share;
-          }
-      }
-
-      /// Orthonormal basis of some columns.
-      static ComplexDenseMatrix span(const ComplexDenseMatrix &X, const std::vector<int> &chosen)
-      {
-        return orthonormal_basis(X(Eigen::all, chosen)).Q;
-      }
-
       int in_band(const Side &side, const std::vector<int> &modes) const
       {
         return static_cast<int>(
           std::count_if(modes.begin(), modes.end(), [&](const int i) { return side.point.lambda[i].imag() <= limit; }));
-      }
-
-      /// 1 for equal λ, falls to 0 with their distance.
-      double closeness(const int i, const int j) const
-      {
-        const Complex x = a.point.lambda[i], y = b.point.lambda[j];
-        return 1. / (1. + std::abs(x - y) / std::abs(x));
       }
 
       /// Leaves as many modes on either side, those most alike.
@@ -215,7 +155,7 @@ namespace Squeal
           return;
         const std::vector<int> match = best_assignment(few.size(), many.size(), [&](const int p, const int q) {
           const int i = swapped ? many[q] : few[p], j = swapped ? few[p] : many[q];
-          return overlaps(i, j) + weakest_overlap * closeness(i, j);
+          return overlaps(i, j) + weakest_overlap / (1. + std::abs(a.point.lambda[i] - b.point.lambda[j]) / std::abs(a.point.lambda[i]));
         });
         const std::vector<int> kept  = chosen_from(many, match);
         for (const int m : many)
@@ -248,13 +188,13 @@ namespace Squeal
         DenseMatrix T = DenseMatrix::Zero(n, n);
         for (const auto vectors : {&Side::right, &Side::left})
           {
-            const Transformation X = transformation((a.*vectors)(Eigen::all, first), (b.*vectors)(Eigen::all, second));
-            if (!X.exists)
+            const auto X = transformation((a.*vectors)(Eigen::all, first), (b.*vectors)(Eigen::all, second));
+            if (!X)
               {
                 links.blocks.push_back({first, second, false});
                 return;
               }
-            T += 0.5 * X.X.cwiseProduct(X.inverse.transpose()).real();
+            T += 0.5 * X->X.cwiseProduct(X->inverse.transpose()).real();
           }
 
         for (const bool join_parallel : {false, true})
@@ -270,19 +210,20 @@ namespace Squeal
       bool divide_by_parts(const std::vector<int> &first, const std::vector<int> &second, const DenseMatrix &T, const bool join_parallel)
       {
         const auto rows = a.groups(first, join_parallel), columns = b.groups(second, join_parallel);
-        const auto component = components(rows.size(), columns.size(), [&](const int g, const int h) {
-          return T(rows[g], columns[h]).sum() > negligible_part * std::min(rows[g].size(), columns[h].size());
-        });
+        const int  n           = rows.size();
+        const auto share_modes = [&](const int h, const int g) {
+          return g < n && h >= n && T(rows[g], columns[h - n]).sum() > negligible_part * std::min(rows[g].size(), columns[h - n].size());
+        };
 
         std::vector<std::pair<std::vector<int>, std::vector<int>>> parts;
-        for (const std::vector<int> &groups : members_of(component))
+        for (const std::vector<int> &groups : members_of(connected_groups(n + columns.size(), share_modes)))
           {
             std::vector<int> p, q;
             for (const int g : groups)
-              if (g < static_cast<int>(rows.size()))
+              if (g < n)
                 p.insert(p.end(), rows[g].begin(), rows[g].end());
               else
-                q.insert(q.end(), columns[g - rows.size()].begin(), columns[g - rows.size()].end());
+                q.insert(q.end(), columns[g - n].begin(), columns[g - n].end());
             if (p.size() != q.size())
               return false;
             parts.emplace_back(chosen_from(first, p), chosen_from(second, q));
@@ -294,14 +235,6 @@ namespace Squeal
         return true;
       }
 
-      /// Whether modes of the band without counterpart are as many as pairs of real values came and went.
-      bool real_values_account_for_the_rest() const
-      {
-        const auto n_real = [](const ChartPoint &p) { return static_cast<int>(p.real_values.size()) + p.n_zeros; };
-        const int  lost = in_band(a, links.lost), gained = in_band(b, links.gained);
-        return 2 * (lost - gained) == n_real(b.point) - n_real(a.point) && (lost == 0 || gained == 0);
-      }
-
       const double limit;
       const Side   a, b;
       DenseMatrix  overlaps;
@@ -311,13 +244,9 @@ namespace Squeal
 
   std::vector<int> mode_clusters(const std::vector<Complex> &lambda)
   {
-    std::vector<int> cluster(lambda.size());
-    std::iota(cluster.begin(), cluster.end(), 0);
-    for (std::size_t i = 0; i < lambda.size(); ++i)
-      for (std::size_t j = 0; j < i; ++j)
-        if (cluster[i] != cluster[j] && !distinguishable.exceeded_by(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i])))
-          join(cluster, cluster[i], cluster[j]);
-    return cluster;
+    return connected_groups(static_cast<int>(lambda.size()), [&](const int i, const int j) {
+      return !distinguishable.exceeded_by(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i]));
+    });
   }
 
   OrthonormalBasis<ComplexDenseMatrix> orthonormal_basis(const ComplexDenseMatrix &X)
@@ -334,16 +263,15 @@ namespace Squeal
     return result;
   }
 
-  Transformation transformation(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
+  std::optional<Transformation> transformation(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second)
   {
-    const auto     basis = orthonormal_basis(first);
-    Transformation result{basis.Q.adjoint() * second, {}, false};
-    if ((basis.R.diagonal().array() == 0.).any() || !result.X.allFinite())
-      return result;
-    basis.R.triangularView<Eigen::Upper>().solveInPlace(result.X);
-    result.inverse = result.X.inverse();
-    result.exists  = result.inverse.allFinite();
-    return result;
+    const auto         basis = orthonormal_basis(first);
+    ComplexDenseMatrix X     = basis.Q.adjoint() * second;
+    if ((basis.R.diagonal().array() == 0.).any() || !X.allFinite())
+      return {};
+    basis.R.triangularView<Eigen::Upper>().solveInPlace(X);
+    const ComplexDenseMatrix inverse = X.inverse();
+    return inverse.allFinite() ? std::optional(Transformation{X, inverse}) : std::nullopt;
   }
 
   int pair_sign(const Complex &lambda_1, const Complex &lambda_2)

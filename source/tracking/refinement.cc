@@ -16,11 +16,6 @@ namespace Squeal
     /// Steps of a search that may halve less than the interval before it is halved.
     constexpr int patience = 2;
 
-    bool decays(const Complex &lambda)
-    {
-      return lambda.real() < 0. && !is_neutral(lambda);
-    }
-
     bool located(const TrackedModes &modes, const EventSearch &search)
     {
       return search.multiple || modes.width(search.interval) <= modes.tolerance(search.interval) ||
@@ -74,14 +69,15 @@ namespace Squeal
               continue;
             const auto X = transformation(with_rows(a.right(Eigen::all, std::vector{modes.mode(p, k), modes.mode(q, k)}), r),
                                           with_rows(b.right(Eigen::all, std::vector{modes.mode(p, k + 1), modes.mode(q, k + 1)}), r));
-            if (!X.exists)
+            if (!X)
               continue;
             const double  t            = before.imag() / (before.imag() - after.imag());
-            const Complex product      = -X.X(0, 0) * X.inverse(0, 1) * X.X(1, 1) * X.inverse(1, 0) * after * after;
+            const Complex product      = -X->X(0, 0) * X->inverse(0, 1) * X->X(1, 1) * X->inverse(1, 0) * after * after;
             const Complex discriminant = 4. * t * t * product;
             const double  gap          = std::sqrt(std::abs(discriminant));
             // Frequencies that only repel each other do so over gap / slope
-            const bool   repel  = discriminant.real() < 0. && is_neutral(modes.lambda(p, k)) && is_neutral(modes.lambda(q, k));
+            const bool repel =
+              discriminant.real() < 0. && modes.verdict(p, k) == Verdict::neutral && modes.verdict(q, k) == Verdict::neutral;
             const double extent = gap * modes.width(k) / std::abs(after.imag() - before.imag());
             if (gap > least && !(repel && extent < modes.options.smallest_step))
               {
@@ -153,7 +149,7 @@ namespace Squeal
           if (modes.mode(p, k) < 0 || modes.mode(p, k + 1) < 0)
             continue;
           const Complex before = modes.lambda(p, k), after = modes.lambda(p, k + 1);
-          if (decays(before) && decays(after))
+          if (modes.verdict(p, k) == Verdict::stable && modes.verdict(p, k + 1) == Verdict::stable)
             look({EventSearch::growth, k, p, -1, true});
           for (int q = 0; q < p; ++q)
             if (modes.mode(q, k) >= 0 && modes.mode(q, k + 1) >= 0)

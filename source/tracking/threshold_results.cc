@@ -9,8 +9,6 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// An estimated error may be that much too small.
-    constexpr double safety = 3.;
     /// δ² / |λ|² of pairs far enough from their coalescence for corrections to be read there.
     constexpr double separate = 1e-6;
 
@@ -35,37 +33,33 @@ namespace Squeal
     /// |df/dμ| over the points around an interval.
     double slope(const TrackedModes &modes, const EventSearch &search)
     {
-      int first = search.interval, last = search.interval + 1;
-      if (search_value(modes, search, first - 1))
-        --first;
-      if (search_value(modes, search, last + 1))
-        ++last;
+      const int  k     = search.interval;
+      const int  first = search_value(modes, search, k - 1) ? k - 1 : k, last = search_value(modes, search, k + 2) ? k + 2 : k + 1;
       const auto fl = search_value(modes, search, first), fr = search_value(modes, search, last);
       return fl && fr ? std::abs(*fr - *fl) / (modes.mu(last) - modes.mu(first)) : 0.;
     }
 
     /**
-     * What corrections change of Re λ or Im λ to second order, the latter without regard to its
-     * sign; no more than the uncertainty of λ, which is what remains where no corrections are known.
+     * What corrections change of Re λ (growth) or Im λ to second order, the latter without regard to its sign; no more than the
+     * uncertainty of λ, which is what remains at the real axis and where no corrections are known.
      */
-    double uncertainty_of_lambda(const TrackedModes &modes, const EventSearch &search, double (*part)(const Complex &))
+    double uncertainty_of_lambda(const TrackedModes &modes, const EventSearch &search)
     {
       double result = 0.;
       for (const int k : {search.interval, search.interval + 1})
         if (const int m = modes.mode(search.branch, k); m >= 0)
           {
-            const ChartPoint &point = modes.points[k];
-            const double      bound = m < static_cast<int>(point.uncertainties.size()) ? point.uncertainties[m] : 0.;
-            if (m >= point.corrections.rows() || part == nullptr)
-              {
-                result = std::max(result, bound);
-                continue;
-              }
+            const ChartPoint         &point  = modes.points[k];
+            const double              bound  = m < static_cast<int>(point.uncertainties.size()) ? point.uncertainties[m] : 0.;
             const ComplexDenseMatrix &D      = point.corrections;
-            double                    change = std::abs(part(D(m, m)));
-            for (int j = 0; j < D.cols(); ++j)
-              if (const Complex product = D(m, j) * D(j, m); j != m && product != 0.)
-                change += std::abs(product / (point.lambda[m] - point.lambda[j]));
+            double                    change = bound;
+            if (m < D.rows() && search.kind != EventSearch::real_axis)
+              {
+                change = std::abs(search.kind == EventSearch::growth ? D(m, m).real() : D(m, m).imag());
+                for (int j = 0; j < D.cols(); ++j)
+                  if (const Complex product = D(m, j) * D(j, m); j != m && product != 0.)
+                    change += std::abs(product / (point.lambda[m] - point.lambda[j]));
+              }
             result = std::max(result, std::min(change, bound));
           }
       return result;
@@ -90,24 +84,22 @@ namespace Squeal
         {
           const int start = direction < 0 ? search.interval : search.interval + 1;
           int       best  = -1;
-          for (int k = start; search_value(modes, search, k); k += direction)
+          double    f     = 0.; // at the best point
+          for (int k = start; const auto here = search_value(modes, search, k); k += direction)
             {
-              const double f = *search_value(modes, search, k);
-              if (best >= 0 && (f * *search_value(modes, search, start) < 0. || std::abs(f) < std::abs(*search_value(modes, search, best))))
+              if (best >= 0 && (*here * f < 0. || std::abs(*here) < std::abs(f)))
                 break;
               best = k;
+              f    = *here;
               if (std::abs(f) > separate * std::norm(modes.lambda(search.branch, k)) || !modes.is_refinement[k])
                 break;
             }
-          if (best < 0)
+          if (best < 0 || modes.mu(best) == threshold)
             continue;
-          const double f = std::abs(*search_value(modes, search, best));
-          if (modes.mu(best) == threshold)
-            continue;
-          const double distance = std::abs(modes.mu(best) - threshold), change = change_of_discriminant(modes, search, best);
-          if (f > 0.)
+          const double distance = std::abs(modes.mu(best) - threshold), part = change_of_discriminant(modes, search, best) / std::abs(f);
+          if (f != 0.)
             // δ² ~ (μ − μ_0)² where a double mode grows at once, else linear
-            result = std::max(result, search.at_once || search.multiple ? distance * std::sqrt(change / f) : distance * change / f);
+            result = std::max(result, distance * (search.at_once || search.multiple ? std::sqrt(part) : part));
         }
       return result;
     }
@@ -115,22 +107,12 @@ namespace Squeal
     double uncertainty(const TrackedModes &modes, const EventSearch &search, const double threshold)
     {
       if (search.kind == EventSearch::coalescence)
-        return safety * shift_of_coalescence(modes, search, threshold);
-      const auto   real  = [](const Complex &x) { return x.real(); };
-      const auto   imag  = [](const Complex &x) { return x.imag(); };
-      const double error = search.kind == EventSearch::growth      ? uncertainty_of_lambda(modes, search, real) :
-                           search.kind == EventSearch::end_of_band ? uncertainty_of_lambda(modes, search, imag) :
-                                                                     uncertainty_of_lambda(modes, search, nullptr);
-      if (error == 0.)
-        return 0.;
-      const double rate = slope(modes, search);
+        return error_safety * shift_of_coalescence(modes, search, threshold);
+      double error = error_safety * uncertainty_of_lambda(modes, search);
+      // Im λ = √|f| changes by the error: f by 2 √|f| times as much, away from the axis
       if (search.kind == EventSearch::real_axis)
-        {
-          // Im λ = √|f| changes by the error: f by 2 √|f| times as much, away from the axis
-          const int k = search.upward ? search.interval + 1 : search.interval;
-          return safety * 2. * modes.lambda(search.branch, k).imag() * error / rate;
-        }
-      return safety * error / rate;
+        error *= 2. * modes.lambda(search.branch, search.upward ? search.interval + 1 : search.interval).imag();
+      return error == 0. ? 0. : error / slope(modes, search);
     }
 
     Complex lambda_at(const TrackedModes &modes, const EventSearch &search, const double threshold)
@@ -172,15 +154,11 @@ namespace Squeal
     int expected = 0;
     for (int k = 0; k < modes.n_points(); ++k)
       {
-        const auto &values = modes.points[k].lambda;
-        ChartCount  count;
-        count.friction_coefficient = modes.mu(k);
-        count.n_modes              = static_cast<int>(std::count_if(
-                       values.begin(), values.end(), [&](const Complex &l) { return l.imag() <= modes.options.largest_circular_frequency; }));
-        expected                   = k == 0 ? count.n_modes : expected + change[k];
-        count.n_expected           = expected;
-        count.n_overdamped         = static_cast<int>(modes.points[k].real_values.size()) / 2;
-        result.counts.push_back(count);
+        const auto &values  = modes.points[k].lambda;
+        const int   n_modes = std::count_if(values.begin(), values.end(),
+                                            [&](const Complex &l) { return l.imag() <= modes.options.largest_circular_frequency; });
+        expected            = k == 0 ? n_modes : expected + change[k];
+        result.counts.push_back({modes.mu(k), n_modes, expected, static_cast<int>(modes.points[k].real_values.size()) / 2});
         if (k + 1 < modes.n_points() && !modes.intervals[k].links->resolved)
           ++result.n_doubtful_steps;
       }

@@ -55,6 +55,12 @@ namespace Squeal
 
     /// Intervals of this width are not searched further.
     double tolerance(int k) const;
+
+    /// Of a branch at a point, from its λ alone: what rounding leaves open counts as neutral.
+    Verdict verdict(const int branch, const int k) const
+    {
+      return verdict_of(lambda(branch, k));
+    }
   };
 
   /// Divides the modes of all points into branches, by the links of neighbouring points.
@@ -96,7 +102,4 @@ namespace Squeal
 
   /// The chart, with what the searches have found.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);
-
-  /// |Re λ| / Im λ is nothing but rounding errors.
-  bool is_neutral(const std::complex<double> &lambda);
 } // namespace Squeal

@@ -5,7 +5,8 @@
 #include <squeal/contact/contact_operators.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/eigen/symmetric_modes.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/communication.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <gtest/gtest.h>
 
@@ -49,7 +50,7 @@ namespace
               2,
               MPI_COMM_WORLD)
       , still(body_terms(model, mounted({})))
-      , kernel(component_kernel(model, {}, {true, false, false}, ContactBoundary::free))
+      , kernel(component_kernel(model, {}, Component::disc, ContactBoundary::free))
     {
       const SecondOrderSystem all = sparse_matrices(still.terms, still.values);
       SymmetricModesOptions   options;
@@ -67,13 +68,13 @@ namespace
     /// Part of a mode's square norm along the axis.
     double axial_share(const int mode) const
     {
-      const MultiVector u        = *kernel * view(*modes.vectors, mode, 1);
-      double            local[2] = {0., 0.}, sums[2];
+      const MultiVector u       = *kernel * view(*modes.vectors, mode, 1);
+      double            sums[2] = {0., 0.};
       for (const Node &node : model.nodes())
         for (int d = 0; d < 3; ++d)
-          if (const int i = node.dofs[d] >= 0 ? u.Map().LID(node.dofs[d]) : -1; i >= 0)
-            local[d == 2] += u[0][i] * u[0][i];
-      u.Comm().SumAll(local, sums, 2);
+          if (const int i = u.map().place(node.dofs[d]); i >= 0)
+            sums[d == 2] += u(i, 0) * u(i, 0);
+      sum_over_processes(u.communicator(), sums, 2);
       return sums[1] / (sums[0] + sums[1]);
     }
 
@@ -93,8 +94,6 @@ namespace
     SymmetricModes                      modes;
   };
 } // namespace
-
-
 
 TEST(Rotation, IsThatOfLinearFields)
 {
@@ -135,8 +134,6 @@ TEST(Rotation, IsThatOfLinearFields)
       EXPECT_EQ(product(pin, N, pin), 0.);
     }
 }
-
-
 
 TEST(Rotation, SplitsDoubletsByTheDopplerShift)
 {

@@ -39,8 +39,6 @@ TEST(Conventions, WithoutPeriod)
   EXPECT_EQ(mode.damping_ratio, 0.);
 }
 
-
-
 TEST(Assignment, AgreesWithTryingAll)
 {
   std::mt19937                           random(7);
@@ -82,8 +80,6 @@ TEST(Assignment, AgreesWithTryingAll)
   EXPECT_TRUE(best_assignment(0, 3, [](int, int) { return 1.; }).empty());
 }
 
-
-
 TEST(EnumTables, NamesThereAndBack)
 {
   EXPECT_EQ(enum_names<RealSolver>(), (std::vector<std::string>{"Anasazi", "ARPACK"}));
@@ -91,16 +87,12 @@ TEST(EnumTables, NamesThereAndBack)
     EXPECT_EQ(enum_value<RealSolver>(to_string(solver)), solver);
 }
 
-
-
 TEST(Errors, SayWhatWhereAndWhatToChange)
 {
   const std::string message = ParameterError("the load is zero", "parameter Operation/Load", "raise it").what();
   EXPECT_EQ(message, "the load is zero\n  where:  parameter Operation/Load\n  change: raise it");
   EXPECT_THROW(throw MeshError("a", "b", "c"), Error);
 }
-
-
 
 TEST(ProgressChannel, RecordsStepsInOrder)
 {

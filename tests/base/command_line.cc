@@ -22,8 +22,6 @@ TEST(CommandLines, AreTakenInAnyOrder)
   EXPECT_FALSE(parse_command_line({}).output);
 }
 
-
-
 TEST(CommandLines, QuoteTheWordThatIsWrong)
 {
   for (const auto &[words, wrong] :

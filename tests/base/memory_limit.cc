@@ -36,15 +36,11 @@ namespace
   };
 } // namespace
 
-
-
 TEST_F(MemoryLimits, WithoutGroups)
 {
   EXPECT_EQ(available_memory(root), 4000. * 1024.);
   EXPECT_TRUE(std::isinf(available_memory(root / "nowhere")));
 }
-
-
 
 TEST_F(MemoryLimits, OfGroupsOfTheSecondVersion)
 {
@@ -62,8 +58,6 @@ TEST_F(MemoryLimits, OfGroupsOfTheSecondVersion)
   EXPECT_EQ(available_memory(root), 0.);
 }
 
-
-
 TEST_F(MemoryLimits, OfGroupsOfTheFirstVersion)
 {
   write("proc/self/cgroup", "5:cpu,cpuacct:/elsewhere\n4:hugetlb,memory:/outside/of/the/container\n0::/\n");
@@ -75,8 +69,6 @@ TEST_F(MemoryLimits, OfGroupsOfTheFirstVersion)
   write("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
   EXPECT_EQ(available_memory(root), 4000. * 1024.);
 }
-
-
 
 TEST(MemoryLimit, OfThisMachine)
 {

@@ -38,8 +38,6 @@ namespace
   };
 } // namespace
 
-
-
 TEST_F(MpiEnvironment, OfMoreProcessesThanCores)
 {
   setenv(n_processes, "1", 1);
@@ -55,8 +53,6 @@ TEST_F(MpiEnvironment, OfMoreProcessesThanCores)
   EXPECT_EQ(std::getenv(is_isolated), nullptr);
   EXPECT_EQ(std::getenv(has_folder), nullptr);
 }
-
-
 
 TEST_F(MpiEnvironment, WithoutMpirun)
 {

@@ -3,6 +3,7 @@
 
 #include <squeal/bases/component_modes.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/replicate.h>
 
 #include <gtest/gtest.h>
@@ -50,8 +51,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(NodalMasses, AddUpToTheMass)
 {
   const Scene s      = disc_scene();
@@ -64,8 +63,6 @@ TEST(NodalMasses, AddUpToTheMass)
     }
   EXPECT_NEAR(disc / (MaterialParameters().disc.density * volume(s.mesh, 0)), 1., 1e-13);
 }
-
-
 
 TEST(DiscLabels, AnalyticFields)
 {
@@ -97,8 +94,6 @@ TEST(DiscLabels, AnalyticFields)
   EXPECT_EQ(texts(disc_labels(s.model, masses, columns_of(fields))), expected);
 }
 
-
-
 TEST(DiscLabels, TheLargerPartDecides)
 {
   // In-plane modes have radial and circumferential parts of the same harmonic.
@@ -113,8 +108,6 @@ TEST(DiscLabels, TheLargerPartDecides)
   };
   EXPECT_EQ(texts(disc_labels(s.model, masses, columns_of({mixed(1., 0.9), mixed(0.9, 1.)}))), (std::vector<std::string>{"R0-3", "C0-3"}));
 }
-
-
 
 TEST(PinLabels, AnalyticFields)
 {
@@ -142,8 +135,6 @@ TEST(PinLabels, AnalyticFields)
                                          stretching(0.)}))),
             (std::vector<std::string>{"F1", "F1", "T1", "F2", "L1", "T2", "L2"}));
 }
-
-
 
 TEST(PinLabels, APinThatHardlyTouchesBendsAboutItsOwnAxis)
 {
@@ -189,8 +180,6 @@ TEST(PinLabels, ModesOfRoundPinsInOrder)
   EXPECT_NEAR(torsion.at(0) / torsion.at(1), 1., 2e-3);
 }
 
-
-
 TEST(ModeLabels, OnePrinter)
 {
   const ModeLabel disc = {A, 0, 4, 0, DoubletSign::minus}, pin = {T, 0, 0, 1, DoubletSign::plus};
@@ -218,8 +207,6 @@ TEST(MarkDoublets, TheOneThatGrowsMoreIsPlus)
   mark_doublets(labels, {100., 0., 0., 50., 0., 0., 3., 2.});
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-4 +", "A0-4 -", "A0-5 -", "A0-5 +", "R0-1 -", "R0-1 +", "T1 +", "T1 -"}));
 }
-
-
 
 namespace
 {
@@ -273,8 +260,6 @@ TEST(Identify, ComponentModesAreThemselves)
     }
 }
 
-
-
 TEST(Identify, SharesOfMixturesAndPhases)
 {
   const References r;
@@ -283,19 +268,17 @@ TEST(Identify, SharesOfMixturesAndPhases)
   const MultiVector a = view(*r.disc.vectors, pair, 1), b = view(*r.disc.vectors, pair + 1, 1), c = view(*r.disc.vectors, single, 1);
 
   // A turned doublet is wholly of its label, also with a complex factor; 3:4 gives shares 0.36 and 0.64 of any size.
-  MultiVector re(a.Map(), 2), im(a.Map(), 2);
-  re(0)->Update(0.6, *a(0), -0.8, *b(0), 0.);
-  im(0)->Update(2., *a(0), 1., *b(0), 0.);
-  re(1)->Update(3., *a(0), 0., *c(0), 0.);
-  im(1)->Update(0., *a(0), 4., *c(0), 0.);
+  MultiVector re(a.map(), 2), im(a.map(), 2);
+  re.col(0)        = 0.6 * a.col(0) - 0.8 * b.col(0);
+  im.col(0)        = 2. * a.col(0) + b.col(0);
+  re.col(1)        = 3. * a.col(0) + 0. * c.col(0);
+  im.col(1)        = 0. * a.col(0) + 4. * c.col(0);
   const auto found = r.identities(re, &im);
   EXPECT_EQ(found[0], labels[pair]);
   EXPECT_NEAR(found[0].participation, 1., 1e-10);
   EXPECT_EQ(found[1], labels[single]);
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
 }
-
-
 
 TEST(Identify, ModesUnlikeAllAreUnnamed)
 {
@@ -309,27 +292,23 @@ TEST(Identify, ModesUnlikeAllAreUnnamed)
   EXPECT_EQ(texts(found), std::vector<std::string>(2, "unnamed"));
 }
 
-
-
 TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
 {
   // Three vectors that all resemble a doublet most: the third gets its second label.
   const References r;
   const auto      &labels   = r.disc.labels;
   const auto [pair, single] = r.doublet_and_other();
-  MultiVector re(r.disc.vectors->Map(), 3);
+  MultiVector re(r.disc.vectors->map(), 3);
   for (int j = 0; j < 3; ++j)
     {
-      re(j)->Update(1., *(*r.disc.vectors)(pair), 0.2 * j, *(*r.disc.vectors)(pair + 1), 0.);
-      re(j)->Update(0.1 + 0.3 * (j == 1), *(*r.disc.vectors)(single), 1.);
+      re.col(j) = r.disc.vectors->col(pair) + 0.2 * j * r.disc.vectors->col(pair + 1);
+      re.col(j) += (0.1 + 0.3 * (j == 1)) * r.disc.vectors->col(single);
     }
   const auto found = r.identities(re);
   EXPECT_EQ(found[0], labels[pair]);
   EXPECT_EQ(found[1], labels[single]);
   EXPECT_EQ(found[2], labels[pair]);
 }
-
-
 
 TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
 {
@@ -364,8 +343,6 @@ TEST(RigidBody, AFreeDiscHasSixMotionsAloneAndThreeCoupled)
   for (const int j : {2, 3, 4})
     EXPECT_GT(force[j], 1e-9 * K * size[j]) << j;
 }
-
-
 
 TEST(RigidBody, AMountedDiscNeedsNoShift)
 {

@@ -37,14 +37,12 @@ namespace
         SCOPED_TRACE(frequency);
         const double omega = circular_frequency(frequency);
         const int    n     = count_modes(*scene.coupled.stiffness, *scene.coupled.mass, omega * omega, "a scene");
-        const double ratio = expected_number_of_modes(mesh, materials, omega).coupled() / n;
+        const double ratio = expected_number_of_modes(mesh, materials, omega) / n;
         EXPECT_GT(ratio, 0.5);
         EXPECT_LT(ratio, 2.);
       }
   }
 } // namespace
-
-
 
 TEST(ModeCountEstimate, AgreesWithTheInertiaOverTheBand)
 {
@@ -71,8 +69,8 @@ TEST(ModeCountEstimate, SlenderPinsBend)
 TEST(ModeCountEstimate, GrowsWithTheCubeOfTheFrequencyInTheEnd)
 {
   const HexMesh mesh = four_pins();
-  const double  n    = expected_number_of_modes(mesh, mounted(), 1e8).coupled();
-  EXPECT_NEAR(expected_number_of_modes(mesh, mounted(), 2e8).coupled() / n, 8., 0.1);
+  const double  n    = expected_number_of_modes(mesh, mounted(), 1e8);
+  EXPECT_NEAR(expected_number_of_modes(mesh, mounted(), 2e8) / n, 8., 0.1);
 }
 
 TEST(WaveResolution, RefusesElementsLongerThanAShearWave)

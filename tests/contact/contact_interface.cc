@@ -47,9 +47,9 @@ namespace
     return std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin();
   }
 
-  double dot(const Point3 &a, const Point3 &b)
+  double dot(const Eigen::Vector3d &a, const Eigen::Vector3d &b)
   {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    return a.dot(b);
   }
 
   /// Area of the quadrilaterals under the pins (plane faces).
@@ -66,8 +66,6 @@ namespace
     return area;
   }
 } // namespace
-
-
 
 TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 {
@@ -101,9 +99,9 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
           // n outwards, t along e_θ, b = n × t: outwards on top, inwards below
           const double side = node.position[2] > 0. ? 1. : -1.;
           EXPECT_EQ(node.side(), side);
-          EXPECT_EQ(node.normal, (Point3{{0., 0., side}}));
-          const Point3 e_theta = {{-node.position[1] / r, node.position[0] / r, 0.}},
-                       e_r     = {{node.position[0] / r, node.position[1] / r, 0.}};
+          EXPECT_EQ(node.normal, Eigen::Vector3d(0., 0., side));
+          const Eigen::Vector3d e_theta(-node.position[1] / r, node.position[0] / r, 0.),
+            e_r(node.position[0] / r, node.position[1] / r, 0.);
           EXPECT_NEAR(dot(node.sliding, e_theta), 1., 1e-15);
           EXPECT_NEAR(dot(node.radial, e_r), -side, 1e-15);
           EXPECT_NEAR(dot(negative[c].sliding, e_theta), -1., 1e-15);
@@ -115,8 +113,6 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
       EXPECT_NEAR(std::abs(area) / std::abs(contact_area(mesh)), 1., 1e-12);
     }
 }
-
-
 
 TEST(ContactInterface, ConicalFacesGetTheirNormals)
 {
@@ -130,8 +126,8 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
   for (const unsigned int degree : {1u, 2u})
     for (const ContactNode &node : pairs(mesh, degree))
       {
-        const double r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope);
-        const Point3 e_r = {{node.position[0] / r, node.position[1] / r, 0.}}, e_theta = {{-e_r[1], e_r[0], 0.}};
+        const double          r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope);
+        const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
         // Faces span 3.75°: their normals differ from the cone's by half of that at the ends of a pin.
         const double tolerance = 1.1 * slope * M_PI / 96.;
         const double side      = node.side();
@@ -150,8 +146,6 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
       }
 }
 
-
-
 TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
 {
   // The disc's rim and bore are curved; the pads' edges there must follow, whatever the shape of the rest of their outline.
@@ -168,8 +162,6 @@ TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
   EXPECT_EQ(n_rim, 5);
   EXPECT_EQ(n_bore, 7);
 }
-
-
 
 TEST(ContactInterface, GapsAreRefused)
 {
@@ -200,8 +192,6 @@ TEST(ContactInterface, GapsAreRefused)
   EXPECT_EQ(refusal(apart), "accepted");
 }
 
-
-
 TEST(ContactInterface, NodesLeftOverOnTheDiscAreRefused)
 {
   // One more face of the upper side belongs to the disc's contact surface.
@@ -218,8 +208,6 @@ TEST(ContactInterface, NodesLeftOverOnTheDiscAreRefused)
   EXPECT_NE(message.find("4 of 25 nodes of disc_contact have no partner on pin_contact"), std::string::npos) << message;
 }
 
-
-
 TEST(ContactInterface, ANodeInTwoPairsIsRefused)
 {
   // Two pins side by side: the disc's nodes between them would touch both.
@@ -228,8 +216,6 @@ TEST(ContactInterface, ANodeInTwoPairsIsRefused)
   EXPECT_NE(message.find("a node of the disc touches two pin nodes"), std::string::npos) << message;
   EXPECT_NE(message.find("separate the pins"), std::string::npos) << message;
 }
-
-
 
 TEST(ContactInterface, AClampedContactNodeIsRefused)
 {
@@ -242,15 +228,11 @@ TEST(ContactInterface, AClampedContactNodeIsRefused)
   EXPECT_NE(message.find("a contact node is clamped"), std::string::npos) << message;
 }
 
-
-
 TEST(ContactInterface, ANodeOnTheAxisIsRefused)
 {
   const std::string message = refusal(extrude(round_plan(0., 0.03, 1), layers(1, 1)));
   EXPECT_NE(message.find("a contact node lies on the disc's axis"), std::string::npos) << message;
 }
-
-
 
 TEST(RadialDissipation, SharesTheLoadOfEachSide)
 {

@@ -3,6 +3,7 @@
 
 #include <squeal/contact/updated_inverse.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/krylov_modes.h>
 
 #include <gtest/gtest.h>
@@ -59,15 +60,19 @@ namespace
   {
     return max_norm(*add(1., A, -1., B)) / max_norm(B);
   }
+
+  bool has_no_reaction_to_velocity(const CoupledSystem &system)
+  {
+    return std::none_of(system.terms.begin(), system.terms.end(),
+                        [](const Term &term) { return term.power == 1 && term.coefficient.contains(SystemParameter::friction); });
+  }
 } // namespace
-
-
 
 TEST_P(Contact, OperatorsAreOrthogonal)
 {
   const Scene s   = scene(GetParam());
   const auto &P_n = *s.contact.normal, &P_t = *s.contact.tangential, &P_b = *s.contact.radial;
-  const auto  two = Testing::diagonal(P_n.RowMap(), [](int) { return 2.; });
+  const auto  two = Testing::diagonal(P_n.rows(), [](int) { return 2.; });
   for (const SparseMatrix *P : {&P_n, &P_t, &P_b})
     EXPECT_LT(difference(*multiply(*P, *P, false, true), *two), 1e-15);
   const std::vector<std::pair<const SparseMatrix *, const SparseMatrix *>> pairs = {{&P_n, &P_t}, {&P_n, &P_b}, {&P_t, &P_b}};
@@ -75,64 +80,54 @@ TEST_P(Contact, OperatorsAreOrthogonal)
     EXPECT_LT(max_norm(*multiply(*P, *Q, false, true)), 1e-15);
 }
 
-
-
 TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)
 {
   const Scene         s   = scene(GetParam());
   const SparseMatrix &T_c = *s.contact.kernel;
-  EXPECT_EQ(T_c.NumGlobalRows(), s.model.free_map().NumGlobalElements());
-  EXPECT_EQ(T_c.NumGlobalCols(), T_c.NumGlobalRows() - static_cast<int>(s.interface.size()));
+  EXPECT_EQ(T_c.n_rows(), s.model.free_map().n());
+  EXPECT_EQ(T_c.n_columns(), T_c.n_rows() - static_cast<int>(s.interface.size()));
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, T_c)), 1e-15);
 
   // Full rank, well conditioned: free dofs appear with 1, and a slave follows five others with |ratio| ≤ 1, 1 ≤ TᵀT ≤ 1 + 5.
   const auto G    = multiply(T_c, T_c, true, false);
-  const auto unit = Testing::diagonal(G->RowMap(), [](int) { return 1.; });
+  const auto unit = Testing::diagonal(G->rows(), [](int) { return 1.; });
   EXPECT_EQ(count_negative_eigenvalues(*add(1., *G, -0.999, *unit), "TᵀT - 1"), 0);
   EXPECT_EQ(count_negative_eigenvalues(*add(-1., *G, 6.001, *unit), "6 - TᵀT"), 0);
 
   // A selection where n is a coordinate axis: one entry, a one, in every row
-  bool selection = true;
-  for (int i = 0; i < T_c.NumMyRows(); ++i)
+  bool              selection = true;
+  SparseMatrix::Row row;
+  for (int i = 0; i < T_c.rows().n_local(); ++i)
     {
-      int     n;
-      double *entries;
-      int    *columns;
-      T_c.ExtractMyRowView(i, n, entries, columns);
-      selection = selection && n == 1 && entries[0] == 1.;
+      T_c.get_row(i, row);
+      selection = selection && row.size() == 1 && row[0].second == 1.;
     }
-  int all, mine = selection;
-  T_c.Comm().MinAll(&mine, &all, 1);
-  EXPECT_EQ(all, GetParam().slope == 0.);
+  EXPECT_EQ(dealii::Utilities::MPI::min(static_cast<int>(selection), T_c.communicator()), GetParam().slope == 0.);
 
   // Every displacement with P_n u = 0 is reached: u minus its projection on the columns vanishes.
   MultiVector u = random_vectors(s.model.free_map(), 3);
   multiply_add(-0.5, transpose_times(*s.contact.normal, *s.contact.normal * u), DenseMatrix::Identity(3, 3), 1., u);
   EXPECT_LT(max_norm(replicate(*s.contact.normal * u)), 1e-14);
-  MultiVector coefficients(T_c.DomainMap(), 3);
+  MultiVector coefficients(T_c.columns(), 3);
   factorize_positive_definite(*G, FactorizationLibrary::automatic, "TᵀT")->apply(transpose_times(T_c, u), coefficients);
   MultiVector rest = T_c * coefficients;
-  rest.Update(1., u, -1.);
+  rest             = u - rest;
   EXPECT_LT(max_norm(replicate(rest)), 1e-13);
 }
 
-
-
 TEST_P(Contact, ComponentKernels)
 {
-  const Scene       s = scene(GetParam());
-  const int         n = s.model.free_map().NumGlobalElements(), n_c = s.interface.size();
-  std::vector<bool> disc(3, false), pins(3, true);
-  disc[0] = true;
-  pins[0] = false;
+  const Scene s = scene(GetParam());
+  const int   n = s.model.free_map().n(), n_c = s.interface.size();
+  const auto  disc = Component::disc, pins = Component::pins;
 
   const auto disc_free = component_kernel(s.model, s.interface, disc, ContactBoundary::free);
   const auto pins_free = component_kernel(s.model, s.interface, pins, ContactBoundary::free);
-  EXPECT_EQ(disc_free->NumGlobalCols() + pins_free->NumGlobalCols(), n);
+  EXPECT_EQ(disc_free->n_columns() + pins_free->n_columns(), n);
   EXPECT_EQ(max_norm(*multiply(*disc_free, *pins_free, true, false)), 0.);
 
   const auto pins_sliding = component_kernel(s.model, s.interface, pins, ContactBoundary::sliding);
-  EXPECT_EQ(pins_sliding->NumGlobalCols(), pins_free->NumGlobalCols() - n_c);
+  EXPECT_EQ(pins_sliding->n_columns(), pins_free->n_columns() - n_c);
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, *pins_sliding)), 1e-15);
   EXPECT_EQ(max_norm(*multiply(*disc_free, *pins_sliding, true, false)), 0.);
   // The pins can slide in both directions.
@@ -140,21 +135,17 @@ TEST_P(Contact, ComponentKernels)
   EXPECT_GT(max_norm(*multiply(*s.contact.radial, *pins_sliding)), 0.1);
 }
 
-
-
 TEST_P(Contact, CoupledMatricesAreSymmetric)
 {
   const Scene s = scene(GetParam());
   EXPECT_LT(symmetry_defect(*s.coupled.mass), 1e-14);
   EXPECT_LT(symmetry_defect(*s.coupled.stiffness), 1e-14);
   EXPECT_LT(symmetry_defect(*with_friction(s.coupled, 0.).damping), 1e-14);
-  EXPECT_EQ(normal_reactions(s.coupled, 1), nullptr);
+  EXPECT_TRUE(has_no_reaction_to_velocity(s.coupled));
   EXPECT_LT(symmetry_defect(*with_friction(scene(GetParam(), RadialDissipation::consistent, Bodies::damped).coupled, 0.).damping), 1e-14);
   // The couplings are not empty words: friction is not symmetric.
   EXPECT_GT(symmetry_defect(*with_friction(s.coupled, 0.4).stiffness), 1e-3);
 }
-
-
 
 TEST_P(Contact, FrictionIsThatOfTheUnreducedEquation)
 {
@@ -181,8 +172,6 @@ TEST_P(Contact, FrictionIsThatOfTheUnreducedEquation)
   EXPECT_EQ(difference(*found.damping, *with_friction(s.coupled, 0.).damping), 0.);
 }
 
-
-
 TEST_P(Contact, FrictionTakesItsPartOfTheDampingOfTheBodies)
 {
   // C̃ = T_cᵀ (C − μ/2 P_tᵀ P_n C + C_b) T_c
@@ -202,8 +191,6 @@ TEST_P(Contact, FrictionTakesItsPartOfTheDampingOfTheBodies)
     }
 }
 
-
-
 TEST_P(Contact, DampingTracesTheCoefficients)
 {
   // trace C_b = Σ c_b ‖P_bᵀ row‖² = 2 Σ c_b
@@ -212,19 +199,20 @@ TEST_P(Contact, DampingTracesTheCoefficients)
   double      sum = 0.;
   for (const double c : c_b)
     sum += 2. * c;
-  Epetra_Vector diagonal(s.contact_damping->RowMap());
-  s.contact_damping->ExtractDiagonalCopy(diagonal);
-  double trace = 0., local = 0.;
-  for (int i = 0; i < diagonal.MyLength(); ++i)
-    local += diagonal[i];
-  diagonal.Comm().SumAll(&local, &trace, 1);
-  EXPECT_NEAR(trace / sum, 1., 1e-13);
+  double            trace = 0.;
+  SparseMatrix::Row row;
+  for (int i = 0; i < s.contact_damping->rows().n_local(); ++i)
+    {
+      s.contact_damping->get_row(i, row);
+      for (const auto &[column, value] : row)
+        if (column == s.contact_damping->rows().number(i))
+          trace += value;
+    }
+  EXPECT_NEAR(dealii::Utilities::MPI::sum(trace, s.contact_damping->communicator()) / sum, 1., 1e-13);
   const std::vector<double> zeros(c_b.size(), 0.);
   EXPECT_EQ(contact_damping(s.contact, {zeros, {}}), nullptr);
   EXPECT_EQ(contact_damping(s.contact, {zeros, zeros}), nullptr);
 }
-
-
 
 TEST_P(Contact, DampingOfSpeedDependentFrictionActsAlongT)
 {
@@ -237,7 +225,7 @@ TEST_P(Contact, DampingOfSpeedDependentFrictionActsAlongT)
       c_t.push_back(-3. + c % 5); // of either sign
     }
   const auto diagonal = [&](const std::vector<double> &values) {
-    return Testing::diagonal(P_t.RowMap(), [&](const int c) { return values[c]; });
+    return Testing::diagonal(P_t.rows(), [&](const int c) { return values[c]; });
   };
   const auto both    = contact_damping(s.contact, {c_b, c_t});
   const auto along_t = contact_damping(s.contact, {{}, c_t});
@@ -248,13 +236,11 @@ TEST_P(Contact, DampingOfSpeedDependentFrictionActsAlongT)
   EXPECT_LT(difference(*multiply(P_b, *both), *add(2., *multiply(*diagonal(c_b), P_b), 0., P_b)), 1e-14);
   EXPECT_LT(max_norm(*multiply(*s.contact.normal, *both)), 1e-14 * max_norm(*both));
   const CoupledSystem coupled = couple(s.system, s.contact, {c_b, c_t});
-  EXPECT_EQ(normal_reactions(coupled, 1), nullptr);
+  EXPECT_TRUE(has_no_reaction_to_velocity(coupled));
   const auto without_friction = with_friction(coupled, 0.).damping;
   EXPECT_LT(symmetry_defect(*without_friction), 1e-14);
   EXPECT_EQ(difference(*with_friction(coupled, 0.4).damping, *without_friction), 0.);
 }
-
-
 
 TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
 {
@@ -273,7 +259,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
           inverse.apply(B, X);
           factorize_general(*Q, FactorizationLibrary::automatic, "test matrix")->apply(B, Y);
           MultiVector difference(X);
-          difference.Update(-1., Y, 1.);
+          difference -= Y;
           for (int j = 0; j < 4; ++j)
             EXPECT_LT(column_norms(difference)[j], 1e-10 * column_norms(Y)[j]) << "shift " << shift << ", mu " << mu;
 
@@ -282,7 +268,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
           auto S        = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);
           S             = add(1., *S, shift, *with_friction(s.coupled, 0.).damping);
           MultiVector R = *S * Y;
-          R.Update(-1., B, 1.);
+          R -= B;
           EXPECT_LT(column_norms(R)[0], 1e-10 * column_norms(B)[0]);
         }
       // Attachment modes: S X = A
@@ -293,8 +279,6 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
         1e-10);
     }
 }
-
-
 
 TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 {
@@ -316,9 +300,9 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
 
       const auto r      = normal_reactions(s.coupled, modes.lambda, *modes.real_part, *modes.imaginary_part);
       const auto forces = [&](const DenseMatrix &r) {
-        const MultiVector distributed = distribute(r, s.contact.normal->RowMap());
+        const MultiVector distributed = distribute(r, s.contact.normal->rows());
         MultiVector       F           = transpose_times(*s.contact.normal, distributed);
-        F.Update(mu, transpose_times(*s.contact.tangential, distributed), 1.);
+        F.local() += mu * transpose_times(*s.contact.tangential, distributed).local();
         return F;
       };
       const MultiVector u_re = *s.contact.kernel * *modes.real_part, u_im = *s.contact.kernel * *modes.imaginary_part;
@@ -328,24 +312,24 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
       const MultiVector M_re = *s.system.mass * u_re, M_im = *s.system.mass * u_im;
       const MultiVector f_re = forces(r.real()), f_im = forces(r.imag());
       MultiVector       R_re(K_re), R_im(K_im);
-      R_re.Update(-1., f_re, 1.);
-      R_im.Update(-1., f_im, 1.);
+      R_re -= f_re;
+      R_im -= f_im;
       MultiVector C_re(u_re), C_im(u_im);
-      C_re.PutScalar(0.);
-      C_im.PutScalar(0.);
+      C_re.local().setZero();
+      C_im.local().setZero();
       for (const auto &C : {s.contact_damping, s.system.damping})
         if (C)
           {
-            C_re.Update(1., *C * u_re, 1.);
-            C_im.Update(1., *C * u_im, 1.);
+            C_re += *C * u_re;
+            C_im += *C * u_im;
           }
       for (int j = 0; j < k; ++j)
         {
           const std::complex<double> l = modes.lambda[j], l2 = l * l;
-          R_re(j)->Update(l2.real(), *M_re(j), -l2.imag(), *M_im(j), 1.);
-          R_im(j)->Update(l2.real(), *M_im(j), l2.imag(), *M_re(j), 1.);
-          R_re(j)->Update(l.real(), *C_re(j), -l.imag(), *C_im(j), 1.);
-          R_im(j)->Update(l.real(), *C_im(j), l.imag(), *C_re(j), 1.);
+          R_re.col(j) += l2.real() * M_re.col(j) - l2.imag() * M_im.col(j);
+          R_im.col(j) += l2.real() * M_im.col(j) + l2.imag() * M_re.col(j);
+          R_re.col(j) += l.real() * C_re.col(j) - l.imag() * C_im.col(j);
+          R_im.col(j) += l.real() * C_im.col(j) + l.imag() * C_re.col(j);
         }
       const auto residual_re = column_norms(R_re), residual_im = column_norms(R_im);
       const auto size_re = column_norms(K_re), size_im = column_norms(K_im), force_re = column_norms(f_re), force_im = column_norms(f_im);

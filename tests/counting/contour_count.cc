@@ -35,7 +35,7 @@ namespace
   /// The methods that run on so many processes.
   std::vector<ContourMethod> methods(const CoupledSystem &system)
   {
-    if (system.map().Comm().NumProc() > 1)
+    if (system.map().n_processes() > 1)
       return {ContourMethod::condensed};
     return {ContourMethod::condensed, ContourMethod::sparse_lu};
   }
@@ -72,7 +72,7 @@ namespace
 
     CoupledSystem system() const
     {
-      const Epetra_Map map = rows(2), contact = rows(1);
+      const RowMap map = rows(2), contact = rows(1);
       return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
                         sparse(map, map,
                                [](const int i) {
@@ -102,8 +102,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 {
   const Flutter       flutter;
@@ -128,8 +126,6 @@ TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
       EXPECT_EQ(count(system, {unstable}, contour(1.001 * l.imag(), 1., method))[0].n_modes, 2);
     }
 }
-
-
 
 TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 {
@@ -165,8 +161,6 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
   EXPECT_GT(n_real, 0);
 }
 
-
-
 TEST(ContourCount, AgreesWithTheModesFound)
 {
   const std::vector<double> mu = {0., 0.4, 1.};
@@ -198,8 +192,6 @@ TEST(ContourCount, AgreesWithTheModesFound)
     }
 }
 
-
-
 TEST(ContourCount, OneLessWhereTheBandEndsBelowAMode)
 {
   for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
@@ -227,8 +219,6 @@ TEST(ContourCount, OneLessWhereTheBandEndsBelowAMode)
     }
 }
 
-
-
 TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
 {
   // A pole of the condensed determinant on one side of the contour, a zero on the other
@@ -246,8 +236,6 @@ TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
     }
   EXPECT_GT(n_tested, 5);
 }
-
-
 
 TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
 {
@@ -270,14 +258,12 @@ TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)
   EXPECT_NE(refusal(system, 0.6, contour(omega_max, 0., ContourMethod::sparse_lu)).find("modal damping"), std::string::npos);
 }
 
-
-
 TEST(ContourCount, DampingOfTheBodies)
 {
   const Scene s = scene(RadialDissipation::consistent, damped(mounted()));
   EXPECT_NE(refusal(s.coupled, 0.6, contour(omega_max)).find("damping of the bodies"), std::string::npos);
   const auto sparse = contour(omega_max, 0., ContourMethod::sparse_lu);
-  if (s.coupled.map().Comm().NumProc() > 1)
+  if (s.coupled.map().n_processes() > 1)
     {
       EXPECT_NE(refusal(s.coupled, 0.6, sparse).find("one process"), std::string::npos);
       return;
@@ -285,8 +271,6 @@ TEST(ContourCount, DampingOfTheBodies)
   const auto modes = krylov(s.coupled, 0.6);
   EXPECT_EQ(count(s.coupled, {0.6}, sparse)[0].n_modes, n_inside(modes.lambda, omega_max));
 }
-
-
 
 TEST(ContourCount, ADiscThatMovesFreely)
 {
@@ -310,8 +294,6 @@ TEST(ContourCount, ADiscThatMovesFreely)
     }
 }
 
-
-
 TEST(ContourCount, RefusesAContourOnAMode)
 {
   const Scene  s     = scene(RadialDissipation::none);
@@ -332,8 +314,6 @@ TEST(ContourCount, RefusesAContourOnAMode)
   EXPECT_NE(refusal(s.coupled, 0.4, contour(omega_real)).find("a real mode lies on the contour"), std::string::npos);
   EXPECT_NE(refusal(s.coupled, 0.4, contour(0.)).find("end of the band"), std::string::npos);
 }
-
-
 
 TEST(CondensedDeterminant, DoesNotDependOnHowManyModesAreTakenOut)
 {

@@ -2,8 +2,8 @@
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/linear_algebra/dense_lu.h>
+#include <squeal/linear_algebra/replicate.h>
 
-#include <Epetra_MpiComm.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace
   class DenseOperator : public LinearOperator
   {
   public:
-    DenseOperator(const Epetra_Map &map, const DenseMatrix &A)
+    DenseOperator(const RowMap &map, const DenseMatrix &A)
       : row_map(map)
       , A(A)
     {}
@@ -26,23 +26,16 @@ namespace
     void apply(const MultiVector &X, MultiVector &Y) const override
     {
       // All rows of X on every process: its Gram matrix with unit vectors.
-      MultiVector units(row_map, A.rows());
-      for (int i = 0; i < A.rows(); ++i)
-        if (row_map.LID(i) >= 0)
-          units[i][row_map.LID(i)] = 1.;
-      const DenseMatrix image = A * gram(units, X);
-      for (int j = 0; j < X.NumVectors(); ++j)
-        for (int i = 0; i < row_map.NumMyElements(); ++i)
-          Y[j][i] = image(row_map.GID(i), j);
+      Y = distribute(A * gram(unit_vectors(row_map), X), row_map);
     }
 
-    const Epetra_Map &map() const override
+    const RowMap &map() const override
     {
       return row_map;
     }
 
   private:
-    Epetra_Map  row_map;
+    RowMap      row_map;
     DenseMatrix A;
   };
 
@@ -50,8 +43,7 @@ namespace
   struct DensePencil
   {
     DensePencil(const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K, const double shift)
-      : comm(MPI_COMM_WORLD)
-      , map(static_cast<int>(M.rows()), 0, comm)
+      : map(RowMap::even(M.rows(), MPI_COMM_WORLD))
       , mass(map, M)
       , damping(map, C != nullptr ? *C : DenseMatrix::Zero(M.rows(), M.rows()))
       , stiffness(map, K)
@@ -72,8 +64,7 @@ namespace
       return quadratic_modes(pencil, inverse, options);
     }
 
-    Epetra_MpiComm        comm;
-    Epetra_Map            map;
+    RowMap                map;
     DenseOperator         mass, damping, stiffness, inverse;
     QuadraticPencil       pencil;
     QuadraticModesOptions options;
@@ -86,13 +77,8 @@ namespace
 
   DenseMatrix random_matrix(const int n, const unsigned int seed)
   {
-    const Epetra_MpiComm comm(MPI_COMM_WORLD);
-    const Epetra_Map     map(n, 0, comm);
-    MultiVector          units(map, n);
-    for (int i = 0; i < n; ++i)
-      if (map.LID(i) >= 0)
-        units[i][map.LID(i)] = 1.;
-    return gram(units, random_vectors(map, n, seed));
+    const RowMap map = RowMap::even(n, MPI_COMM_WORLD);
+    return gram(unit_vectors(map), random_vectors(map, n, seed));
   }
 
   /// All eigenvalues of the companion form with 0 < Im λ ≤ largest, ascending by Im.

@@ -2,7 +2,8 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <gtest/gtest.h>
 
@@ -43,16 +44,16 @@ namespace
     EXPECT_TRUE(std::is_sorted(modes.eigenvalues.begin(), modes.eigenvalues.end()));
     EXPECT_LE(modes.eigenvalues.back(), limit * (1 + 1e-7));
     EXPECT_EQ(std::count(modes.eigenvalues.begin(), modes.eigenvalues.end(), 0.), modes.n_rigid_body);
-    ASSERT_EQ(modes.vectors->NumVectors(), n_modes);
+    ASSERT_EQ(modes.vectors->n_columns(), n_modes);
     EXPECT_LT(orthonormality_defect(M, *modes.vectors), 1e-12);
 
-    // Residuals anew, by Epetra's own operations.
+    // Residuals anew.
     for (int j = 0; j < n_modes; ++j)
       {
         const MultiVector x  = view(*modes.vectors, j, 1);
         const MultiVector Kx = K * x, Mx = M * x;
         MultiVector       r(Kx);
-        r.Update(-modes.eigenvalues[j], Mx, 1.);
+        r.local() -= modes.eigenvalues[j] * Mx.local();
         const double scale = modes.eigenvalues[j] == 0. ? limit * column_norms(Mx)[0] : column_norms(Kx)[0];
         EXPECT_LT(column_norms(r)[0], 1e-9 * scale) << "mode " << j;
         EXPECT_NEAR(column_norms(r)[0] / scale, modes.residuals[j], 1e-12 + 0.1 * modes.residuals[j]);
@@ -67,14 +68,12 @@ namespace
   }
 } // namespace
 
-
-
 TEST_P(SymmetricModesBy, LaplacianOnACube)
 {
   // Threefold and sixfold eigenvalues by symmetry, of known value.
   const int    m     = 9;
   const auto   K     = laplacian(m, 1, distribution());
-  const auto   M     = diagonal(K->RowMap(), [](int) { return 2.; });
+  const auto   M     = diagonal(K->rows(), [](int) { return 2.; });
   const double limit = 0.95;
   auto         exact = laplacian_eigenvalues(m, 1);
   for (double &value : exact)
@@ -88,15 +87,13 @@ TEST_P(SymmetricModesBy, LaplacianOnACube)
   expect_values(modes.eigenvalues, exact, 1e-12);
 }
 
-
-
 TEST_P(SymmetricModesBy, TwelvefoldAndTwentyfourfoldEigenvalues)
 {
   // Twelve equal bodies with a simple mode, then threefold ones: 12- and
   // 36-fold exactly, more than the block size; 24 more of a second kind.
   const int            m = 5, n_copies = 12;
   const auto           K     = laplacian(m, n_copies, distribution());
-  const auto           M     = diagonal(K->RowMap(), [](int) { return 1.; });
+  const auto           M     = diagonal(K->rows(), [](int) { return 1.; });
   const double         limit = 1.7;
   const auto           exact = laplacian_eigenvalues(m, n_copies);
   const SymmetricModes modes = symmetric_modes(*K, *M, limit, options);
@@ -104,8 +101,6 @@ TEST_P(SymmetricModesBy, TwelvefoldAndTwentyfourfoldEigenvalues)
   check_modes(*K, *M, limit, modes);
   expect_values(modes.eigenvalues, exact, 1e-12);
 }
-
-
 
 TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
 {
@@ -124,22 +119,20 @@ TEST_P(SymmetricModesBy, FreeBodyHasSixRigidModes)
   for (int j = 6; j < modes.n_counted; ++j)
     EXPECT_NEAR(by_shift.eigenvalues[j] / modes.eigenvalues[j], 1., 1e-9);
   // A translation is a combination of the rigid-body modes.
-  MultiVector translation(body.mass->RowMap(), 1);
-  for (int i = 0; i < translation.MyLength(); ++i)
-    translation[0][i] = body.mass->GRID(i) % 3 == 1;
+  MultiVector translation(body.mass->rows(), 1);
+  for (int i = 0; i < translation.n_local_rows(); ++i)
+    translation(i, 0) = body.mass->rows().number(i) % 3 == 1;
   const MultiVector rigid       = view(*modes.vectors, 0, 6);
   const DenseMatrix coefficient = gram(rigid, *body.mass * translation);
   EXPECT_NEAR(coefficient.squaredNorm() / gram(translation, *body.mass * translation)(0, 0), 1., 1e-10);
 }
-
-
 
 TEST_P(SymmetricModesBy, SmallSystemsAndBandsWithoutModes)
 {
   for (const int m : {1, 2, 3})
     {
       const auto   K     = laplacian(m, 2, distribution());
-      const auto   M     = diagonal(K->RowMap(), [](int) { return 0.5; });
+      const auto   M     = diagonal(K->rows(), [](int) { return 0.5; });
       const double limit = 100.;
       const auto   modes = symmetric_modes(*K, *M, limit, options);
       EXPECT_EQ(modes.n_counted, 2 * m * m * m);
@@ -152,33 +145,27 @@ TEST_P(SymmetricModesBy, SmallSystemsAndBandsWithoutModes)
     }
 }
 
-
-
 TEST_P(SymmetricModesBy, EigenvalueOnTheLimitIsIncluded)
 {
   // Above the size of dense solution; λ = 1 twelvefold.
-  const Epetra_Map map   = rows(400, distribution());
-  const auto       K     = diagonal(map, [](const int i) { return i < 12 ? 1. : (i < 20 ? 0.1 * i : 5. + i); });
-  const auto       M     = diagonal(map, [](int) { return 1.; });
-  const auto       modes = symmetric_modes(*K, *M, 1., options);
+  const RowMap map   = rows(400, distribution());
+  const auto   K     = diagonal(map, [](const int i) { return i < 12 ? 1. : (i < 20 ? 0.1 * i : 5. + i); });
+  const auto   M     = diagonal(map, [](int) { return 1.; });
+  const auto   modes = symmetric_modes(*K, *M, 1., options);
   EXPECT_EQ(modes.n_counted, 12);
   EXPECT_NEAR(modes.eigenvalues.front(), 1., 1e-13);
 }
 
-
-
 TEST_P(SymmetricModesBy, IndefiniteStiffnessIsRefused)
 {
   const auto L = laplacian(8, 1, distribution());
-  const auto M = diagonal(L->RowMap(), [](int) { return 1.; });
+  const auto M = diagonal(L->rows(), [](int) { return 1.; });
   const auto K = add(1., *L, -1., *M);
   EXPECT_THROW(symmetric_modes(*K, *M, 2., options), SolverError);
   options.shift = 2.;
   EXPECT_THROW(symmetric_modes(*K, *M, 2., options), SolverError);
   EXPECT_THROW(symmetric_modes(*L, *M, -1., options), SolverError);
 }
-
-
 
 TEST(SymmetricModes, SolversLibrariesAndSeedsAgree)
 {
@@ -211,22 +198,21 @@ TEST(SymmetricModes, SolversLibrariesAndSeedsAgree)
     }
 }
 
-
-
 TEST(SymmetricModes, CountAgreesWithDenseEigenvalues)
 {
-  const Body                body   = plate({{3, 2, 1}}, 0.02, 0.);
-  const std::vector<double> values = symmetric_eigenpairs(to_dense(*body.stiffness), to_dense(*body.mass)).values;
+  const Body                body      = plate({{3, 2, 1}}, 0.02, 0.);
+  const std::vector<double> values    = symmetric_eigenpairs(to_dense(*body.stiffness), to_dense(*body.mass)).values;
+  int                       n_counted = 0;
   for (int j = 5; j + 1 < static_cast<int>(values.size()); j += 3)
     {
       const double limit = 0.5 * (values[j] + values[j + 1]);
       if (values[j + 1] - values[j] < 1e-6 * values[j + 1])
         continue;
       EXPECT_EQ(count_modes(*body.stiffness, *body.mass, limit, "test"), j + 1);
+      ++n_counted;
     }
+  EXPECT_GT(n_counted, 5);
 }
-
-
 
 TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
 {
@@ -256,8 +242,6 @@ TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
       EXPECT_NEAR(parts.eigenvalues[j] / (omega * omega), 1., 1e-11);
     }
 }
-
-
 
 // The basis must leave room for one more block.
 TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)

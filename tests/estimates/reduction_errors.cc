@@ -3,6 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 
 #include <gtest/gtest.h>
 
@@ -25,13 +26,13 @@ namespace
       , complex(krylov(s.coupled, mu))
     {}
 
-    std::shared_ptr<MultiVector> basis(const BasisKind kind) const
+    std::shared_ptr<MultiVector> basis(const std::string &kind) const
     {
       BasisIngredients in;
-      in.real    = real.vectors.get();
-      in.coupled = &s.coupled;
-      in.inverse = &inverse;
-      return reduced_basis(kind, in).vectors;
+      in.sets[BasisSource::real] = real.vectors.get();
+      in.coupled                 = &s.coupled;
+      in.inverse                 = &inverse;
+      return reduced_basis(*find_recipe(kind), in).vectors;
     }
 
     std::vector<ModeError> errors(const MultiVector &T) const
@@ -75,12 +76,12 @@ namespace
                         const double k33,
                         const double damping)
   {
-    const Epetra_Map map = rows(3), contact = rows(1);
-    const auto       M = Testing::diagonal(map, [](const int i) { return i == 2 ? 1e-6 : 1.; });
-    const auto       K = sparse(map, map, [=](const int i) {
+    const RowMap map = rows(3), contact = rows(1);
+    const auto   M = Testing::diagonal(map, [](const int i) { return i == 2 ? 1e-6 : 1.; });
+    const auto   K = sparse(map, map, [=](const int i) {
       return i == 0 ? Row{{0, k11 + c * c / k33}, {1, k12}, {2, c}} : i == 1 ? Row{{0, k12}, {1, k22}} : Row{{0, c}, {2, k33}};
     });
-    const auto       C = damping != 0. ? Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; }) : nullptr;
+    const auto   C = damping != 0. ? Testing::diagonal(map, [damping](const int i) { return i == 2 ? 0. : damping; }) : nullptr;
     return system_of({M, C, K},
                      sparse(contact, map,
                             [](int) {
@@ -98,8 +99,6 @@ namespace
     return MultiVector(two);
   }
 } // namespace
-
-
 
 TEST(ReductionErrors, VanishIfTheBasisHoldsTheModes)
 {
@@ -119,12 +118,10 @@ TEST(ReductionErrors, VanishIfTheBasisHoldsTheModes)
     }
 }
 
-
-
 TEST(ReductionErrors, AreTheFormulasOfThePaper)
 {
   const Reference r(RadialDissipation::consistent);
-  const auto      T = r.basis(BasisKind::real);
+  const auto      T = r.basis("real");
   ReducedModel    model(r.s.coupled);
   model.extend(*T);
   const ReducedModes modes  = reduced_modes(model, mu, omega_max, BandEnd::open);
@@ -160,22 +157,18 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
     }
 }
 
-
-
 TEST(ReductionErrors, EnrichmentPays)
 {
   for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
     {
       const Reference r(dissipation);
-      const double    real = largest(r.errors(*r.basis(BasisKind::real)), &ModeError::eigenvalue),
-                   first   = largest(r.errors(*r.basis(BasisKind::real_first_order)), &ModeError::eigenvalue),
-                   both    = largest(r.errors(*r.basis(BasisKind::real_two_sided)), &ModeError::eigenvalue);
+      const double    real = largest(r.errors(*r.basis("real")), &ModeError::eigenvalue),
+                   first   = largest(r.errors(*r.basis("real + 1st-ord.")), &ModeError::eigenvalue),
+                   both    = largest(r.errors(*r.basis("real + 1st-ord. two-sided")), &ModeError::eigenvalue);
       EXPECT_LT(first, real);
       EXPECT_LT(both, 0.9 * first);
     }
 }
-
-
 
 TEST(ReductionErrors, OfFrictionlessModes)
 {
@@ -188,13 +181,13 @@ TEST(ReductionErrors, OfFrictionlessModes)
     model.extend(T);
     return reduction_errors(system, r.inverse, model, reduced_real_modes(model, omega_max, BandEnd::open), reference);
   };
-  const auto exact = errors(*r.basis(BasisKind::real));
+  const auto exact = errors(*r.basis("real"));
   for (const auto what : {&ModeError::residual, &ModeError::frequency, &ModeError::subspace, &ModeError::divergence})
     EXPECT_LT(largest(exact, what), 1e-10);
 
   // Real modes disturbed: frequencies are known to the square of the error of the vectors, and from above
   MultiVector T = *r.real.vectors;
-  T.Update(1e-3, orthonormalize(*r.s.coupled.mass, &T, random_vectors(r.s.coupled.map(), T.NumVectors()), 1e-8), 1.);
+  T.local() += 1e-3 * orthonormalize(*r.s.coupled.mass, &T, random_vectors(r.s.coupled.map(), T.n_columns()), 1e-8).local();
   for (const ModeError &error : errors(orthonormalize(*r.s.coupled.mass, nullptr, T, 1e-8)))
     {
       EXPECT_GE(error.reduced.imag(), error.reference.imag() * (1. - 1e-10));
@@ -204,12 +197,10 @@ TEST(ReductionErrors, OfFrictionlessModes)
     }
 }
 
-
-
 TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
 {
   // The same mode twice, a third nearby, one apart: turned vectors have no counterpart of their own, their span has.
-  const Epetra_Map          map = rows(6), contact = rows(1);
+  const RowMap              map = rows(6), contact = rows(1);
   const std::vector<double> k       = {1., 1., 1.0005, 4., 9., 16.};
   const auto                nothing = sparse(contact, map, [](int) { return Row{}; });
   const CoupledSystem       system  = system_of(
@@ -217,14 +208,14 @@ TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
   const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
 
   SymmetricModes turned;
-  turned.eigenvalues  = {k[0], k[1], k[2], k[3]};
-  turned.residuals    = {0., 0., 0., 0.};
-  const MultiVector I = unit_vectors(map);
-  turned.vectors      = std::make_shared<MultiVector>(map, 4);
-  (*turned.vectors)(0)->Update(0.6, *I(0), 0.8, *I(1), 0.);
-  (*turned.vectors)(1)->Update(-0.8, *I(0), 0.6, *I(1), 0.);
-  *(*turned.vectors)(2) = *I(2);
-  *(*turned.vectors)(3) = *I(3);
+  turned.eigenvalues     = {k[0], k[1], k[2], k[3]};
+  turned.residuals       = {0., 0., 0., 0.};
+  const MultiVector I    = unit_vectors(map);
+  turned.vectors         = std::make_shared<MultiVector>(map, 4);
+  turned.vectors->col(0) = 0.6 * I.col(0) + 0.8 * I.col(1);
+  turned.vectors->col(1) = -0.8 * I.col(0) + 0.6 * I.col(1);
+  turned.vectors->col(2) = I.col(2);
+  turned.vectors->col(3) = I.col(3);
   ReducedModel model(system);
   model.extend(I);
   const auto modes  = reduced_real_modes(model, 10., BandEnd::open);
@@ -236,25 +227,19 @@ TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
   for (const int j : {0, 1, 2})
     EXPECT_EQ(errors[j].cluster_size, 3);
   EXPECT_EQ(errors[3].cluster_size, 1);
-  ErrorOptions narrow;
-  narrow.cluster_tolerance = 1e-6;
-  EXPECT_EQ(reduction_errors(system, inverse, model, modes, undamped_modes(turned), narrow)[2].cluster_size, 1);
+  EXPECT_EQ(reduction_errors(system, inverse, model, modes, undamped_modes(turned), 1e-6)[2].cluster_size, 1);
 
   // A vector of the cluster tilted out of it by an angle whose sine is 0.28
-  (*turned.vectors)(1)->Update(0.28, *I(4), 0.96);
+  turned.vectors->col(1) = 0.28 * I.col(4) + 0.96 * turned.vectors->col(1);
   for (const ModeError &error : reduction_errors(system, inverse, model, modes, undamped_modes(turned)))
     EXPECT_NEAR(error.subspace, error.cluster_size == 3 ? 0.28 * 0.28 : 0., 1e-12);
 }
 
-
-
 TEST(ReductionErrors, FewerModesThanTheReferenceAreRefused)
 {
   const Reference r;
-  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->NumVectors() - 3)), SolverError);
+  EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError);
 }
-
-
 
 TEST(ReductionErrors, Groups)
 {
@@ -279,8 +264,6 @@ TEST(ReductionErrors, Groups)
   EXPECT_EQ(groups[1].residual, 3.);
 }
 
-
-
 TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
 {
   // Flutter with a degree of freedom left out: the estimate is the error to first order, away from the coalescence.
@@ -296,7 +279,7 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
         full.extend(unit_vectors(system.map()));
         const double friction = factor * threshold;
         const auto   modes = reduced_modes(model, friction, 10.), exact = reduced_modes(full, friction, 10.);
-        const auto   estimates = estimate_eigenvalues(system, inverse, model, modes);
+        const auto   estimates = estimate_eigenvalues(modes, residual_vectors(system, inverse, model, modes).products());
         ASSERT_EQ(modes.lambda.size(), 2u);
         ASSERT_EQ(exact.lambda.size(), 2u);
         for (int j = 0; j < 2; ++j)
@@ -309,15 +292,13 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
             EXPECT_LT(std::abs(estimates.corrections[j] - error), 0.05 * std::abs(error)) << "factor " << factor << ", mode " << j;
             EXPECT_EQ(estimates.errors[j], std::abs(estimates.corrections[j]) / std::abs(modes.lambda[j]));
             EXPECT_GE(estimates.conditions[j], 1. - 1e-10);
-            const Verdict expected = damping == 0. && factor < 1. ? Verdict::stable :
+            const Verdict expected = damping == 0. && factor < 1. ? Verdict::neutral :
                                      nearest.real() > 0.          ? Verdict::unstable :
                                                                     Verdict::stable;
             EXPECT_EQ(estimates.verdicts[j], expected) << "factor " << factor << ", mode " << j;
           }
       }
 }
-
-
 
 TEST(EigenvalueEstimates, AreNotClaimedAtACoalescence)
 {
@@ -334,7 +315,7 @@ TEST(EigenvalueEstimates, AreNotClaimedAtACoalescence)
     for (const double side : {-1., 1.})
       {
         const auto modes     = reduced_modes(model, threshold * (1. + side * distance), 10.);
-        const auto estimates = estimate_eigenvalues(system, inverse, model, modes);
+        const auto estimates = estimate_eigenvalues(modes, residual_vectors(system, inverse, model, modes).products());
         for (std::size_t j = 0; j < modes.lambda.size(); ++j)
           {
             EXPECT_EQ(estimates.claimed[j], distance > 1e-3) << distance;
@@ -347,8 +328,6 @@ TEST(EigenvalueEstimates, AreNotClaimedAtACoalescence)
   EXPECT_GT(condition, 1e3);
 }
 
-
-
 TEST(EigenvalueEstimates, OfReducedScenes)
 {
   // Near the error, and better once corrected, for most modes; verdicts are never wrong.
@@ -357,7 +336,7 @@ TEST(EigenvalueEstimates, OfReducedScenes)
                                                {RadialDissipation::consistent, damped(mounted())}})
     {
       const Reference r(dissipation, materials);
-      for (const BasisKind kind : {BasisKind::real, BasisKind::real_first_order, BasisKind::real_two_sided})
+      for (const std::string kind : {"real", "real + 1st-ord.", "real + 1st-ord. two-sided"})
         {
           int n_near = 0, n_better = 0, n_errors = 0, n_decided = 0;
           for (const ModeError &error : r.errors(*r.basis(kind)))
@@ -366,7 +345,7 @@ TEST(EigenvalueEstimates, OfReducedScenes)
                 {
                   ++n_decided;
                   EXPECT_EQ(error.verdict == Verdict::unstable, error.reference.real() > 1e-8 * error.reference.imag())
-                    << to_string(kind) << ", " << error.reference;
+                    << kind << ", " << error.reference;
                 }
               if (!error.claimed || error.eigenvalue < 1e-9)
                 continue;
@@ -374,14 +353,13 @@ TEST(EigenvalueEstimates, OfReducedScenes)
               n_near += error.estimate_ratio > 0.2 && error.estimate_ratio < 5.;
               n_better += error.corrected_error < error.eigenvalue;
             }
-          EXPECT_GE(n_near, 0.7 * n_errors) << to_string(kind);
-          EXPECT_GE(n_better, 0.7 * n_errors) << to_string(kind);
-          EXPECT_GT(n_decided, 3) << to_string(kind);
+          EXPECT_GE(n_near, 0.7 * n_errors) << kind;
+          EXPECT_GE(n_better, 0.7 * n_errors) << kind;
+          EXPECT_GT(n_errors, 3) << kind;
+          EXPECT_GT(n_decided, 3) << kind;
         }
     }
 }
-
-
 
 TEST(GrownBasis, IsAccurateAtAllItsFrictionCoefficients)
 {
@@ -400,16 +378,14 @@ TEST(GrownBasis, IsAccurateAtAllItsFrictionCoefficients)
 
   // As a basis like the others
   BasisIngredients in;
-  in.coupled       = &r.s.coupled;
-  in.residuals     = &grown.model.basis();
-  const auto basis = reduced_basis(BasisKind::residual_grown, in);
+  in.coupled                      = &r.s.coupled;
+  in.sets[BasisSource::residuals] = &grown.model.basis();
+  const auto basis                = reduced_basis(*find_recipe("residual-grown"), in);
   EXPECT_EQ(basis.size(), grown.model.size());
   EXPECT_NEAR(basis.condition, 1., 1e-10);
   EXPECT_LT(largest(r.errors(*basis.vectors), &ModeError::eigenvalue), 3e-6);
   EXPECT_THROW(grow_residual_basis(r.s.coupled, r.inverse, *r.real.vectors, {}, options, progress), SolverError);
 }
-
-
 
 TEST(GrownBasis, LeftModesAreThoseOfTheTransposedProblem)
 {
@@ -434,8 +410,6 @@ TEST(GrownBasis, LeftModesAreThoseOfTheTransposedProblem)
     }
 }
 
-
-
 TEST(PrincipalAxesOfModes, ServeBetweenTheirFrictionCoefficients)
 {
   // Right and left modes at three μ: exact there, close in between
@@ -449,11 +423,11 @@ TEST(PrincipalAxesOfModes, ServeBetweenTheirFrictionCoefficients)
       parts.push_back(part.get());
   const MultiVector snapshots = join(parts);
   BasisIngredients  in;
-  in.coupled       = &r.s.coupled;
-  in.snapshots     = &snapshots;
-  const auto basis = reduced_basis(BasisKind::pod, in);
-  EXPECT_LT(basis.size(), snapshots.NumVectors());
-  EXPECT_EQ(basis.size() + basis.n_dropped, snapshots.NumVectors());
+  in.coupled                      = &r.s.coupled;
+  in.sets[BasisSource::snapshots] = &snapshots;
+  const auto basis                = reduced_basis(*find_recipe("POD"), in);
+  EXPECT_LT(basis.size(), snapshots.n_columns());
+  EXPECT_EQ(basis.size() + basis.n_dropped, snapshots.n_columns());
   EXPECT_LT(largest(r.errors(*basis.vectors), &ModeError::eigenvalue), 1e-7);
 
   ReducedModel model(r.s.coupled);

@@ -24,8 +24,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(DenseMatrices, Products)
 {
   const DenseMatrix A = example();
@@ -41,8 +39,6 @@ TEST(DenseMatrices, Products)
   EXPECT_EQ(max_norm(with_rows(A, 5).topRows(3) - A) + max_norm(with_rows(A, 5).bottomRows(2)), 0.);
   EXPECT_EQ(max_norm(DenseMatrix(0, 3)), 0.);
 }
-
-
 
 TEST(DenseMatrices, LUSolvesBothWaysAndRefusesSingular)
 {
@@ -61,8 +57,6 @@ TEST(DenseMatrices, LUSolvesBothWaysAndRefusesSingular)
   EXPECT_EQ(regular_lu(DenseMatrix(0, 0), "test").reciprocal_condition(), 1.);
 }
 
-
-
 TEST(DenseMatrices, SymmetricEigenvalues)
 {
   DenseMatrix A = DenseMatrix::Zero(2, 2);
@@ -80,8 +74,6 @@ TEST(DenseMatrices, SymmetricEigenvalues)
   EXPECT_NEAR(values[0] + values[1], 3., 1e-14);
   EXPECT_LT(max_norm(W.transpose() * B * W - DenseMatrix::Identity(2, 2)), 1e-14);
 }
-
-
 
 TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
 {
@@ -103,8 +95,6 @@ TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
   EXPECT_EQ(n_complex, 2);
 }
 
-
-
 TEST(DenseMatrices, SingularValuesAndKernel)
 {
   const DenseMatrix A = example(), tall = A.transpose() * A.leftCols(2);
@@ -122,8 +112,6 @@ TEST(DenseMatrices, SingularValuesAndKernel)
     }
   EXPECT_TRUE(singular_values(DenseMatrix(0, 3)).values.empty());
 }
-
-
 
 TEST(DenseMatrices, OrthonormalBasisLeavesOutDependentColumns)
 {

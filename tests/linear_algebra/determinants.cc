@@ -2,7 +2,7 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/linear_algebra/sparse_determinant.h>
 
 #include <gtest/gtest.h>
@@ -23,8 +23,6 @@ namespace
     return std::hypot(a.real() - b.real(), std::remainder(a.imag() - b.imag(), 2. * M_PI));
   }
 } // namespace
-
-
 
 TEST(Determinants, OfADenseComplexMatrix)
 {
@@ -52,8 +50,6 @@ TEST(Determinants, OfADenseComplexMatrix)
   EXPECT_EQ(ComplexLU(A).inverse_norm(), std::numeric_limits<double>::infinity());
 }
 
-
-
 TEST(Determinants, BalancingKeepsThemAndTheTrace)
 {
   ComplexDenseMatrix A       = ComplexDenseMatrix::Zero(3, 3);
@@ -71,15 +67,13 @@ TEST(Determinants, BalancingKeepsThemAndTheTrace)
   EXPECT_LT(B.norm(), 20.);
 }
 
-
-
 TEST(Determinants, OfASparseQuadraticPencil)
 {
-  const Epetra_Map map = rows(40);
-  const auto       M   = Testing::diagonal(map, [](const int i) { return 1. + 0.1 * i; });
-  const auto       C   = sparse(map, map, [](const int i) { return i > 2 ? Row{{i - 3, 0.2}} : Row{{39 - i, 0.5}}; });
-  const auto       K   = sparse(map, map, [](const int i) { return i < 39 ? Row{{i, 2.}, {i + 1, -1.}} : Row{{i, 2.}, {0, 0.7}}; });
-  if (map.Comm().NumProc() > 1)
+  const RowMap map = rows(40);
+  const auto   M   = Testing::diagonal(map, [](const int i) { return 1. + 0.1 * i; });
+  const auto   C   = sparse(map, map, [](const int i) { return i > 2 ? Row{{i - 3, 0.2}} : Row{{39 - i, 0.5}}; });
+  const auto   K   = sparse(map, map, [](const int i) { return i < 39 ? Row{{i, 2.}, {i + 1, -1.}} : Row{{i, 2.}, {0, 0.7}}; });
+  if (map.n_processes() > 1)
     {
       EXPECT_THROW(SparseDeterminant(*M, C.get(), *K), SolverError);
       return;

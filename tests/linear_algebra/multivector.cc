@@ -1,6 +1,7 @@
 #include "matrices.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/replicate.h>
 
@@ -18,9 +19,9 @@ namespace
                            ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
 
   /// A symmetric positive definite tridiagonal matrix that is no multiple of the identity.
-  std::shared_ptr<SparseMatrix> inner_product(const Epetra_Map &map)
+  std::shared_ptr<SparseMatrix> inner_product(const RowMap &map)
   {
-    const int n = map.NumGlobalElements();
+    const int n = map.n();
     return sparse(map, map, [n](const int i) {
       Row row{{i, 4. + i % 7}};
       if (i > 0)
@@ -32,30 +33,26 @@ namespace
   }
 } // namespace
 
-
-
 TEST_P(MultiVectors, AreGatheredAndScattered)
 {
   const int         n    = 50;
-  const Epetra_Map  map  = rows(n, GetParam());
+  const RowMap      map  = rows(n, GetParam());
   const MultiVector X    = random_vectors(map, 3, 7);
   const DenseMatrix all  = replicate(X);
   DenseMatrix       root = gather(X);
-  EXPECT_EQ(root.rows(), map.Comm().MyPID() == 0 ? n : 0);
+  EXPECT_EQ(root.rows(), map.rank() == 0 ? n : 0);
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < root.rows(); ++i)
       EXPECT_EQ(root(i, j), all(i, j));
-  if (map.Comm().MyPID() != 0)
+  if (map.rank() != 0)
     root = DenseMatrix();
   const MultiVector Y = scatter(root, map);
-  EXPECT_TRUE(Y.Map().SameAs(map));
-  ASSERT_EQ(Y.NumVectors(), 3);
+  EXPECT_TRUE(Y.map() == map);
+  ASSERT_EQ(Y.n_columns(), 3);
   for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < Y.MyLength(); ++i)
-      EXPECT_EQ(Y[j][i], X[j][i]);
+    for (int i = 0; i < Y.n_local_rows(); ++i)
+      EXPECT_EQ(Y(i, j), X(i, j));
 }
-
-
 
 TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
 {
@@ -63,11 +60,10 @@ TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
   const MultiVector X = random_vectors(rows(n, GetParam()), 3, 7), Y = random_vectors(rows(n, Distribution::even), 3, 7);
   // Sums over all processes with weights that tell rows apart.
   const auto moment = [n](const MultiVector &Z, const int j) {
-    double local = 0., sum = 0.;
-    for (int i = 0; i < Z.MyLength(); ++i)
-      local += Z[j][i] * (1 + Z.Map().GID(i) % n);
-    Z.Comm().SumAll(&local, &sum, 1);
-    return sum;
+    double sum = 0.;
+    for (int i = 0; i < Z.n_local_rows(); ++i)
+      sum += Z(i, j) * (1 + Z.map().number(i) % n);
+    return dealii::Utilities::MPI::sum(sum, Z.communicator());
   };
   for (int j = 0; j < 3; ++j)
     {
@@ -79,11 +75,9 @@ TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
   EXPECT_GT(max_norm(gram(X, X) - gram(random_vectors(rows(n, GetParam()), 3, 8), X)), 1.);
 }
 
-
-
 TEST_P(MultiVectors, LinearCombinationsAgreeWithGramMatrices)
 {
-  const Epetra_Map  map = rows(40, GetParam());
+  const RowMap      map = rows(40, GetParam());
   const MultiVector X = random_vectors(map, 4, 1), Y = random_vectors(map, 3, 2);
   const DenseMatrix G = gram(X, Y);
   EXPECT_EQ(G.rows(), 4);
@@ -95,41 +89,37 @@ TEST_P(MultiVectors, LinearCombinationsAgreeWithGramMatrices)
   EXPECT_LT(max_norm(gram(X, Z) - (2. * gram(X, X) * G - G)), 1e-12);
 
   const MultiVector J = join({&X, &Y});
-  EXPECT_EQ(J.NumVectors(), 7);
+  EXPECT_EQ(J.n_columns(), 7);
   EXPECT_LT(max_norm(gram(view(J, 0, 4), view(J, 4, 3)) - G), 1e-14);
 }
 
-
-
 TEST_P(MultiVectors, MatrixProductsAreAdjoint)
 {
-  const Epetra_Map  map = rows(40, GetParam()), columns = rows(25, GetParam());
+  const RowMap      map = rows(40, GetParam()), columns = rows(25, GetParam());
   const auto        A = sparse(map, columns, [](const int i) { return Row{{i % 25, 1. + i}, {(3 * i + 1) % 25, -0.5}}; });
   const MultiVector X = random_vectors(columns, 3, 1), Y = random_vectors(map, 2, 2);
   EXPECT_LT(max_norm(gram(Y, *A * X) - gram(transpose_times(*A, Y), X)), 1e-12);
 }
 
-
-
 TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
 {
-  const Epetra_Map map = rows(60, GetParam());
-  const auto       M   = inner_product(map);
+  const RowMap map = rows(60, GetParam());
+  const auto   M   = inner_product(map);
 
   const MultiVector Q = orthonormalize(*M, nullptr, random_vectors(map, 5, 1), 1e-8);
-  ASSERT_EQ(Q.NumVectors(), 5);
+  ASSERT_EQ(Q.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, Q), 1e-13);
 
   // Three new directions of very different size, one of Q, one zero, one repeated.
   const MultiVector fresh = random_vectors(map, 3, 2);
   MultiVector       X(map, 6);
-  X(0)->Update(1e6, *fresh(0), 0.);
-  X(1)->Update(1e-6, *fresh(1), 0.);
-  X(2)->Update(1., *Q(3), 0.);
-  X(4)->Update(3., *fresh(0), 0.);
-  X(5)->Update(1., *fresh(2), 0.);
+  X.col(0)            = 1e6 * fresh.col(0);
+  X.col(1)            = 1e-6 * fresh.col(1);
+  X.col(2)            = Q.col(3);
+  X.col(4)            = 3. * fresh.col(0);
+  X.col(5)            = fresh.col(2);
   const MultiVector W = orthonormalize(*M, &Q, X, 1e-10);
-  ASSERT_EQ(W.NumVectors(), 3);
+  ASSERT_EQ(W.n_columns(), 3);
   EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
   EXPECT_LT(max_norm(gram(Q, *M * W)), 1e-13);
 
@@ -139,27 +129,25 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   EXPECT_THROW(orthonormalize(*M, &basis, X, 1e-10), SolverError);
 }
 
-
-
 TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
 {
-  const Epetra_Map map = rows(60, GetParam());
-  const auto       M   = inner_product(map);
+  const RowMap map = rows(60, GetParam());
+  const auto   M   = inner_product(map);
 
   // Directions at angles of 1e-2, 1e-4, ..., 1e-12: beyond what one Gram matrix can tell apart.
   const MultiVector fresh = orthonormalize(*M, nullptr, random_vectors(map, 7, 3), 1e-8);
   MultiVector       X(map, 7);
   for (int j = 0; j < 7; ++j)
     {
-      X(j)->Update(1., *fresh(0), 0.);
+      X.col(j) = fresh.col(0);
       if (j > 0)
-        X(j)->Update(std::pow(10., -2 * j), *fresh(j), 1.);
+        X.col(j) += std::pow(10., -2 * j) * fresh.col(j);
     }
 
   for (const int exponent : {3, 5, 7, 9, 11})
     {
       const MultiVector W = orthonormalize(*M, nullptr, X, std::pow(10., -exponent));
-      EXPECT_EQ(W.NumVectors(), 1 + exponent / 2) << "tolerance 1e-" << exponent;
+      EXPECT_EQ(W.n_columns(), 1 + exponent / 2) << "tolerance 1e-" << exponent;
       EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
     }
 
@@ -169,18 +157,16 @@ TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
   EXPECT_NEAR(component.squaredNorm(), 1., 1e-10);
 }
 
-
-
 TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
 {
   // Two unit vectors at an angle: the Gram matrix has the eigenvalues 1 ± cos.
-  const Epetra_Map  map    = rows(60, GetParam());
+  const RowMap      map    = rows(60, GetParam());
   const auto        M      = inner_product(map);
   const MultiVector Q      = orthonormalize(*M, nullptr, random_vectors(map, 2, 3), 1e-8);
   const double      cosine = 0.8, sine = 0.6;
   MultiVector       X(map, 2);
-  X(0)->Update(5., *Q(0), 0.);
-  X(1)->Update(0.1 * cosine, *Q(0), 0.1 * sine, *Q(1), 0.);
+  X.col(0) = 5. * Q.col(0);
+  X.col(1) = 0.1 * cosine * Q.col(0) + 0.1 * sine * Q.col(1);
   PrincipalAxes axes;
   orthonormalize(*M, nullptr, X, 1e-8, &axes);
   EXPECT_NEAR(axes.condition, (1. + cosine) / (1. - cosine), 1e-12);
@@ -189,18 +175,16 @@ TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
   EXPECT_NEAR(axes.norms[1], std::sqrt(1. - cosine), 1e-13);
 
   // Dependent columns: as far as rounding tells
-  *X(1) = *X(0);
+  X.col(1) = X.col(0);
   orthonormalize(*M, nullptr, X, 1e-8, &axes);
   EXPECT_GT(axes.condition, 1e14);
   EXPECT_EQ(axes.norms.size(), 1u);
 }
 
-
-
 TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 {
   // Columns of known singular values over twelve orders of magnitude, mixed by an orthogonal matrix
-  const Epetra_Map  map = rows(60, GetParam());
+  const RowMap      map = rows(60, GetParam());
   const auto        M   = inner_product(map);
   const int         k   = 7;
   const MultiVector Q   = orthonormalize(*M, nullptr, random_vectors(map, k, 3), 1e-8);
@@ -212,7 +196,7 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
 
   PrincipalAxes     axes;
   const MultiVector W = principal_axes(*M, X, 1e-9, 20, &axes);
-  ASSERT_EQ(W.NumVectors(), 5);
+  ASSERT_EQ(W.n_columns(), 5);
   EXPECT_LT(orthonormality_defect(*M, W), 1e-13);
   ASSERT_EQ(axes.norms.size(), 5u);
   for (int i = 0; i < 5; ++i)
@@ -222,20 +206,18 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
     }
 
   const MultiVector first = principal_axes(*M, X, 1e-9, 3, &axes);
-  EXPECT_EQ(first.NumVectors(), 3);
+  EXPECT_EQ(first.n_columns(), 3);
   EXPECT_LT(max_norm(gram(first, *M * view(W, 0, 3)) - DenseMatrix::Identity(3, 3)), 1e-13);
   EXPECT_EQ(axes.norms.size(), 3u);
   EXPECT_THROW(principal_axes(*M, X, 1e-9, 0), SolverError);
   EXPECT_THROW(principal_axes(*M, MultiVector(map, 2), 1e-9, 2), SolverError);
 }
 
-
-
 TEST_P(MultiVectors, OrthonormalizeRefusesUndefinedValues)
 {
-  const Epetra_Map map = rows(60, GetParam());
-  MultiVector      X   = random_vectors(map, 2);
-  if (X.MyLength() > 0)
-    X[1][0] = std::nan("");
+  const RowMap map = rows(60, GetParam());
+  MultiVector  X   = random_vectors(map, 2);
+  if (X.n_local_rows() > 0)
+    X(0, 1) = std::nan("");
   EXPECT_THROW(orthonormalize(*inner_product(map), nullptr, X, 1e-10), SolverError);
 }

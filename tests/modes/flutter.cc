@@ -46,9 +46,9 @@ namespace
     /// With a damping matrix of its own in place of α M + β K, if there is one.
     CoupledSystem system(std::shared_ptr<const SparseMatrix> C = nullptr) const
     {
-      const Epetra_Map map = rows(2), contact = rows(1);
-      const auto       M = Testing::diagonal(map, [](int) { return 1.; });
-      const auto       K = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
+      const RowMap map = rows(2), contact = rows(1);
+      const auto   M = Testing::diagonal(map, [](int) { return 1.; });
+      const auto   K = sparse(map, map, [this](const int i) { return i == 0 ? Row{{0, k11}, {1, k12}} : Row{{0, k12}, {1, k22}}; });
       if (!C && (damping != 0. || beta != 0.))
         C = add(damping, *M, beta, *K);
       return system_of({M, C, K},
@@ -72,8 +72,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(Flutter, ClosedForm)
 {
   for (const auto &[damping, beta] : {std::make_pair(0., 0.), {0.02, 0.}, {0., 0.03}, {0.01, 0.02}})
@@ -89,8 +87,6 @@ TEST(Flutter, ClosedForm)
         }
     }
 }
-
-
 
 TEST(Flutter, InstabilityBeginsAtTheThreshold)
 {
@@ -109,8 +105,6 @@ TEST(Flutter, InstabilityBeginsAtTheThreshold)
       EXPECT_NEAR(std::min(values[0].real(), values[1].real()) / R, -1., 1e-3);
     }
 }
-
-
 
 TEST(Flutter, UnequalDampingLowersTheThreshold)
 {

@@ -107,15 +107,15 @@ namespace
     return {friction, {}, line};
   }
 
-  /// The rows dealt out to the processes as cards are, in descending order: unlike Epetra's own distribution even on one process.
-  Epetra_Map dealt_rows()
+  /// The rows dealt out to the processes as cards are, in descending order: unlike an even distribution even on one process.
+  RowMap dealt_rows()
   {
-    const Epetra_MpiComm comm(MPI_COMM_WORLD);
-    std::vector<int>     mine;
+    const RowMap     even = RowMap::even(n_rows, MPI_COMM_WORLD);
+    std::vector<int> mine;
     for (int i = n_rows - 1; i >= 0; --i)
-      if (i % comm.NumProc() == comm.MyPID())
+      if (i % even.n_processes() == even.rank())
         mine.push_back(i);
-    return Epetra_Map(n_rows, static_cast<int>(mine.size()), mine.data(), 0, comm);
+    return RowMap::of(mine, MPI_COMM_WORLD);
   }
 
   /// Lets no file grow beyond a size [byte]: like a full disk.
@@ -145,7 +145,7 @@ namespace
   {
   protected:
     ChartCheckpoints()
-      : rows(n_rows, 0, Epetra_MpiComm(MPI_COMM_WORLD))
+      : rows(RowMap::even(n_rows, MPI_COMM_WORLD))
       , place(
           fs::temp_directory_path() /
           ("squeal_checkpoint_test_" + std::to_string(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()), 0))))
@@ -163,7 +163,7 @@ namespace
     void alone(const Function &action) const
     {
       MPI_Barrier(MPI_COMM_WORLD);
-      if (rows.Comm().MyPID() == 0)
+      if (rows.rank() == 0)
         action();
       MPI_Barrier(MPI_COMM_WORLD);
     }
@@ -230,19 +230,17 @@ namespace
         }
     }
 
-    const Epetra_Map  rows;
+    const RowMap      rows;
     const fs::path    place;
     const std::string folder;
     const fs::path    archive = fs::path(folder) / "sweep.archive";
   };
 } // namespace
 
-
-
 TEST_F(ChartCheckpoints, ReturnEveryBit)
 {
   keep_some();
-  for (const Epetra_Map &map : {rows, dealt_rows(), Testing::rows(n_rows, Testing::Distribution::last_process_all)})
+  for (const RowMap &map : {rows, dealt_rows(), Testing::rows(n_rows, Testing::Distribution::last_process_all)})
     {
       ChartCheckpoint kept = checkpoint();
       EXPECT_EQ(kept.n_found(), 3);
@@ -262,17 +260,15 @@ TEST_F(ChartCheckpoints, ReturnEveryBit)
       ASSERT_EQ(blocks.size(), 2u);
       for (int b = 0; b < 2; ++b)
         {
-          EXPECT_TRUE(blocks[b].Map().SameAs(map));
+          EXPECT_TRUE(blocks[b].map() == map);
           EXPECT_TRUE(same_bits(replicate(blocks[b]), replicate(random_vectors(rows, b == 0 ? 4 : 2, b + 1))));
         }
     }
 }
 
-
-
 TEST_F(ChartCheckpoints, KeepPartsApart)
 {
-  const Epetra_Map few(5, 0, rows.Comm());
+  const RowMap few = RowMap::even(5, rows.communicator());
   keep_some();
   {
     ChartCheckpoint kept  = checkpoint();
@@ -291,8 +287,6 @@ TEST_F(ChartCheckpoints, KeepPartsApart)
   ASSERT_EQ(blocks.size(), 1u);
   EXPECT_TRUE(same_bits(replicate(blocks[0]), replicate(random_vectors(few, 3, 7))));
 }
-
-
 
 TEST_F(ChartCheckpoints, ShowWhatIsFound)
 {
@@ -326,8 +320,6 @@ TEST_F(ChartCheckpoints, ShowWhatIsFound)
   alone([&] { EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.05) + others); });
 }
 
-
-
 TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
 {
   keep_some();
@@ -348,8 +340,6 @@ TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
   EXPECT_NE(refusal([&] { checkpoint(); }).find("`squeal sweep 9` there, `squeal sweep 3` here"), std::string::npos);
 }
 
-
-
 TEST_F(ChartCheckpoints, LieNowhereBeforeAnythingIsFound)
 {
   ChartCheckpoint kept  = checkpoint();
@@ -358,8 +348,6 @@ TEST_F(ChartCheckpoints, LieNowhereBeforeAnythingIsFound)
   EXPECT_TRUE(store->basis().empty());
   alone([&] { EXPECT_FALSE(fs::exists(folder)); });
 }
-
-
 
 TEST_F(ChartCheckpoints, HaveTheLastWholeStateWhereverARunWasKilled)
 {
@@ -392,8 +380,6 @@ TEST_F(ChartCheckpoints, HaveTheLastWholeStateWhereverARunWasKilled)
       }
 }
 
-
-
 TEST_F(ChartCheckpoints, ForgetDamagedResults)
 {
   const auto  ends = keep_some();
@@ -422,8 +408,6 @@ TEST_F(ChartCheckpoints, ForgetDamagedResults)
     }
 }
 
-
-
 TEST_F(ChartCheckpoints, StartAfreshWithoutABlock)
 {
   for (const int block : {0, 3}) // the place of its record
@@ -446,8 +430,6 @@ TEST_F(ChartCheckpoints, StartAfreshWithoutABlock)
       again.remove();
     }
 }
-
-
 
 TEST_F(ChartCheckpoints, LieBesideTheResults)
 {
@@ -476,8 +458,6 @@ TEST_F(ChartCheckpoints, LieBesideTheResults)
   });
 }
 
-
-
 TEST_F(ChartCheckpoints, SayWhatIsInTheWay)
 {
   // A folder of something else
@@ -502,8 +482,6 @@ TEST_F(ChartCheckpoints, SayWhatIsInTheWay)
   });
 }
 
-
-
 TEST_F(ChartCheckpoints, SayThatTheDiskIsFull)
 {
   keep_some();
@@ -527,8 +505,6 @@ TEST_F(ChartCheckpoints, SayThatTheDiskIsFull)
   alone([&] { fs::remove_all(folder); });
   EXPECT_NE(refusal([&] { store->keep(at(0.7), result_at(0.7)); }).find("cannot be kept"), std::string::npos);
 }
-
-
 
 TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
 {

@@ -96,8 +96,6 @@ namespace
   using Names = std::vector<std::string>;
 } // namespace
 
-
-
 TEST_F(SafeFolders, ListTheirFiles)
 {
   make_results("one");
@@ -110,8 +108,6 @@ TEST_F(SafeFolders, ListTheirFiles)
   EXPECT_FALSE(read_file_list(place / "cut.json"));
   EXPECT_FALSE(read_file_list(place / "missing.json"));
 }
-
-
 
 TEST_F(SafeFolders, KeepFilesOfTheUser)
 {
@@ -128,8 +124,6 @@ TEST_F(SafeFolders, KeepFilesOfTheUser)
   make_results("three");
   EXPECT_EQ(content(results + "/modes/own.vtu"), "mine too");
 }
-
-
 
 TEST_F(SafeFolders, RenameFilesOfTheUserThatAreInTheWay)
 {
@@ -154,8 +148,6 @@ TEST_F(SafeFolders, RenameFilesOfTheUserThatAreInTheWay)
   EXPECT_EQ(content(results + "/table.csv.kept/b"), "b");
 }
 
-
-
 TEST_F(SafeFolders, WithoutAListGoByNames)
 {
   make_results("one");
@@ -167,8 +159,6 @@ TEST_F(SafeFolders, WithoutAListGoByNames)
   EXPECT_EQ(files(), (Names{"results/modes/picture.png", "results/modes/two.vtu", "results/notes.txt", "results/own/table.csv",
                             "results/run.json", "results/table.csv"}));
 }
-
-
 
 TEST_F(SafeFolders, AreForOneRunAtATime)
 {
@@ -183,8 +173,6 @@ TEST_F(SafeFolders, AreForOneRunAtATime)
   folder.write("table.csv", [](std::ostream &stream) { stream << "here"; });
   EXPECT_EQ(content(results + ".unfinished/table.csv"), "here");
 }
-
-
 
 TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)
 {
@@ -204,7 +192,25 @@ TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)
   EXPECT_EQ(content(results + "/table.csv"), "one");
 }
 
-
+TEST_F(SafeFolders, NameTheFileThatCannotBeWrittenAndLeaveNothing)
+{
+  make_results("one");
+  const Names before = files();
+  {
+    ResultFolder folder(results, true);
+    folder.write("matrices", [](std::ostream &stream) { stream << "a file where a folder is needed"; });
+    const std::string message = refusal([&] { folder.write("matrices/K.mtx", [](std::ostream &stream) { stream << "1"; }); });
+    EXPECT_TRUE(contains(message, "the file cannot be written: Not a directory")) << message;
+    EXPECT_TRUE(contains(message, "file " + results + "/matrices/K.mtx")) << message;
+    // What failed is not promised, and what could not be put together is not written.
+    EXPECT_TRUE(contains(refusal([&] { folder.write("mesh.msh", [](std::ostream &s) { s.setstate(std::ios::badbit); }); }), "mesh.msh"));
+    EXPECT_THROW(folder.write("table.csv", [](std::ostream &) { throw FileError("a number is not finite", "column", "report"); }),
+                 FileError);
+    EXPECT_EQ(folder.files(), (FileSizes{{"matrices", 31}}));
+  }
+  EXPECT_EQ(files(), before);
+  EXPECT_EQ(content(results + "/table.csv"), "one");
+}
 
 TEST_F(SafeFolders, SettleWhatAKilledRunHasLeft)
 {
@@ -229,8 +235,6 @@ TEST_F(SafeFolders, SettleWhatAKilledRunHasLeft)
   EXPECT_EQ(content(results + ".unfinished/half"), "half");
 }
 
-
-
 TEST_F(SafeFolders, FollowLinks)
 {
   fs::create_symlink("deep/target", place / "link");
@@ -240,8 +244,6 @@ TEST_F(SafeFolders, FollowLinks)
   EXPECT_EQ(files(), (Names{"deep/target/modes/two.vtu", "deep/target/run.json", "deep/target/table.csv", "link", "results"}));
 }
 
-
-
 TEST_F(SafeFolders, LeaveNoParentsBehind)
 {
   ResultFolder((place / "a" / "b" / "c").string(), true);
@@ -250,8 +252,6 @@ TEST_F(SafeFolders, LeaveNoParentsBehind)
   ResultFolder((place / "a" / "b" / "c").string(), true);
   EXPECT_TRUE(fs::is_empty(place / "a"));
 }
-
-
 
 TEST_F(SafeFolders, WithoutExchangeOfNames)
 {

@@ -66,8 +66,6 @@ namespace
   using Statements = std::vector<std::string>;
 } // namespace
 
-
-
 TEST_F(ParameterFile, StatementsComeInTheirOrder)
 {
   const std::string text =
@@ -79,14 +77,10 @@ TEST_F(ParameterFile, StatementsComeInTheirOrder)
   EXPECT_NE(read[2].where.find("a.prm, line 4"), std::string::npos) << read[2].where;
 }
 
-
-
 TEST_F(ParameterFile, ByteOrderMarksAndLineEndsOfOtherSystemsAreRead)
 {
   EXPECT_EQ(statements(write("a.prm", "\xEF\xBB\xBFset a = 1\r\nset b = 2\r\n")), (Statements{"a=1", "b=2"}));
 }
-
-
 
 TEST_F(ParameterFile, IncludesAreFollowed)
 {
@@ -105,8 +99,6 @@ TEST_F(ParameterFile, IncludesAreFollowed)
   expect(refusal(write("b.prm", "subsection A\ninclude below/end.prm\n")), "`end` closes no section");
 }
 
-
-
 TEST_F(ParameterFile, FilesThatIncludeThemselvesAreNamed)
 {
   const std::string self = refusal(write("self.prm", "include self.prm\n"));
@@ -117,8 +109,6 @@ TEST_F(ParameterFile, FilesThatIncludeThemselvesAreNamed)
   expect(refusal(a), "includes itself: " + b + " -> " + c + " -> " + b);
   expect(refusal(a), "c.prm, line 1");
 }
-
-
 
 TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)
 {

@@ -71,15 +71,11 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ParameterFiles, AnEmptyFileGivesTheDefaults)
 {
   EXPECT_EQ(print(read("")), print(Parameters()));
   EXPECT_NO_THROW(Parameters().check());
 }
-
-
 
 TEST(ParameterFiles, ValuesReachTheirMembers)
 {
@@ -112,8 +108,6 @@ TEST(ParameterFiles, ValuesReachTheirMembers)
   EXPECT_EQ(one_side.geometry.bottom.radii, Parameters().geometry.bottom.radii);
 }
 
-
-
 TEST(ParameterFiles, OverridesComeLast)
 {
   const std::string text = in_section("Operation", "set Friction coefficient = 0.25");
@@ -132,8 +126,6 @@ TEST(ParameterFiles, OverridesComeLast)
   EXPECT_NE(wrong.find("--set \"Operation/Friction coefficient=much\""), std::string::npos) << wrong;
 }
 
-
-
 TEST(ParameterFiles, UnknownNamesAreAnsweredWithTheNearest)
 {
   const std::string misspelt = refusal(in_section("Operation", "set Rotaton speed = 3"));
@@ -150,8 +142,6 @@ TEST(ParameterFiles, UnknownNamesAreAnsweredWithTheNearest)
   EXPECT_NE(misplaced.find("`Band/Maximum frequency`"), std::string::npos) << misplaced;
 }
 
-
-
 TEST(ParameterFiles, WrongValuesAreNamed)
 {
   const std::string number = refusal(in_section("Operation", "set Load per side = heavy"));
@@ -161,8 +151,6 @@ TEST(ParameterFiles, WrongValuesAreNamed)
   EXPECT_NE(choice.find("one of positive, negative"), std::string::npos) << choice;
   EXPECT_THROW(Parameters::read("/nonexistent.prm", {}), FileError);
 }
-
-
 
 /// Value that is refused, and what the message must say.
 struct RefusedValue
@@ -232,8 +220,6 @@ TEST(ParameterFiles, EveryNumberSaysWhatItAcceptsWhenPrinted)
   EXPECT_NE(words.find("Accepts numbers >= 0 m, separated by commas. set Top pin radii"), std::string::npos);
 }
 
-
-
 TEST(Declarations, SayWhatEveryKindAccepts)
 {
   constexpr double    infinity = std::numeric_limits<double>::infinity();
@@ -262,11 +248,10 @@ TEST(Declarations, SayWhatEveryKindAccepts)
   for (const DeclaredParameter &parameter : all.parameters())
     if (parameter.accepted.empty())
       free_texts.push_back(parameter.path);
-  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Mounts/Elastic mounts", "Steady sliding/Loads", "Steady sliding/Gaps",
-                                                  "Damping/Modal damping ratio", "Reduction/Bases", "Reduction/Component modes"}));
+  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Pin material/Single pins", "Mounts/Elastic mounts",
+                                                  "Steady sliding/Loads", "Steady sliding/Gaps", "Damping/Modal damping ratio",
+                                                  "Reduction/Bases", "Reduction/Component modes"}));
 }
-
-
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
 {
@@ -274,12 +259,15 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
     read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 0.123456, 3; disc_rim: 0, 7e9, 0",
               "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
               "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7",
+              "Pin material/Single pins=pin_top_1: 1.23456789e9, 0.3, 3000; pin_bottom_2: 2e9, 0.25, 3070",
               "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02", "Output/Mode shapes=unstable",
               "Linear algebra/Factorization=MUMPS"});
   EXPECT_NE(print(p), print(Parameters()));
   EXPECT_EQ(print(read(print(p))), print(p));
   EXPECT_EQ(read(print(p)).geometry.element_size, 0.0123456789);
   EXPECT_EQ(read(print(p)).materials.pin.rayleigh_beta, 1.2345678e-7);
+  EXPECT_EQ(read(print(p)).materials.of("pin_top_1").young_modulus, 1.23456789e9);
+  EXPECT_EQ(read(print(p)).materials.of("pin_bottom_2").rayleigh_beta, 1.2345678e-7);
   ASSERT_EQ(read(print(p)).damping.modal_ratios.size(), 2u);
   EXPECT_EQ(read(print(p)).damping.modal_ratios[0].ratio, 0.0123456789);
   EXPECT_EQ(read(print(p)).damping.modal_ratios[1].frequency, 2500.5);
@@ -292,8 +280,6 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
   EXPECT_NE(documented.str().find("Units:"), std::string::npos);
 }
 
-
-
 TEST(ParameterFiles, DefaultsSurviveUnchanged)
 {
   // Printing rounds nothing that matters: the values themselves come back.
@@ -305,8 +291,6 @@ TEST(ParameterFiles, DefaultsSurviveUnchanged)
   const Parameters fine = read("", {"Mounts/Elastic mounts=disc_bore: 1, 12345678.9, 3"});
   EXPECT_EQ(read(print(fine)).materials.mounts[0].tangential, 12345678.9);
 }
-
-
 
 TEST(ParameterFiles, ZeroHasNoSign)
 {
@@ -324,8 +308,6 @@ TEST(ParameterFiles, MessagesShowNumbersAsTheyAre)
   expect_refused("Pin material/Poisson ratio=0.49990001", "Poisson", "Poisson's ratio is 0.49990001");
   expect_refused("Mounts/Elastic mounts=disc_bore: 0, -1e-9, 0", "Mounts", "the stiffness -1e-09 N/m^3");
 }
-
-
 
 TEST(ParameterChecks, Operation)
 {
@@ -352,6 +334,12 @@ TEST(ParameterChecks, Materials)
   expect_refused("Disc material/Rayleigh alpha=-1", "Rayleigh alpha", "-1");
   expect_refused("Pin material/Rayleigh beta=-1e-9", "Rayleigh beta", "-1e-9");
   expect_refused("Pin material/Rayleigh beta=little", "Rayleigh beta", "little");
+  const std::string pins = "Pin material/Single pins";
+  expect_refused(pins + "=pin_top_1: 2e9, 0.25", pins, "is not the material of a pin");
+  expect_refused(pins + "=pin_top_1: 2e9, 0.25, 3000, 0", pins, "is not the material of a pin");
+  expect_refused(pins + "=2e9, 0.25, 3000", pins, "is not the material of a pin");
+  expect_refused(pins + "=pin_top_1: 2e9, 0.5, 3000", pins + ", pin_top_1/Poisson ratio", "lock");
+  expect_refused(pins + "=pin_top_1: 2e9, 0.2, 0", pins + ", pin_top_1/Density", "positive");
   MaterialParameters damped;
   damped.disc.rayleigh_alpha = std::numeric_limits<double>::infinity();
   EXPECT_THROW(damped.check(), ParameterError);

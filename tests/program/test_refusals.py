@@ -136,6 +136,11 @@ class Refusals(ProgramTest):
         self.sliding_refused(["`pin_top_1` is given twice", gaps], f"{gaps}=pin_top_1: 1e-6; pin_top_1: 0")
         self.sliding_refused(["no pin `pin_top_3`", gaps], f"{gaps}=pin_top_3: 1e-6", n_processes=2)
 
+    def test_material_of_a_pin(self):
+        pins = "Pin material/Single pins"
+        self.scene_refused(["no pin `pin_top_3`", pins, "pin_top_1, pin_top_2, pin_bottom_1"], f"{pins}=pin_top_3: 2e9, 0.25, 3000")
+        self.scene_refused(["`pin_top_1: 2e9` is not the material", pins, "pin: Young modulus"], f"{pins}=pin_top_1: 2e9")
+
     def test_study_of_dissipation(self):
         """It solves for steady sliding and has contact damping whatever the other parameters say."""
         study = "Study=dissipation"

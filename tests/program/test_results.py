@@ -7,6 +7,7 @@ import unittest
 import xml.etree.ElementTree
 
 from program import COMPLEX_COLUMNS, SAME, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
+from vtu_file import VtuFile
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
@@ -76,6 +77,7 @@ class Results(ProgramTest):
             volume, contact = sorted(fields, key=lambda path: path.name.endswith("_contact.vtu"))
             self.assertEqual(arrays(volume), {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
             self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag", "closed"})
+            self.assertEqual([set(VtuFile(path).cell_types) for path in (volume, contact)], [{12}, {9}])
 
             animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
             frames = xml.etree.ElementTree.parse(animation).findall(".//DataSet")

@@ -254,6 +254,7 @@ class Sweep(SweepTest):
                 place = round(float(row["mu [-]"]), 9), round(ratio(float(row[name])), 6)
                 places.setdefault(place, []).append(row)
         self.assertEqual(len(places), 12)
+        self.assertTrue(any(one["unstable modes [-]"] != "0" for one, _ in places.values()))
         for (mu, _), (one, other) in places.items():
             self.assertEqual(one["unstable modes [-]"], other["unstable modes [-]"])
             # Which of several modes that do not grow is damped least is a matter of rounding.

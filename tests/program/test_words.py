@@ -150,6 +150,7 @@ class Words(ProgramTest):
                 self.assertTrue(label.endswith("+") or rates[label] < rates[label[:-1] + "+"], f"{label} in {study}")
         self.assertTrue(growing["stability"])
         self.assertEqual(growing["stability"], growing["sweep"])
-        for row in read_table(self.run_scene("dissipation", *COARSE, "Study=dissipation", file="default.prm") / "dissipation.csv"):
-            if row["label"] in growing["stability"]:
-                self.assertGreater(float(row["no C_b [%]"]), 0.)
+        dissipation = self.run_scene("dissipation", *COARSE, "Study=dissipation", file="default.prm") / "dissipation.csv"
+        rates = {row["label"]: row["no C_b [%]"] for row in read_table(dissipation)}
+        for label in growing["stability"]:
+            self.assertGreater(float(rates[label]), 0.)

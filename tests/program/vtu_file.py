@@ -10,12 +10,16 @@ TYPE_CODES = {"Float32": "f", "Float64": "d", "Int32": "i", "UInt8": "B"}
 
 
 class VtuFile:
-    """Points and point fields, as tuples of three numbers and as numbers; coincident points of several cells are repeated."""
+    """
+    Points and point fields, as tuples of three numbers and as numbers; coincident points of several cells are repeated.
+    The cells' VTK types: 9 is a quadrilateral, 12 a hexahedron.
+    """
 
     def __init__(self, path):
-        self.points, self.fields = [], {}
+        self.points, self.fields, self.cell_types = [], {}, []
         for piece in xml.etree.ElementTree.parse(path).iter("Piece"):
             self.points += triples(decode(piece.find("Points/DataArray")))
+            self.cell_types += decode(piece.find("Cells/DataArray[@Name='types']"))
             for data in piece.findall("PointData/DataArray"):
                 values = decode(data)
                 if data.get("NumberOfComponents") == "3":

@@ -3,6 +3,7 @@
 
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/eigen/symmetric_modes.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/reduction/reduced_model.h>
 
@@ -45,8 +46,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
 {
   for (const auto &[dissipation, materials] : {std::make_pair(RadialDissipation::none, mounted()),
@@ -57,9 +56,9 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
       const auto &M = *s.coupled.mass;
 
       // A basis of all directions, grown in uneven parts, not that of the dofs
-      const int         n = s.coupled.map().NumGlobalElements();
+      const int         n = s.coupled.map().n();
       const MultiVector T = orthonormalize(M, nullptr, random_vectors(s.coupled.map(), n), 1e-13);
-      ASSERT_EQ(T.NumVectors(), n);
+      ASSERT_EQ(T.n_columns(), n);
       ReducedModel reduced(s.coupled);
       reduced.extend(view(T, 0, 5));
       reduced.extend(view(T, 5, n - 20));
@@ -84,8 +83,6 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
         }
     }
 }
-
-
 
 TEST(ReducedModel, ProjectsEveryBlock)
 {
@@ -114,8 +111,6 @@ TEST(ReducedModel, ProjectsEveryBlock)
     }
 }
 
-
-
 TEST(ReducedModel, ModalDamping)
 {
   // Alone and beside a damping matrix, in a full basis and in a small one grown in parts
@@ -125,7 +120,7 @@ TEST(ReducedModel, ModalDamping)
       const Scene             s        = tiny_scene(RadialDissipation::none, materials);
       const CoupledSystem     system   = with_modal_damping(s.coupled);
       const SecondOrderSystem matrices = with_friction(s.coupled, mu);
-      const int               n        = system.map().NumGlobalElements();
+      const int               n        = system.map().n();
       const MultiVector       units    = unit_vectors(system.map());
       DenseMatrix             C        = replicate(times({system.terms.back()}, system.values, 1, units));
       if (matrices.damping)
@@ -147,13 +142,11 @@ TEST(ReducedModel, ModalDamping)
     }
 }
 
-
-
 TEST(ReducedModel, LessThanAFullBasisIsNotExact)
 {
   // The first test can fail: without one direction it would.
   const Scene       s     = tiny_scene(RadialDissipation::none);
-  const int         n     = s.coupled.map().NumGlobalElements();
+  const int         n     = s.coupled.map().n();
   const MultiVector T     = unit_vectors(s.coupled.map());
   const double      limit = 2. * M_PI * 20000., mu = 0.6;
   ReducedModel      full(s.coupled), less(s.coupled);

@@ -1,4 +1,4 @@
-"""The rooms of the code include only from their own row of the table in doc/structure.md or from rows above."""
+"""The rooms of the code include only from their own row of the table in doc/structure.md or from rows above; who knows which library."""
 
 import pathlib
 import re
@@ -29,6 +29,12 @@ class Layout(unittest.TestCase):
                     n_includes += 1
                     self.assertLessEqual(order[other], order[room], f"{path} includes from {other}/")
         self.assertGreater(n_includes, 100)
+
+    def test_one_room_knows_the_library_of_distributed_matrices(self):
+        files = [path for base in ("source", "include", "tests") for path in (ROOT / base).rglob("*") if path.suffix in (".cc", ".h")]
+        naming = {str(path.relative_to(ROOT)) for path in files if "Epetra" in path.read_text(encoding="utf-8")}
+        self.assertEqual({name for name in naming if "/linear_algebra/" not in name}, set())
+        self.assertIn("source/linear_algebra/sparse_matrix.cc", naming)
 
 
 if __name__ == "__main__":

@@ -126,8 +126,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ContactProblem, TwoSpringsClosedForm)
 {
   // Springs of flexibility 1 and 2 under one plate, the second with a gap of 3: it closes when the first is compressed by 3.
@@ -146,8 +144,6 @@ TEST(ContactProblem, TwoSpringsClosedForm)
   EXPECT_DOUBLE_EQ(heavy.reactions[1], -2.);
   EXPECT_EQ(heavy.gaps[1], 0.);
 }
-
-
 
 TEST(ContactProblem, FrictionTiltsABlock)
 {
@@ -175,8 +171,6 @@ TEST(ContactProblem, FrictionTiltsABlock)
     }
 }
 
-
-
 TEST(ContactProblem, FindsWhatEnumerationFinds)
 {
   int n_unique = 0, n_several = 0;
@@ -186,49 +180,38 @@ TEST(ContactProblem, FindsWhatEnumerationFinds)
       const ContactProblem problem    = random_problem(seed, 6, mu);
       const Enumerated     enumerated = enumerate(problem);
       SCOPED_TRACE(seed);
-      try
+      const auto solution   = solve_contact(problem);
+      const auto uniqueness = contact_uniqueness(problem, solution, 20);
+      double     smallest   = 1.;
+      for (const auto &r : enumerated.reactions)
         {
-          const auto solution   = solve_contact(problem);
-          const auto uniqueness = contact_uniqueness(problem, solution, 20);
-          double     smallest   = 1.;
-          for (const auto &r : enumerated.reactions)
-            {
-              double difference = 0.;
-              for (int i = 0; i < 6; ++i)
-                difference = std::max(difference, std::abs(r[i] - solution.reactions[i]));
-              smallest = std::min(smallest, difference);
-            }
-          EXPECT_LT(smallest, 1e-9);
-          for (int c = 0; c < 6; ++c)
-            {
-              EXPECT_LE(solution.reactions[c], 0.);
-              EXPECT_LE(solution.gaps[c], 0.);
-              EXPECT_EQ(solution.reactions[c] * solution.gaps[c], 0.);
-            }
-          if (uniqueness.is_certified)
-            {
-              EXPECT_EQ(enumerated.reactions.size(), 1u);
-              ++n_unique;
-            }
-          if (uniqueness.found_other)
-            {
-              EXPECT_GT(enumerated.reactions.size(), 1u);
-              ++n_several;
-            }
+          double difference = 0.;
+          for (int i = 0; i < 6; ++i)
+            difference = std::max(difference, std::abs(r[i] - solution.reactions[i]));
+          smallest = std::min(smallest, difference);
         }
-      catch (const SolverError &error)
+      EXPECT_LT(smallest, 1e-9);
+      for (int c = 0; c < 6; ++c)
         {
-          EXPECT_TRUE(enumerated.reactions.empty());
-          EXPECT_NE(std::string(error.what()).find("of tension and"), std::string::npos);
+          EXPECT_LE(solution.reactions[c], 0.);
+          EXPECT_LE(solution.gaps[c], 0.);
+          EXPECT_EQ(solution.reactions[c] * solution.gaps[c], 0.);
+        }
+      if (uniqueness.is_certified)
+        {
+          EXPECT_EQ(enumerated.reactions.size(), 1u);
+          ++n_unique;
+        }
+      if (uniqueness.found_other)
+        {
+          EXPECT_GT(enumerated.reactions.size(), 1u);
+          ++n_several;
         }
     }
-  // Both cases must have occurred, or the test shows nothing.
   // Both cases must have occurred, or the test shows nothing.
   EXPECT_GT(n_unique, 10);
   EXPECT_GT(n_several, 0);
 }
-
-
 
 TEST(ContactProblem, BoundOfUniquenessIsWhereTheSymmetricPartLosesDefiniteness)
 {

@@ -77,7 +77,7 @@ TEST(ContactMotions, OfALevelDisc)
   const Scene                 s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({}), operating());
   const auto                  N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
   ASSERT_TRUE(N);
-  ASSERT_EQ(N->NumVectors(), 6);
+  ASSERT_EQ(N->n_columns(), 6);
   std::mt19937                           generator(1);
   std::uniform_real_distribution<double> uniform(-1., 1.);
   for (int turn = 0; turn < 20; ++turn)
@@ -89,8 +89,8 @@ TEST(ContactMotions, OfALevelDisc)
       const DenseMatrix orthogonal   = symmetric_eigenpairs(S).vectors;
       const auto [pressing, sliding] = contact_motions(*s.contact.normal, *N * orthogonal);
       ASSERT_TRUE(pressing && sliding);
-      EXPECT_EQ(pressing->NumVectors(), 3);
-      EXPECT_EQ(sliding->NumVectors(), 3);
+      EXPECT_EQ(pressing->n_columns(), 3);
+      EXPECT_EQ(sliding->n_columns(), 3);
       EXPECT_LT(max_norm(replicate(*s.contact.normal * *sliding)), 1e-13);
       EXPECT_LT(max_norm(gram(*sliding, *s.system.mass * *sliding) - DenseMatrix::Identity(3, 3)), 1e-12);
     }
@@ -103,7 +103,7 @@ TEST(ContactMotions, OfADiscThatOnlyTurns)
   const Scene s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({{"disc_bore", 1e10, 0., 1e10}}), operating());
   const auto  N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
   ASSERT_TRUE(N);
-  ASSERT_EQ(N->NumVectors(), 1);
+  ASSERT_EQ(N->n_columns(), 1);
   const auto motions = contact_motions(*s.contact.normal, *N);
   EXPECT_FALSE(motions.pressing);
   EXPECT_TRUE(motions.sliding);

@@ -1,4 +1,3 @@
-#include <squeal/geometry/geometry_usage.h>
 #include <squeal/studies/parameter_usage.h>
 
 #include <gtest/gtest.h>
@@ -129,13 +128,11 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ParameterUsage, EveryParameterIsAccountedFor)
 {
   // Of these sections every run uses everything; of the others every parameter must be in the table of the tests below.
   const std::set<std::string> always       = {"Geometry", "Mounts", "Discretization", "Band", "Real modes", "Linear algebra"};
-  const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density"};
+  const std::set<std::string> of_materials = {"Young modulus", "Poisson ratio", "Density", "Single pins"};
   Parameters                  parameters;
   Declarations                declarations;
   parameters.declare(declarations);
@@ -154,15 +151,11 @@ TEST(ParameterUsage, EveryParameterIsAccountedFor)
     EXPECT_TRUE(std::any_of(declared.begin(), declared.end(), [&](const std::string &name) { return name.rfind(path, 0) == 0; })) << path;
 }
 
-
-
 TEST(ParameterUsage, NothingIsUnusedByDefault)
 {
   for (const Study *study : studies())
     EXPECT_EQ(unused({std::string("Study=") + study->name}), std::set<std::string>()) << study->name;
 }
-
-
 
 TEST(ParameterUsage, EveryStudyIsFoundByItsName)
 {
@@ -176,8 +169,6 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
     }
   EXPECT_EQ(names, (std::set<std::string>{"dissipation", "reduction", "stability", "sweep"}));
 }
-
-
 
 TEST(ParameterUsage, OfStability)
 {
@@ -194,15 +185,11 @@ TEST(ParameterUsage, OfStability)
             those_of(joined({"Reduction/", "Sweep/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}, steady)));
 }
 
-
-
 TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
             those_of({"Reduction/", "Sweep/", "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
-
-
 
 TEST(ParameterUsage, OfReduction)
 {
@@ -223,8 +210,6 @@ TEST(ParameterUsage, OfReduction)
                                      "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
 }
 
-
-
 TEST(ParameterUsage, OfSweeps)
 {
   const std::vector<std::string> always = {"Reduction/", "Complex modes/", "Operation/Friction coefficient", "Output/Write"};
@@ -236,8 +221,6 @@ TEST(ParameterUsage, OfSweeps)
     unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
     those_of(joined(always, steady)));
 }
-
-
 
 TEST(ParameterUsage, OfGeometries)
 {
@@ -263,8 +246,6 @@ TEST(ParameterUsage, OfGeometries)
   fs::remove_all(folder);
 }
 
-
-
 TEST(ParameterUsage, NoFalseAlarmOnShippedFiles)
 {
   std::size_t n_files = 0;
@@ -276,8 +257,6 @@ TEST(ParameterUsage, NoFalseAlarmOnShippedFiles)
       }
   EXPECT_GE(n_files, 17u);
 }
-
-
 
 TEST(ParameterUsage, TheNoteNamesAllWithTheirReasons)
 {

@@ -2,7 +2,7 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/sparse.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace
   /// θ = 2 a b² of a symmetric matrix, −3 a of a skew one, and terms of low rank with and without weights, all with λ.
   struct Terms
   {
-    Epetra_Map                           map = rows(4), short_map = rows(2);
+    RowMap                               map = rows(4), short_map = rows(2);
     std::shared_ptr<const SparseMatrix>  S    = sparse(map, map, [](const int i) { return Row{{i, 1. + i}, {3 - i, 0.5}}; });
     std::shared_ptr<const SparseMatrix>  G    = sparse(map, map, [](const int i) {
       return i < 2 ? Row{{i + 2, 1.5 - i}} : Row{{i - 2, i - 3.5}};
@@ -47,16 +47,12 @@ namespace
   }
 } // namespace
 
-
-
 TEST(Terms, SumAndItsTransposeOnVectors)
 {
   const Terms t;
   EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
   EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), t.expected().transpose()), 1e-15);
 }
-
-
 
 TEST(Terms, SumAsASparseMatrix)
 {
@@ -70,8 +66,6 @@ TEST(Terms, SumAsASparseMatrix)
                                   std::make_shared<LowRankFactor>(unit_vectors(t.map))));
   EXPECT_THROW(sparse_matrices(t.terms, t.values), SolverError);
 }
-
-
 
 TEST(Terms, VanishWithTheirParametersOrWeights)
 {
@@ -91,8 +85,6 @@ TEST(Terms, VanishWithTheirParametersOrWeights)
   EXPECT_EQ(names(), "of low rank, ");
 }
 
-
-
 TEST(Terms, MergedTermsHaveTheSameSum)
 {
   const Terms             t;
@@ -104,8 +96,6 @@ TEST(Terms, MergedTermsHaveTheSameSum)
       deviation(replicate(times(few, {}, power, unit_vectors(t.map))), replicate(times(sparse, t.values, power, unit_vectors(t.map)))),
       1e-15);
 }
-
-
 
 TEST(Terms, FactorsAreTheSameSparseOrInFull)
 {

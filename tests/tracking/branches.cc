@@ -102,6 +102,7 @@ namespace
 
   void expect_counts(const StabilityChart &chart)
   {
+    EXPECT_FALSE(chart.counts.empty());
     for (const ChartCount &count : chart.counts)
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
   }
@@ -188,8 +189,6 @@ namespace
   };
 } // namespace
 
-
-
 TEST(Branches, CoalescenceInClosedForm)
 {
   for (const double k22 : {2., 2.3, 2.7, 3.2, 4.})
@@ -213,8 +212,6 @@ TEST(Branches, CoalescenceInClosedForm)
     }
 }
 
-
-
 TEST(Branches, RestabilisationInClosedForm)
 {
   // δ(κ)² = (k11 − k22)² − 4 a b with a b = μ (p − μ): negative between two values of μ
@@ -236,8 +233,6 @@ TEST(Branches, RestabilisationInClosedForm)
       }
 }
 
-
-
 TEST(Branches, DampedThresholdInClosedForm)
 {
   for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}, {0.001, 0.003}, {0.2, 0.1}, {1e-5, 1e-5}})
@@ -255,8 +250,6 @@ TEST(Branches, DampedThresholdInClosedForm)
       EXPECT_EQ(chart.branches.size(), 2u);
     }
 }
-
-
 
 TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 {
@@ -278,8 +271,6 @@ TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
     }
 }
 
-
-
 TEST(Branches, VeeringsAreRefined)
 {
   // Branches keep their order and exchange vectors, within |μ − 1| ~ the coupling
@@ -298,8 +289,6 @@ TEST(Branches, VeeringsAreRefined)
     }
 }
 
-
-
 TEST(Branches, NarrowWindowsOfInstabilityAreFound)
 {
   // 4 + μ and 6 − μ meet at μ = 1; coupling c and −c makes them grow while |μ − 1| < c
@@ -314,8 +303,6 @@ TEST(Branches, NarrowWindowsOfInstabilityAreFound)
       EXPECT_EQ(chart.n_doubtful_steps, 0);
     }
 }
-
-
 
 TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 {
@@ -379,8 +366,6 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
     }
 }
 
-
-
 TEST(Branches, DoubleModesMayGrowAtOnce)
 {
   // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
@@ -394,8 +379,6 @@ TEST(Branches, DoubleModesMayGrowAtOnce)
   EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.05, 1e-10);
   EXPECT_EQ(chart.n_doubtful_steps, 0);
 }
-
-
 
 TEST(Branches, DampingThatGrowsWithFriction)
 {
@@ -419,8 +402,6 @@ TEST(Branches, DampingThatGrowsWithFriction)
       EXPECT_EQ(chart.thresholds[1].branch, 0);
     }
 }
-
-
 
 TEST(Branches, BandCrossingsInClosedForm)
 {
@@ -446,8 +427,6 @@ TEST(Branches, BandCrossingsInClosedForm)
   expect_counts(chart);
 }
 
-
-
 TEST(Branches, OverdampedModesReachTheRealAxis)
 {
   // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
@@ -466,8 +445,6 @@ TEST(Branches, OverdampedModesReachTheRealAxis)
   EXPECT_EQ(chart.n_doubtful_steps, 0);
   expect_counts(chart);
 }
-
-
 
 TEST(Branches, UncertaintyCoversThePerturbation)
 {
@@ -513,8 +490,6 @@ TEST(Branches, UncertaintyCoversThePerturbation)
         EXPECT_LT(bound, 20. * error);
       }
 }
-
-
 
 TEST(Branches, ManyModes)
 {
@@ -577,8 +552,6 @@ TEST(Branches, ManyModes)
   expect_same(coarse, other, 1e-12);
 }
 
-
-
 TEST(Branches, PinsAndDisc)
 {
   // 24 pin modes within 1 %, a disc doublet among them, twelve equal modes above, and the friction of three pins
@@ -621,8 +594,6 @@ TEST(Branches, PinsAndDisc)
     }
 }
 
-
-
 TEST(Branches, WindowsBetweenPointsAreFound)
 {
   // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
@@ -642,8 +613,6 @@ TEST(Branches, WindowsBetweenPointsAreFound)
       }
 }
 
-
-
 TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
 {
   Flutter      flutter;
@@ -655,8 +624,6 @@ TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
   EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.9, 1e-12);
   EXPECT_NEAR(chart.thresholds[0].uncertainty, 0.1, 1e-12);
 }
-
-
 
 TEST(Branches, CoordinatesInABasisThatGrows)
 {
@@ -673,8 +640,6 @@ TEST(Branches, CoordinatesInABasisThatGrows)
   ASSERT_EQ(other.points.size(), chart.points.size());
   expect_same(chart, other, 1e-12);
 }
-
-
 
 TEST(Branches, Refusals)
 {

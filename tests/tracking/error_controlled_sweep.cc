@@ -1,5 +1,6 @@
 #include "solutions.h"
 
+#include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
 #include <map>
@@ -105,8 +106,6 @@ namespace
   }
 } // namespace
 
-
-
 TEST(ErrorControlledSweep, AgreesWithFullOrder)
 {
   for (const auto &[c_b, c_t] : {std::make_pair(0., 0.), {40., 0.}, {40., -10.}})
@@ -135,8 +134,6 @@ TEST(ErrorControlledSweep, AgreesWithFullOrder)
     }
 }
 
-
-
 TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
 {
   const Chart                 chart(40.);
@@ -160,7 +157,7 @@ TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
         {
           ASSERT_TRUE(again.points[i] && result.points[i]);
           // The same to the last bit, but where sums over processes differ in rounding from run to run
-          if (chart.s.model.free_map().Comm().NumProc() == 1)
+          if (chart.s.model.free_map().n_processes() == 1)
             {
               EXPECT_EQ(again.points[i]->lambda, result.points[i]->lambda) << "point " << i;
               EXPECT_EQ(again.points[i]->errors, result.points[i]->errors) << "point " << i;
@@ -170,8 +167,6 @@ TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
         }
     }
 }
-
-
 
 TEST(ErrorControlledSweep, StopsAtWhatItProved)
 {

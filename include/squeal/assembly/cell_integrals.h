@@ -1,12 +1,14 @@
 #pragma once
 
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>
 
 #include <deal.II/lac/full_matrix.h>
 
 #include <functional>
 #include <memory>
+#include <vector>
 
 namespace Squeal
 {
@@ -15,9 +17,11 @@ namespace Squeal
   using CellIntegral  = std::function<void(const Cell &, dealii::FullMatrix<double> &)>;
 
   /**
-   * A matrix on the free dofs: the sum of an integral over those cells that contribute.
+   * Matrices on the free dofs, one for each integral: its sum over those cells that contribute.
    *
-   * @param integral fills the matrix of a cell, as large as it has dofs
+   * @param integrals called in this order for each cell; each fills the matrix of the cell, as large as it has dofs
    */
-  std::shared_ptr<const SparseMatrix> assemble_cells(const Model &model, const CellPredicate &contributes, const CellIntegral &integral);
+  std::vector<std::shared_ptr<const SparseMatrix>> assemble_cells(const Model                     &model,
+                                                                  const CellPredicate             &contributes,
+                                                                  const std::vector<CellIntegral> &integrals);
 } // namespace Squeal

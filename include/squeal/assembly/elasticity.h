@@ -14,7 +14,8 @@ namespace Squeal
   };
 
   /**
-   * Terms of disc and pins on the free dofs, sparse and symmetric, at unit coefficients:
+   * Terms of the disc and of every pin on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
+   * parameters of each body, such as "density, pin_top_1":
    *
    *   E K_b,   K_b,ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV for E = 1
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,12 +12,18 @@ namespace Squeal
   {
     std::string quantity;
     double      threshold;
-    double      below, above;     ///< nearest values on either side; below is 0 and above infinite where there was none
-    long        n_below, n_above; ///< how often each side was taken
+    double      below = 0., above = std::numeric_limits<double>::infinity(); ///< nearest values on either side, where there were any
+    long        n_below = 0, n_above = 0;                                    ///< how often each side was taken
 
     /// Orders of magnitude between the threshold and the nearest value on either side; infinite where there is none.
-    double margin_below() const;
-    double margin_above() const;
+    double margin_below() const
+    {
+      return std::log10(threshold / below);
+    }
+    double margin_above() const
+    {
+      return std::log10(above / threshold);
+    }
   };
 
   /**
@@ -39,7 +47,10 @@ namespace Squeal
     /// Whether @p value > threshold: it counts. NaN does not.
     bool exceeded_by(double value) const;
 
-    double threshold() const;
+    double threshold() const
+    {
+      return record.threshold;
+    }
 
     /// Every decision that has been asked, ascending by name.
     static std::vector<DecisionRecord> records();

@@ -10,44 +10,44 @@ namespace Squeal
    * what to change. Thrown by everything that checks input, meshes or the
    * outcome of a solver; main() prints it as one message and returns 1.
    */
-  class Error : public std::runtime_error
+  struct Error : std::runtime_error
   {
-  public:
     /**
      * @param what   the quantity or parameter, its value, and why it is refused
      * @param where  file, section, surface, component or step
      * @param change what would make the run succeed
      */
-    Error(const std::string &what, const std::string &where, const std::string &change);
+    Error(const std::string &what, const std::string &where, const std::string &change)
+      : std::runtime_error(what + "\n  where:  " + where + "\n  change: " + change)
+      , reason(what)
+      , where(where)
+      , change(change)
+    {}
 
     const std::string reason, where, change; ///< the three parts of the message
   };
 
   /// An Error in the parameter file or on the command line.
-  class ParameterError : public Error
+  struct ParameterError : Error
   {
-  public:
     using Error::Error;
   };
 
   /// An Error in a geometry or mesh.
-  class MeshError : public Error
+  struct MeshError : Error
   {
-  public:
     using Error::Error;
   };
 
   /// An Error of a solver: not converged, not certified, count not met.
-  class SolverError : public Error
+  struct SolverError : Error
   {
-  public:
     using Error::Error;
   };
 
   /// An Error while reading or writing files.
-  class FileError : public Error
+  struct FileError : Error
   {
-  public:
     using Error::Error;
   };
 } // namespace Squeal

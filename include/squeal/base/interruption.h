@@ -31,16 +31,25 @@ namespace Squeal
     Interruption &operator=(const Interruption &) = delete;
 
     /// Lets other processes of the run speak.
-    void be_silent();
+    void be_silent()
+    {
+      silent = true;
+    }
 
     /// While it is held, a signal waits: for steps that are done wholly or not at all.
-    [[nodiscard]] std::unique_lock<std::mutex> hold();
+    [[nodiscard]] std::unique_lock<std::mutex> hold()
+    {
+      return std::unique_lock<std::mutex>(mutex);
+    }
 
     /**
      * Sets what is done before the process ends; nothing if empty. To be called
      * while hold() is held. @p action returns what it means for the user, one phrase.
      */
-    void before_end(std::function<std::string()> action);
+    void before_end(std::function<std::string()> new_action)
+    {
+      action = std::move(new_action);
+    }
 
   private:
     /// Waits for a signal, or for the end of this object.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <ctime>
 #include <iosfwd>
 #include <mutex>
 #include <string>
@@ -28,7 +29,7 @@ namespace Squeal
 
   private:
     std::chrono::steady_clock::time_point start;
-    double                                cpu_start;
+    std::clock_t                          cpu_start;
   };
 
   /// One finished step of a run, as the run record lists it.
@@ -48,7 +49,7 @@ namespace Squeal
   {
   public:
     /// A channel that records steps but prints nothing.
-    Progress();
+    Progress() = default;
 
     /// A channel that prints to @p stream; @p live: it is a terminal.
     Progress(std::ostream &stream, bool live);
@@ -71,10 +72,16 @@ namespace Squeal
     void note(const std::string &text);
 
     /// All finished steps.
-    const std::vector<StepRecord> &steps() const;
+    const std::vector<StepRecord> &steps() const
+    {
+      return records;
+    }
 
     /// Seconds since construction.
-    double elapsed() const;
+    double elapsed() const
+    {
+      return run.cost().seconds;
+    }
 
   private:
     /// Shows the counter until the channel is closed.

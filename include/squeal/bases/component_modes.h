@@ -3,7 +3,7 @@
 #include <squeal/bases/mode_labels.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/eigen/symmetric_modes.h>
-#include <squeal/system/second_order_system.h>
+#include <squeal/system/terms.h>
 
 namespace Squeal
 {
@@ -14,13 +14,6 @@ namespace Squeal
     std::vector<double>          eigenvalues; ///< ω² [rad²/s²], ascending
     std::vector<double>          residuals;   ///< as in SymmetricModes [-]
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
-  };
-
-  /// Component sets of the paper.
-  enum class Component
-  {
-    disc,
-    pins ///< all of them together
   };
 
   /// Masses lumped to the nodes (row sums) [kg], the same on every process.

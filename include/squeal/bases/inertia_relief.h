@@ -1,6 +1,8 @@
 #pragma once
 
 #include <squeal/linear_algebra/factorization.h>
+#include <squeal/model/model.h>
+#include <squeal/system/terms.h>
 
 #include <memory>
 #include <optional>
@@ -38,7 +40,10 @@ namespace Squeal
     MultiVector solve(const MultiVector &forces) const;
 
     /// N; null if K is positive definite.
-    const MultiVector *rigid_body_modes() const;
+    const MultiVector *rigid_body_modes() const
+    {
+      return N.get();
+    }
 
   private:
     std::shared_ptr<const SparseMatrix> K;
@@ -46,4 +51,22 @@ namespace Squeal
     std::unique_ptr<Factorization>      factor;
     std::string                         what;
   };
+
+  /**
+   * Static responses of the uncoupled bodies, K u = f: with f = P_nᵀ or P_tᵀ the normal and tangential attachment modes of
+   * disc and pins together (section 5.1 of the paper). K consists of one block for each component, so that one factorisation
+   * is that of every component.
+   *
+   * @param largest_circular_frequency end of the band [rad/s]: a rigid-body motion whose frequency is below 10⁻⁴ of it counts
+   *                                   as free
+   *
+   * Throws SolverError if K (or K + s² M) is not positive definite.
+   */
+  InertiaRelief static_response(const Model             &model,
+                                const SecondOrderSystem &system,
+                                double                   largest_circular_frequency,
+                                FactorizationLibrary     library);
+
+  /// K⁻¹ Pᵀ, n × n_c: responses to unit forces between the contact nodes, along the direction of P [m/N].
+  MultiVector attachment_modes(const InertiaRelief &response, const SparseMatrix &P);
 } // namespace Squeal

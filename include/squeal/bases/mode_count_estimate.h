@@ -3,20 +3,27 @@
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/parameters/materials.h>
 
+#include <string>
+#include <vector>
+
 namespace Squeal
 {
-  /// About how many modes there are below a frequency.
-  struct ModeCountEstimate
+  /// What the mesh says of a body.
+  struct BodyShape
   {
-    double disc = 0.; ///< of the free disc [-]
-    double pins = 0.; ///< of all pins, held at their backs and sliding on the disc [-]
-
-    /// Of the coupled system.
-    double coupled() const;
+    std::string name;                       ///< of its volume
+    double      inner_radius, outer_radius; ///< least and greatest distance of a node from the z axis [m]
+    double      height;                     ///< extent along z [m]
+    double      volume;                     ///< [m³]
+    double      outline;                    ///< of a section across z: area of the upright faces over the height [m]
+    double      contact_area;               ///< [m²]
   };
 
+  /// Those of all volumes of the mesh, in their order: the disc first.
+  std::vector<BodyShape> body_shapes(const HexMesh &mesh);
+
   /**
-   * Estimates the numbers of modes up to @p largest_circular_frequency [rad/s] from volumes and outlines in the mesh and
+   * Estimates the number of modes of the coupled system up to @p largest_circular_frequency [rad/s] from volumes and outlines in the mesh and
    * from wave speeds; nothing is assembled. Within a factor of two from some ten modes on.
    *
    * Every body is taken for a prism along z of area S, outline L and height h. A wave of number k in the plane counts
@@ -26,9 +33,10 @@ namespace Squeal
    *
    * modes. Disc: one bending, one shear and one longitudinal wave, each with one uniform motion, and their thickness orders
    * k² = (ω/c)² − (nπ/h)². Pins: bending twice, torsion and extension of a bar, and waves across the section for every order
-   * along it. Bending follows 1/ω² = 1/ω_b² + 1/ω_s² with ω_b ∝ k² (thin) and ω_s ∝ k (shear). Mounts are left out.
+   * along it. Bending follows 1/ω² = 1/ω_b² + 1/ω_s² with ω_b ∝ k² (thin) and ω_s ∝ k (shear). Mounts are left out, and so is the
+   * coupling: the sum of the modes of the free disc and of the pins, held at their backs and sliding on the disc.
    */
-  ModeCountEstimate expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, double largest_circular_frequency);
+  double expected_number_of_modes(const HexMesh &mesh, const MaterialParameters &materials, double largest_circular_frequency);
 
   /**
    * Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear

@@ -47,9 +47,15 @@ namespace Squeal
     DoubletSign sign            = DoubletSign::none;
     double      participation   = 0.; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of this shape [-]
 
-    ModeShape shape() const;
+    ModeShape shape() const
+    {
+      return {family, nodal_circles, nodal_diameters, rank};
+    }
 
-    bool is_of_pins() const;
+    bool is_of_pins() const
+    {
+      return rank > 0;
+    }
   };
 
   /// Same shape and same sign.

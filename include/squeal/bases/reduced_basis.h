@@ -39,7 +39,6 @@ namespace Squeal
   /// A basis of the coupled system, and how it came about.
   struct ReducedBasis
   {
-    std::string                  name;
     std::shared_ptr<MultiVector> vectors;        ///< T_r in coupled coordinates, n × r, M_c-orthonormal
     int                          n_r0;           ///< columns of T_r0
     int                          n_nominal;      ///< columns of T_r by the formula
@@ -63,5 +62,5 @@ namespace Squeal
    * Throws SolverError if an ingredient is missing or an empty set, if the
    * basis is larger than the system, or if it cannot be made orthonormal.
    */
-  ReducedBasis reduced_basis(BasisKind kind, const BasisIngredients &ingredients, const BasisOptions &options = {});
+  ReducedBasis reduced_basis(const BasisRecipe &recipe, const BasisIngredients &ingredients, const BasisOptions &options = {});
 } // namespace Squeal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>
 
 #include <optional>

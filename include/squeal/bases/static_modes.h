@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/bases/component_modes.h>
-#include <squeal/bases/static_response.h>
+#include <squeal/bases/inertia_relief.h>
 #include <squeal/contact/updated_inverse.h>
 
 #include <array>
@@ -20,12 +20,12 @@ namespace Squeal
   class StaticModes
   {
   public:
-    /// @param largest_circular_frequency end of the band [rad/s], see StaticResponse
+    /// @param largest_circular_frequency end of the band [rad/s], see static_response()
     StaticModes(const Model             &model,
                 const ContactInterface  &interface,
                 const ContactOperators  &contact,
                 const SecondOrderSystem &system,
-                const StaticResponse    &response,
+                const InertiaRelief     &response,
                 double                   largest_circular_frequency,
                 FactorizationLibrary     library);
 
@@ -55,7 +55,10 @@ namespace Squeal
     const MultiVector &constraint(Component component) const;
 
     /// N, n × k, M-orthonormal: rigid-body motions of the uncoupled disc; null if the mounts hold it.
-    const MultiVector *rigid_body_modes() const;
+    const MultiVector *rigid_body_modes() const
+    {
+      return response.rigid_body_modes();
+    }
 
     /// Number of contact nodes.
     int n_contact() const;
@@ -67,7 +70,7 @@ namespace Squeal
     const ContactInterface                             &interface;
     const ContactOperators                             &contact;
     const SecondOrderSystem                            &system;
-    const StaticResponse                               &response;
+    const InertiaRelief                                &response;
     double                                              largest_circular_frequency;
     FactorizationLibrary                                library;
     mutable std::unique_ptr<MultiVector>                normal, tangential;

@@ -3,7 +3,9 @@
 #include <squeal/model/model.h>
 #include <squeal/parameters/operation.h>
 
-#include <array>
+#include <Eigen/Core>
+
+#include <cmath>
 #include <vector>
 
 namespace Squeal
@@ -11,19 +13,25 @@ namespace Squeal
   /// A pair of coincident nodes, one of the disc and one of a pin, with its local frame.
   struct ContactNode
   {
-    unsigned int          disc_node, pin_node; ///< numbers among Model::nodes()
-    unsigned int          pin;                 ///< component of the pin node
-    std::array<double, 3> position;            ///< [m]
-    std::array<double, 3> normal;              ///< n: outward unit normal of the disc
-    std::array<double, 3> sliding;             ///< t: direction in which the disc moves relative to the pin
-    std::array<double, 3> radial;              ///< b = n × t
-    double                area;                ///< share of the contact area [m²]
+    unsigned int    disc_node, pin_node; ///< numbers among Model::nodes()
+    unsigned int    pin;                 ///< component of the pin node
+    Eigen::Vector3d position;            ///< [m]
+    Eigen::Vector3d normal;              ///< n: outward unit normal of the disc
+    Eigen::Vector3d sliding;             ///< t: direction in which the disc moves relative to the pin
+    Eigen::Vector3d radial;              ///< b = n × t
+    double          area;                ///< share of the contact area [m²]
 
     /// Distance from the disc's axis [m].
-    double axis_distance() const;
+    double axis_distance() const
+    {
+      return std::hypot(position[0], position[1]);
+    }
 
     /// Side of the disc: +1 where the normal points along +z, -1 elsewhere.
-    int side() const;
+    int side() const
+    {
+      return normal[2] > 0. ? 1 : -1;
+    }
   };
 
   /// The contact nodes, the same on every process.

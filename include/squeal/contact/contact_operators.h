@@ -2,6 +2,7 @@
 
 #include <squeal/contact/contact_interface.h>
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <memory>
 
@@ -28,7 +29,16 @@ namespace Squeal
 
   ContactOperators contact_operators(const Model &model, const ContactInterface &interface);
 
-  /// Dofs of some components, with their contact nodes free or sliding on a rigid face.
+  /// Components of the paper.
+  enum class Component
+  {
+    disc,
+    pins ///< all of them together
+  };
+
+  bool belongs_to(const Node &node, Component component);
+
+  /// Dofs of a component, with their contact nodes free or sliding on a rigid face.
   enum class ContactBoundary
   {
     free,   ///< no constraint at the contact nodes
@@ -36,14 +46,13 @@ namespace Squeal
   };
 
   /**
-   * Matrix whose columns span the admissible displacements of the components
-   * for which @p selected says yes, the others being at rest: n × n_components.
-   * It selects the dofs of the components; with `sliding` n·u = 0 holds at their contact nodes.
+   * Matrix whose columns span the admissible displacements of a component, the other being at rest: n × n_component.
+   * It selects the dofs of the component; with `sliding` n·u = 0 holds at its contact nodes.
    */
-  std::shared_ptr<SparseMatrix> component_kernel(const Model             &model,
-                                                 const ContactInterface  &interface,
-                                                 const std::vector<bool> &selected,
-                                                 ContactBoundary          boundary);
+  std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
+                                                 const ContactInterface &interface,
+                                                 Component               component,
+                                                 ContactBoundary         boundary);
 
   /**
    * q with T q = u for displacements u, n × k, in the range of a kernel T (T_c

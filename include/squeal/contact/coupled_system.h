@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/contact/contact_operators.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
 
 #include <complex>
@@ -54,10 +55,13 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
 
     /// Distribution of the coupled dofs.
-    const Epetra_Map &map() const;
+    const RowMap &map() const;
 
     /// n_c
-    int n_contact() const;
+    int n_contact() const
+    {
+      return friction_forces->rank();
+    }
 
     /// The values with a friction coefficient, and with others in place of those that are given.
     ParameterValues at(double friction_coefficient, const ParameterValues &others = {}) const;
@@ -94,9 +98,6 @@ namespace Squeal
   /// Couples bodies, given by merged() terms.
   CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 
-  /// The same of symmetric matrices.
-  CoupledSystem couple(const SecondOrderSystem &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
-
   /// The same system with other values of some parameters.
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
 
@@ -126,8 +127,8 @@ namespace Squeal
   /// Q(s) = K + s C + s² M at a real shift s [rad/s]; K itself for s = 0.
   std::shared_ptr<const SparseMatrix> pencil_at(const SecondOrderSystem &system, double shift);
 
-  /// V_K, V_C or V_M, of the terms with λ to this power, n_c × n; null: none.
-  std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, int power);
+  /// V_K + s V_C + s² V_M at a real shift s [rad/s], n_c × n; null where there is no friction.
+  std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, double shift);
 
   /**
    * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal

@@ -36,13 +36,19 @@ namespace Squeal
     /// S⁻¹ X: the frictionless inverse.
     MultiVector solve_frictionless(const MultiVector &X) const;
 
-    const Epetra_Map &map() const override;
+    const RowMap &map() const override;
 
     /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
-    const MultiVector &attachment_modes() const;
+    const MultiVector &attachment_modes() const
+    {
+      return *X;
+    }
 
     /// S⁻¹ by itself.
-    const Factorization &frictionless() const;
+    const Factorization &frictionless() const
+    {
+      return *factor;
+    }
 
   private:
     std::unique_ptr<Factorization>      factor;

@@ -96,8 +96,6 @@ namespace Squeal
       double                   norm;      ///< of diag(d) Rᵀ (K + s M)^−½ on the complement
     };
 
-    double truncation(std::complex<double> lambda, double mu, int n_terms) const;
-
     const CoupledSystem &system;
     double               deflation_square, shift;
     std::vector<double>  omega;

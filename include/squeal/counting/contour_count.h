@@ -51,7 +51,6 @@ namespace Squeal
     double largest_phase_step = 0.; ///< of the accepted steps [rad]
     double truncation_bound = 0.; ///< bound of the largest ‖ΔN N⁻¹‖ on the contour (condensed): Rouché's theorem asks for less than 1 [-]
     int n_moments           = 0; ///< terms of the series (condensed)
-    int n_deflated          = 0; ///< real modes up to ω_d (condensed)
   };
 
   /**

@@ -54,7 +54,7 @@ namespace Squeal
     using Operator = std::function<void(const MultiVector &states, MultiVector &image)>;
 
     /// An empty process of degree @p degree; @p n_reserved vectors are allocated at once.
-    CompactKrylov(const Epetra_Map &map, int degree, int n_reserved);
+    CompactKrylov(const RowMap &map, int degree, int n_reserved);
 
     /**
      * Widens the active block by the states [x; 0; ...] of the columns x of
@@ -110,7 +110,7 @@ namespace Squeal
     /// Makes room for @p n vectors in U.
     void reserve(int n);
 
-    const Epetra_Map            *map;
+    RowMap                       map;
     int                          degree;
     std::unique_ptr<MultiVector> U;
     int                          r = 0; ///< vectors in U

@@ -25,7 +25,7 @@ namespace Squeal
     /**
      * s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, where
      * that is not positive definite, s = largest eigenvalue / 100. Giving a
-     * shift spares the vain attempt for bodies that can move rigidly.
+     * shift avoids an attempt that fails for bodies that can move rigidly.
      */
     double shift = 0.;
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <squeal/base/enum_table.h>
 #include <squeal/modes/complex_modes.h>
 #include <squeal/modes/reduced_modes.h>
+#include <squeal/modes/verdict.h>
 #include <squeal/reduction/residual_products.h>
 
 #include <complex>
@@ -10,19 +10,6 @@
 
 namespace Squeal
 {
-  /// Whether a mode grows.
-  enum class Verdict
-  {
-    stable,
-    unstable,
-    undecided ///< at the accuracy of the reduction
-  };
-
-  template <>
-  inline constexpr EnumName<Verdict> enum_table<Verdict>[] = {{Verdict::stable, "stable"},
-                                                              {Verdict::unstable, "unstable"},
-                                                              {Verdict::undecided, "undecided"}};
-
   /// What the residuals of reduced eigentriples at full order say about their λ; see estimate_eigenvalues().
   struct EigenvalueEstimates
   {
@@ -69,25 +56,17 @@ namespace Squeal
    *
    *   4 |g_ij g_ji| s² ≥ |λ_i − λ_j|²,   g_ij = L_iᵀ K_c⁻¹ R_j / ψ_iᵀQ'(λ_i)φ_i,
    *
-   * with a safety factor s = 3. An estimate is not claimed where that is so or
+   * with the safety factor s = error_safety. An estimate is not claimed where that is so or
    * where κ > 1000. The uncertainty of λ_i is |δλ_i| + Σ |g_ij| over the modes j
    * that may coalesce with it (Gershgorin's bound).
    *
-   * The verdict compares the growth rate with s times the uncertainty. It is
-   * open where κ > 1000. Without damping Re λ = 0 cannot change but by a
-   * coalescence: such a mode is stable unless one is within reach, as above or
-   * because s |δλ_i − δλ_j| ≥ |λ_i − λ_j|. Growth of less than 10⁻⁸ per radian
-   * counts as none.
+   * The verdict is that of verdict_of() with this uncertainty, undecided where
+   * κ > 1000. A coalescence is within reach as above or because
+   * s |δλ_i − δλ_j| ≥ |λ_i − λ_j|.
    *
    * Where the inverse has a shift, its stiffness stands for K_c.
    */
   EigenvalueEstimates estimate_eigenvalues(const ReducedModes &modes, const ResidualProducts &products);
-
-  /// The same with the products of residual_vectors().
-  EigenvalueEstimates estimate_eigenvalues(const CoupledSystem  &system,
-                                           const UpdatedInverse &inverse,
-                                           const ReducedModel   &model,
-                                           const ReducedModes   &modes);
 
   /// Right and left vectors at full order, with their residuals; @p estimates may be null.
   ComplexModes full_order_modes(const CoupledSystem       &system,

@@ -10,34 +10,31 @@
 
 namespace Squeal
 {
-  /// Errors of one reduced mode against its reference mode, section 3.2 of the paper.
-  struct ModeError
+  /// Errors of one reduced mode, or the largest of a group, against reference modes, section 3.2 of the paper.
+  struct ErrorMeasures
   {
-    std::complex<double> reference, reduced; ///< λ and λ̂ [rad/s]
-    int                  match;              ///< number of the reduced mode
-
-    double residual;   ///< ε_res, eq. (16) [-]
-    double shape;      ///< ε_mac, eq. (19) [-]
-    double frequency;  ///< ε_frq, eq. (20) [-]
-    double divergence; ///< ε_div, eq. (21) [-]
-    double eigenvalue; ///< |λ̂ − λ| / |λ| [-]
-
-    int    cluster_size; ///< reference modes with nearly the same λ, itself included
-    double subspace;     ///< sin² of the largest angle between the cluster and its reduced modes; ε_mac for a single mode [-]
-
-    std::complex<double> corrected;       ///< λ̂ + δλ [rad/s]
-    double               corrected_error; ///< |λ̂ + δλ − λ| / |λ| [-]
-    double               estimated_error; ///< |δλ| / |λ̂| [-]
-    double               estimate_ratio;  ///< |δλ| / |λ̂ − λ| [-]; infinite where λ̂ is exact
-    double               condition;       ///< κ of λ̂ [-]
-    bool                 claimed;         ///< whether the estimate means something
-    Verdict              verdict;
+    double residual             = 0.; ///< ε_res, eq. (16) [-]
+    double shape                = 0.; ///< ε_mac, eq. (19) [-]
+    double frequency            = 0.; ///< ε_frq, eq. (20) [-]
+    double divergence           = 0.; ///< ε_div, eq. (21) [-]
+    double eigenvalue           = 0.; ///< |λ̂ − λ| / |λ| [-]
+    double subspace             = 0.; ///< sin² of the largest angle between a cluster and its reduced modes; ε_mac for a single mode [-]
+    double corrected_error      = 0.; ///< |λ̂ + δλ − λ| / |λ| [-]
+    double estimated_divergence = 0.; ///< |ξ(λ̂ + δλ) − ξ(λ̂)| [-]
+    double corrected_divergence = 0.; ///< |ξ(λ̂ + δλ) − ξ(λ)| [-]
   };
 
-  /// Which reference modes belong together.
-  struct ErrorOptions
+  /// Errors of one reduced mode with their estimates.
+  struct ModeError : ErrorMeasures
   {
-    double cluster_tolerance = 1e-3; ///< |λ_i − λ_j| / |λ_i| within a cluster [-]
+    std::complex<double> reference, reduced, corrected; ///< λ, λ̂ and λ̂ + δλ [rad/s]
+    int                  match;                         ///< number of the reduced mode
+    int                  cluster_size;                  ///< reference modes with nearly the same λ, itself included
+    double               estimated_error;               ///< |δλ| / |λ̂| [-]
+    double               estimate_ratio;                ///< |δλ| / |λ̂ − λ| [-]; infinite where λ̂ is exact
+    double               condition;                     ///< κ of λ̂ [-]
+    bool                 claimed;                       ///< whether the estimate means something
+    Verdict              verdict;
   };
 
   /// Real modes as complex ones, λ = iω, without those of rigid-body motions.
@@ -50,11 +47,11 @@ namespace Squeal
    *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eqs (17), (18),
    *
    * each reduced mode serving once, so that the sum of MAC-M is largest. Where
-   * λ of several reference modes lie within the tolerance of each other, in
+   * λ of several reference modes lie within |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, in
    * chains, MAC-M of single modes says little. There a reduced mode counts by its
    * share in the span of the cluster first, and the angles between the
    * subspaces are given beside ε_mac, all in the complex M-inner product. A mode
-   * of which a poor basis has no image gets the likest within 30 % of its λ.
+   * of which a poor basis has no image gets the best match within 30 % of its λ.
    *
    * @param system    the frictionless problem: undamped()
    * @param inverse   factor of K_c (or of the shifted stiffness, which then stands for it)
@@ -68,7 +65,7 @@ namespace Squeal
                                           const ReducedModel   &model,
                                           const ReducedModes   &modes,
                                           const ComplexModes   &reference,
-                                          const ErrorOptions   &options = {});
+                                          double                cluster_tolerance = 1e-3);
 
   /// Groups of the frictionless problem: `disc`, or family and rank of the pin mode (`F1`, `T1`); `unnamed`.
   std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels);
@@ -77,13 +74,10 @@ namespace Squeal
   std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable);
 
   /// Largest errors of a group of modes.
-  struct GroupError
+  struct GroupError : ErrorMeasures
   {
     std::string group;
-    int         n_modes;
-    double      residual, shape, frequency, divergence, eigenvalue, subspace, corrected_error; ///< as in ModeError
-    double      estimated_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ̂)| [-]
-    double      corrected_divergence;                                                          ///< |ξ(λ̂ + δλ) − ξ(λ)| [-]
+    int         n_modes = 0;
   };
 
   /// Maxima of each group, in the order in which the groups first appear.

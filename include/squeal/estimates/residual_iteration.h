@@ -30,9 +30,11 @@ namespace Squeal
 
   /**
    * M_c-orthonormal vectors by which the basis of @p model grows: principal axes
-   * of what @p directions have outside of it; nothing if they lie in the basis.
+   * of what @p directions have outside of it; nothing if they lie in the basis or there are none.
    */
-  std::optional<MultiVector> new_vectors(const CoupledSystem &system, const ReducedModel &model, const MultiVector &directions);
+  std::optional<MultiVector> new_vectors(const CoupledSystem            &system,
+                                         const ReducedModel             &model,
+                                         const std::vector<MultiVector> &directions);
 
   /// A two-sided basis grown by residuals, with what it gives at the friction coefficient of the largest error.
   struct GrownBasis

@@ -15,9 +15,6 @@ namespace Squeal
     double               offset;        ///< distance of the centre from the z axis [m]
     double               round;         ///< share of the surface that is round about the axis [-]
     double               round_about_z; ///< the same about z [-]
-
-    /// Whether the disc is round about this axis, and this axis is not z.
-    bool is_misplaced(double disc_radius) const;
   };
 
   /**
@@ -28,9 +25,6 @@ namespace Squeal
    * with weights that leave out faces that do not fit, such as those of holes and ears.
    */
   DiscAxis find_disc_axis(const HexMesh &mesh);
-
-  /// Largest distance of a node of the disc from the z axis [m].
-  double disc_radius(const HexMesh &mesh);
 
   /// Throws MeshError, naming @p where, for a disc that is round about another axis than z.
   void check_disc_axis(const DiscAxis &axis, const HexMesh &mesh, const std::string &where);

@@ -44,6 +44,9 @@ namespace Squeal
   /// Index of the volume that each node belongs to.
   std::vector<unsigned int> volume_of_nodes(const HexMesh &mesh);
 
+  /// Index of a pin among the names of the volumes, the disc's first; throws ParameterError naming @p parameter and all pins.
+  unsigned int pin_number(const std::vector<std::string> &volume_names, const std::string &pin, const char *parameter);
+
   /// Physical names that every geometry uses.
   namespace PhysicalNames
   {

@@ -12,7 +12,6 @@ namespace Squeal
   {
     double       worst_scaled_jacobian; ///< 1 for a box, 0 for a flat corner, negative if inverted
     unsigned int worst_element;         ///< index of the hexahedron it was found in
-    double       worst_edge_ratio;      ///< longest to shortest edge of one hexahedron, largest over all
   };
 
   /**

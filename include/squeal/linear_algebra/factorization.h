@@ -1,26 +1,14 @@
 #pragma once
 
 #include <squeal/base/factorization_library.h>
-#include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/linear_operator.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <memory>
 #include <string>
 
 namespace Squeal
 {
-  /// A linear map on distributed vectors, y = A x, for many vectors at once.
-  class LinearOperator
-  {
-  public:
-    virtual ~LinearOperator() = default;
-
-    /// Y = A X; X and Y have the same map and number of columns and do not alias.
-    virtual void apply(const MultiVector &X, MultiVector &Y) const = 0;
-
-    /// Distribution of rows of X and Y.
-    virtual const Epetra_Map &map() const = 0;
-  };
-
   /// The inverse of a sparse matrix by a direct factorisation.
   class Factorization : public LinearOperator
   {

@@ -1,21 +1,108 @@
 #pragma once
 
 #include <squeal/linear_algebra/dense_eigenproblems.h>
+#include <squeal/linear_algebra/row_map.h>
 
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_Map.h>
-#include <Epetra_MultiVector.h>
-
-#include <memory>
 #include <optional>
 #include <vector>
 
 namespace Squeal
 {
-  /// Vectors in bulk: n × k, distributed by rows.
-  using MultiVector = Epetra_MultiVector;
-  /// Sparse matrices: distributed by rows.
-  using SparseMatrix = Epetra_CrsMatrix;
+  /**
+   * Vectors in bulk: n × k, distributed by rows, the columns of a process one
+   * after the other. A view refers to columns of another one; a copy of a view
+   * has columns of its own, and an assignment to a view changes what it refers to.
+   */
+  class MultiVector
+  {
+  public:
+    using Local      = Eigen::Map<DenseMatrix>;
+    using ConstLocal = Eigen::Map<const DenseMatrix>;
+
+    /// @param zero whether the entries are zero; else what they are is open
+    MultiVector(const RowMap &map, int n_columns, bool zero = true);
+
+    /// A view of numbers that belong to somebody else, n_local × k.
+    MultiVector(const RowMap &map, double *values, int n_columns);
+
+    MultiVector(const MultiVector &X);
+    MultiVector(MultiVector &&X);
+
+    /// Throws SolverError if this is a view and X has another shape.
+    MultiVector &operator=(const MultiVector &X);
+    MultiVector &operator=(MultiVector &&X);
+
+    int n_columns() const
+    {
+      return k;
+    }
+
+    int n_local_rows() const
+    {
+      return n_rows;
+    }
+
+    const RowMap &map() const
+    {
+      return row_map;
+    }
+
+    MPI_Comm communicator() const
+    {
+      return row_map.communicator();
+    }
+
+    /// Rows of this process, n_local × k.
+    Local local()
+    {
+      return {values, n_rows, k};
+    }
+
+    ConstLocal local() const
+    {
+      return {values, n_rows, k};
+    }
+
+    /// Column @p j of the rows of this process.
+    Eigen::Map<Eigen::VectorXd> col(const int j)
+    {
+      return {values + static_cast<std::size_t>(j) * n_rows, n_rows};
+    }
+
+    Eigen::Map<const Eigen::VectorXd> col(const int j) const
+    {
+      return {values + static_cast<std::size_t>(j) * n_rows, n_rows};
+    }
+
+    /// Entry of the row at place @p i of this process.
+    double &operator()(const int i, const int j)
+    {
+      return values[i + static_cast<std::size_t>(j) * n_rows];
+    }
+
+    double operator()(const int i, const int j) const
+    {
+      return values[i + static_cast<std::size_t>(j) * n_rows];
+    }
+
+    MultiVector &operator+=(const MultiVector &X);
+    MultiVector &operator-=(const MultiVector &X);
+    MultiVector &operator*=(double factor);
+
+    /// Columns [first, first + n), n ≥ 0, as a view; this must outlive it.
+    friend MultiVector view(const MultiVector &X, int first, int n);
+
+  private:
+    bool is_view() const
+    {
+      return values != own.data();
+    }
+
+    RowMap      row_map;
+    int         n_rows, k;
+    DenseMatrix own; ///< empty for a view
+    double     *values;
+  };
 
   /// XᵀY, k_X × k_Y, the same on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
@@ -25,7 +112,7 @@ namespace Squeal
    * LAPACK call may differ between processes, with the alignment of memory for
    * instance; eigenvectors of a multiple eigenvalue then differ altogether.
    */
-  RealPairs agreed(const Epetra_Comm &comm, RealPairs pairs);
+  RealPairs agreed(MPI_Comm communicator, RealPairs pairs);
 
   /// Y = alpha X S + beta Y; X and Y must not share memory.
   void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);
@@ -33,72 +120,26 @@ namespace Squeal
   /// X S.
   MultiVector operator*(const MultiVector &X, const DenseMatrix &S);
 
-  /// A X for a sparse matrix.
-  MultiVector operator*(const SparseMatrix &A, const MultiVector &X);
+  /// factor X, X + Y and X − Y.
+  MultiVector operator*(double factor, MultiVector X);
+  MultiVector operator+(MultiVector X, const MultiVector &Y);
+  MultiVector operator-(MultiVector X, const MultiVector &Y);
 
-  /// Aᵀ X for a sparse matrix.
-  MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
-
-  /// Columns [first, first + n) of X, n ≥ 1, as a view; X must outlive it. (A copy of a view is a deep copy.)
   MultiVector view(const MultiVector &X, int first, int n);
 
   /// [X Y ...]: the columns of all, copied.
   MultiVector join(const std::vector<const MultiVector *> &parts);
+  MultiVector join_all(const std::vector<MultiVector> &parts);
+
+  /// x_jᵀ y_j of corresponding columns.
+  std::vector<double> column_products(const MultiVector &X, const MultiVector &Y);
 
   /// Euclidean norms of the columns.
   std::vector<double> column_norms(const MultiVector &X);
 
   /// The identity matrix as vectors, for maps of a few rows (contact nodes).
-  MultiVector unit_vectors(const Epetra_Map &map);
+  MultiVector unit_vectors(const RowMap &map);
 
   /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
-  MultiVector random_vectors(const Epetra_Map &map, int n_vectors, unsigned int seed = 1);
-
-  /// How far the columns of a set of vectors are from dependent.
-  struct PrincipalAxes
-  {
-    std::vector<double> norms;          ///< M-norms of the kept axes (singular values of the columns), largest first
-    double              condition = 1.; ///< of the Gram matrix of all columns, scaled or not; infinite where rounding makes it indefinite
-  };
-
-  /**
-   * Orthonormalises the columns of @p X in the inner product of the symmetric
-   * positive definite @p M against the M-orthonormal columns of @p Q (may be
-   * null) and among each other, to about 1e-14.
-   *
-   * The columns are first scaled to unit M-norm. What remains of them outside
-   * of Q is resolved into orthogonal directions (the principal axes of the
-   * scaled columns, largest first); those whose M-norm is below @p tolerance
-   * times the largest M-norm of a direction in X before the projection are
-   * dropped. The axes are computed in passes of five orders of magnitude each,
-   * since a Gram matrix squares the condition; tolerances down to 1e-13 make
-   * sense.
-   *
-   * Returns the kept directions, or nothing if none is left (an Epetra
-   * multivector has at least one column). @p axes, if given, receives what was
-   * found about the columns.
-   */
-  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
-                                                   const MultiVector  *Q,
-                                                   const MultiVector  &X,
-                                                   double              tolerance,
-                                                   PrincipalAxes      *axes = nullptr);
-
-  /// The same where at least one direction must be left; throws SolverError otherwise.
-  MultiVector orthonormalize(const SparseMatrix &M,
-                             const MultiVector  *Q,
-                             const MultiVector  &X,
-                             double              tolerance,
-                             PrincipalAxes      *axes = nullptr);
-
-  /**
-   * Proper orthogonal decomposition: the M-orthonormal principal axes of the
-   * columns of X as they are, without scaling, largest first. Kept are those
-   * whose M-norm exceeds @p tolerance times the largest, @p maximum at most.
-   * Computed in passes as above. Throws SolverError if all columns are zero.
-   */
-  MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, double tolerance, int maximum, PrincipalAxes *axes = nullptr);
-
-  /// max |XᵀMX − I|.
-  double orthonormality_defect(const SparseMatrix &M, const MultiVector &X);
+  MultiVector random_vectors(const RowMap &map, int n_vectors, unsigned int seed = 1);
 } // namespace Squeal

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <complex>
 #include <memory>

@@ -1,15 +1,13 @@
 #pragma once
 
 #include <squeal/geometry/hex_mesh.h>
+#include <squeal/linear_algebra/row_map.h>
 #include <squeal/parameters/materials.h>
 
 #include <deal.II/distributed/shared_tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
-
-#include <Epetra_Map.h>
-#include <Epetra_MpiComm.h>
 
 #include <array>
 #include <memory>
@@ -67,7 +65,7 @@ namespace Squeal
     bool has_surface(const std::string &name) const;
 
     /// Distribution of the free dofs.
-    const Epetra_Map &free_map() const;
+    const RowMap &free_map() const;
 
     /// Number of a deal.II dof among the free ones; -1 where clamped.
     int free_dof(dealii::types::global_dof_index dof) const;
@@ -80,7 +78,6 @@ namespace Squeal
     void distribute_dofs();
 
     std::vector<std::string>                   components, surfaces;
-    Epetra_MpiComm                             epetra_communicator;
     dealii::parallel::shared::Triangulation<3> tria;
     dealii::FESystem<3>                        fe;
     dealii::MappingQ<3>                        geometry_mapping;
@@ -88,6 +85,6 @@ namespace Squeal
     std::vector<int>                           free_numbers;
     std::vector<unsigned int>                  dof_nodes;
     std::vector<Node>                          node_table;
-    std::unique_ptr<Epetra_Map>                map;
+    RowMap                                     map;
   };
 } // namespace Squeal

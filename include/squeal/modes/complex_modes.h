@@ -28,7 +28,10 @@ namespace Squeal
     std::string                  summary;                             ///< how they were found, one phrase
   };
 
-  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.
+  /// Re xᴴy of corresponding complex vectors, columns 0 ... k-1 the real, k ... 2k-1 the imaginary parts.
+  std::vector<double> complex_products(const MultiVector &X, const MultiVector &Y);
+
+  /// Force residuals Q(λ) φ (or Q(λ)ᵀ φ) of complex vectors, kept alike.
   MultiVector force_residuals(const CoupledSystem                     &system,
                               const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
@@ -38,7 +41,7 @@ namespace Squeal
 
   /**
    * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest
-   * modulus real, sorts them by frequency, and computes both residuals:
+   * modulus real (`eigen/phase.h`), sorts them by frequency, and computes both residuals:
    *
    *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
    *

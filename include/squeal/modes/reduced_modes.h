@@ -46,10 +46,10 @@ namespace Squeal
                                    BandEnd                end = BandEnd::cut);
 
   /**
-   * The real eigenvalues of @p model with their vectors, zeros excluded, |λ| ≤ @p radius [1/s]: static divergence and
+   * The real eigenvalues of @p model with their vectors, zeros excluded, up to the radius of the band: static divergence and
    * overdamped motions. Without damping that with λ > 0 stands for both of ±λ.
    */
-  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_circular_frequency, double radius);
+  ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_circular_frequency);
 
   /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.
   ReducedModes reduced_real_modes(const ReducedModel &model, double largest_circular_frequency, BandEnd end = BandEnd::cut);

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <squeal/output/record_archive.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
-#include <Epetra_Map.h>
 #include <mpi.h>
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,7 +23,9 @@ namespace Squeal
    * remove(). All processes must call everything; process 0 alone reads and writes, and an error there is thrown on all.
    *
    * The archive begins with the version of its format and what identifies the sweep; results and blocks of bases follow as they are
-   * found. Blocks have all rows in the order of their numbers: a sweep may continue on another number of processes. A
+   * found, each on the disk before the sweep goes on. What a killed run or a full disk leaves of one is cut off when the archive is
+   * read or the next one comes. To append costs what a record costs, while a file that replaces the former one would cost all of
+   * them every time. Blocks have all rows in the order of their numbers: a sweep may continue on another number of processes. A
    * damaged result is computed anew; where a block is damaged everything is, since results and later
    * blocks rest on it. `points.csv` shows the reader every mode of the band.
    */
@@ -49,7 +51,7 @@ namespace Squeal
      * A part of the sweep that has a basis of its own with @p rows, as a store that refers to this checkpoint: it finds what an
      * earlier run has kept there, and keeps what is found now. Throws FileError if it cannot; what was kept before stays.
      */
-    std::unique_ptr<ChartStore> part(const std::string &name, const Epetra_Map &rows);
+    std::unique_ptr<ChartStore> part(const std::string &name, const RowMap &rows);
 
     /// Deletes the folder when nothing in it is needed any more; throws FileError if it cannot.
     void remove();
@@ -78,11 +80,12 @@ namespace Squeal
     void append(const Record &record);
 
     const std::string               folder, identity;
-    RecordArchive                   archive;
+    const std::filesystem::path     archive;
     const MPI_Comm                  communicator;
     const double                    largest_circular_frequency;
     std::map<std::string, Contents> parts;
     bool                            is_begun  = false; ///< whether the archive is this sweep's
     int                             n_results = 0;
+    std::uintmax_t                  end       = 0; ///< of the last record of the archive [byte]
   };
 } // namespace Squeal

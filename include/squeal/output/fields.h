@@ -5,9 +5,9 @@
 #include <squeal/model/model.h>
 #include <squeal/output/result_folder.h>
 
-#include <deal.II/fe/fe_q.h>
 #include <deal.II/lac/vector.h>
 
+#include <array>
 #include <complex>
 #include <string>
 #include <vector>
@@ -26,8 +26,8 @@ namespace Squeal
   /// A state of contact as the field writer needs it; one value for each pair of contact nodes.
   struct ContactField
   {
-    std::vector<double> displacement;    ///< on the free dofs [m], with the way of the backplates
-    std::vector<double> approach;        ///< way of the backplate of each component towards the disc [m]
+    std::vector<double> displacement;    ///< on the free dofs [m], with the travel of the backplates
+    std::vector<double> approach;        ///< travel of the backplate of each component towards the disc [m]
     std::vector<double> reactions;       ///< R_n0 [N]
     std::vector<double> gaps;            ///< [m]
     std::vector<double> radial_damping;  ///< c_b [N s/m]
@@ -75,14 +75,11 @@ namespace Squeal
     /// Fields on the contact faces: values of the pairs of contact nodes with their names.
     void write_contact(const std::string &file, const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const;
 
-    const Model                &model;
-    const ContactInterface     &interface;
-    const ResultFolder         &folder;
-    dealii::Vector<double>      components;
-    std::vector<double>         closed; ///< 1 for pairs in contact
-    dealii::Triangulation<2, 3> contact_mesh;
-    dealii::FE_Q<2, 3>          contact_fe;
-    dealii::DoFHandler<2, 3>    contact_dofs;
-    std::vector<unsigned int>   contact_node_of_dof;
+    const Model                             &model;
+    const ContactInterface                  &interface;
+    const ResultFolder                      &folder;
+    dealii::Vector<double>                   components;
+    std::vector<double>                      closed;        ///< 1 for pairs in contact
+    std::vector<std::array<unsigned int, 4>> contact_faces; ///< of the pins, by pairs of contact nodes
   };
 } // namespace Squeal

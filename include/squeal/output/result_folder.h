@@ -47,9 +47,6 @@ namespace Squeal
     /// Writes a file on the root process; throws FileError with the cause if it could not be written to the end.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
-    /// Whether this process writes the files.
-    bool writes_here() const;
-
     /// What the run has written so far, with sizes; for its record.
     FileSizes files() const;
 

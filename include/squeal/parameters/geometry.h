@@ -5,6 +5,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,13 @@ namespace Squeal
 
     /// Variables by which a script takes over these parameters, with their values as a script writes them.
     std::map<std::string, std::string> script_variables() const;
+
+    /**
+     * Which of script_variables() matter to the geometry: a script of Gmsh names those that it uses, a plan is extruded by
+     * those of thickness, height and layers, and contact nodes are paired in every mesh. Reads the file, without running
+     * it. Throws MeshError if there is none.
+     */
+    std::set<std::string> used_variables() const;
 
     /// Path of the file. Throws MeshError if there is none.
     std::string path() const;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <squeal/base/text.h>
 #include <squeal/parameters/declarations.h>
+
+#include <boost/algorithm/string/join.hpp>
 
 #include <set>
 #include <string>
@@ -32,28 +35,39 @@ namespace Squeal
   /// The entries of a list, empty ones left out. Throws ParameterError, also where a name is given twice.
   std::vector<ListEntry> parse_list(const std::string &text, const ListFormat &format);
 
-  /// Declares a list of values, each of which @p print and @p read bring to an entry and back.
-  template <typename Value, typename Print, typename Read>
-  void declare_list(Declarations       &declarations,
-                    const std::string  &name,
-                    std::vector<Value> &values,
-                    const std::string  &documentation,
-                    const ListFormat   &format,
-                    const Print        &print,
-                    const Read         &read)
+  /// Declares a list of values, whose @p numbers, and @p key if there is one, stand in an entry; numbers left out are zero.
+  template <typename Value>
+  void declare_list(Declarations                       &declarations,
+                    const std::string                  &name,
+                    std::vector<Value>                 &values,
+                    const std::string                  &documentation,
+                    const ListFormat                   &format,
+                    const std::vector<double Value::*> &numbers,
+                    std::string Value::*key = nullptr)
   {
     declarations.add_text(
       name, documentation,
       [=, &values] {
-        std::string text;
+        std::vector<std::string> entries;
         for (const Value &value : values)
-          text += (text.empty() ? "" : format.separator + std::string(" ")) + print(value);
-        return text;
+          {
+            std::vector<std::string> texts;
+            for (const auto number : numbers)
+              texts.push_back(exact_text(value.*number));
+            entries.push_back((key ? value.*key + ": " : "") + boost::algorithm::join(texts, format.between_numbers + std::string(" ")));
+          }
+        return boost::algorithm::join(entries, format.separator + std::string(" "));
       },
       [=, &values](const std::string &text) {
         values.clear();
         for (const ListEntry &entry : parse_list(text, format))
-          values.push_back(read(entry));
+          {
+            values.emplace_back();
+            if (key)
+              values.back().*key = entry.key;
+            for (std::size_t i = 0; i < entry.numbers.size(); ++i)
+              values.back().*numbers[i] = entry.numbers[i];
+          }
       });
   }
 } // namespace Squeal

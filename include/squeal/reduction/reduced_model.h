@@ -31,25 +31,46 @@ namespace Squeal
     void extend(const MultiVector &vectors);
 
     /// r
-    int size() const;
+    int size() const
+    {
+      return mass_matrix.rows();
+    }
 
     /// T, n × r.
-    const MultiVector &basis() const;
+    const MultiVector &basis() const
+    {
+      return *T;
+    }
 
-    const CoupledSystem &full_order() const;
+    const CoupledSystem &full_order() const
+    {
+      return *system;
+    }
 
     /// Σ θ TᵀAT by powers of λ.
     ReducedPencil at(const ParameterValues &values) const;
 
     /// TᵀM_cT and TᵀK_cT.
-    const DenseMatrix &mass() const;
-    const DenseMatrix &stiffness() const;
+    const DenseMatrix &mass() const
+    {
+      return mass_matrix;
+    }
+    const DenseMatrix &stiffness() const
+    {
+      return stiffness_matrix;
+    }
 
     /// TᵀAT of a sparse term of the system, by its number.
-    const DenseMatrix &projected(std::size_t term) const;
+    const DenseMatrix &projected(const std::size_t term) const
+    {
+      return matrices[term];
+    }
 
     /// FᵀT of a factor of a term of low rank, m × r.
-    const DenseMatrix &motions(const LowRankFactor &factor) const;
+    const DenseMatrix &motions(const LowRankFactor &factor) const
+    {
+      return factors.at(&factor);
+    }
 
   private:
     const CoupledSystem                         *system;

@@ -30,7 +30,10 @@ namespace Squeal
     std::vector<int>    held;                   ///< motions that are zero instead: their columns of B and rows of L vanish
 
     /// G at friction coefficient @p mu.
-    DenseMatrix flexibility(double mu) const;
+    DenseMatrix flexibility(const double mu) const
+    {
+      return normal_flexibility + mu * tangential_flexibility;
+    }
   };
 
   struct ContactSolution

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/bases/static_response.h>
+#include <squeal/bases/inertia_relief.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/sliding/contact_problem.h>
 
@@ -18,7 +18,7 @@ namespace Squeal
   std::optional<MultiVector> balanced_disc_motions(const Model             &model,
                                                    const ContactOperators  &contact,
                                                    const SecondOrderSystem &system,
-                                                   const StaticResponse    &response,
+                                                   const InertiaRelief     &response,
                                                    double                   mu);
 
   /**

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/bases/static_response.h>
+#include <squeal/bases/inertia_relief.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/sliding.h>
@@ -17,8 +17,8 @@ namespace Squeal
     double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n‖ / ‖P_nᵀ r_n‖, all dofs [-]
     double load;            ///< largest error of a prescribed load, relative; 0 where none is prescribed [-]
     double tension;         ///< largest r_n over the load of a backplate; ≤ 0 where nothing pulls [-]
-    double overlap;         ///< largest g over the way of the backplates, g from P_n u [-]
-    double complementarity; ///< largest |r_n g| over load and way [-]
+    double overlap;         ///< largest g over the travel of the backplates, g from P_n u [-]
+    double complementarity; ///< largest |r_n g| over load and travel [-]
     double force_balance;   ///< contact forces and forces of the supports of each component, over the load [-]
     double moment_balance;  ///< the same of moments about the origin, over load × largest axis distance [-]
   };
@@ -29,12 +29,35 @@ namespace Squeal
     std::vector<double>          reactions;          ///< R_n0 [N] ≤ 0, one for each contact node
     std::vector<double>          gaps;               ///< g [m] ≤ 0
     std::vector<bool>            closed;             ///< S_0
-    std::vector<double>          approach;           ///< way of the backplate of each component [m]; 0 for the disc
+    std::vector<double>          approach;           ///< travel of the backplate of each component [m]; 0 for the disc
     std::shared_ptr<MultiVector> displacement;       ///< u [m], n × 1, elastic, relative to the moved backplates
-    std::shared_ptr<MultiVector> total_displacement; ///< u with the way of the backplates [m], n × 1
+    std::shared_ptr<MultiVector> total_displacement; ///< u with the travel of the backplates [m], n × 1
     SlidingCertificate           certificate;
     ContactUniqueness            uniqueness;
     int                          n_steps; ///< of the active-set method
+  };
+
+  /// What all steady sliding states of a scene have in common.
+  struct SlidingModel
+  {
+    /**
+     * Solves for the attachment modes. The arguments but the last two must outlive the model.
+     *
+     * @param largest_circular_frequency end of the band [rad/s], see static_response()
+     */
+    SlidingModel(const Model             &model,
+                 const ContactInterface  &interface,
+                 const ContactOperators  &contact,
+                 const SecondOrderSystem &system,
+                 double                   largest_circular_frequency,
+                 FactorizationLibrary     library);
+
+    const Model             &model;
+    const ContactInterface  &interface;
+    const ContactOperators  &contact;
+    const SecondOrderSystem &system;
+    InertiaRelief            response;
+    MultiVector              normal, tangential; ///< attachment modes K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N], n × n_c
   };
 
   /**
@@ -56,30 +79,7 @@ namespace Squeal
    * than the pin is high or than the displacement can close; SolverError if no
    * state was found, or the disc is free to slide in its plane.
    */
-  SlidingState steady_sliding(const Model               &model,
-                              const ContactInterface    &interface,
-                              const ContactOperators    &contact,
-                              const SecondOrderSystem   &system,
-                              const StaticResponse      &response,
-                              const OperationParameters &operation,
-                              const SlidingParameters   &parameters);
-
-  /// Attachment modes of the contact nodes, n × n_c, which serve every state.
-  struct SlidingResponses
-  {
-    MultiVector normal, tangential; ///< K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N]
-  };
-  SlidingResponses sliding_responses(const ContactOperators &contact, const StaticResponse &response);
-
-  /// The same with attachment modes at hand.
-  SlidingState steady_sliding(const Model               &model,
-                              const ContactInterface    &interface,
-                              const ContactOperators    &contact,
-                              const SecondOrderSystem   &system,
-                              const StaticResponse      &response,
-                              const SlidingResponses    &responses,
-                              const OperationParameters &operation,
-                              const SlidingParameters   &parameters);
+  SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);
 
   /// Refuses parameters of the section `Steady sliding` that do not fit the pins; throws ParameterError.
   void check_sliding(const Model               &model,
@@ -100,20 +100,16 @@ namespace Squeal
     double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]
     double       sliding_damping;  ///< Σ c_t [N s/m]
-    double       approach;         ///< way of the backplate [m]
+    double       approach;         ///< travel of the backplate [m]
     double       largest_gap;      ///< of its nodes [m]
   };
 
   /**
-   * One entry for each pin from reactions and gaps of all contact nodes (open
-   * ones: no reaction); a pin without load has no centre of pressure, its
-   * offsets and speed are those of the centre of the face. @p approach and
-   * @p gaps may be empty.
+   * One entry for each pin; a pin without load has no centre of pressure, its
+   * offsets and speed are those of the centre of the face.
    */
   std::vector<PinContact> pin_contacts(const Model               &model,
                                        const ContactInterface    &interface,
-                                       const std::vector<double> &reactions,
-                                       const std::vector<double> &gaps,
-                                       const std::vector<double> &approach,
+                                       const SlidingState        &state,
                                        const OperationParameters &operation);
 } // namespace Squeal

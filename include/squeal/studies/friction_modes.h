@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/modes/complex_modes.h>
+#include <squeal/output/fields.h>
 #include <squeal/studies/frictionless_modes.h>
 
 #include <string>
@@ -13,7 +14,7 @@ namespace Squeal
   {
     ComplexModes           modes;
     std::vector<ModeLabel> labels;
-    std::vector<bool>      unstable; ///< beyond what their accuracy leaves open
+    std::vector<bool>      unstable; ///< beyond their uncertainty
     Cost                   cost;     ///< of the solution
 
     std::size_t n_unstable() const;
@@ -23,12 +24,17 @@ namespace Squeal
   };
 
   /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
-  FrictionModes friction_modes(const Scene             &scene,
-                               const Linearisation     &linearisation,
-                               const FrictionlessModes &frictionless,
-                               double                   mu,
-                               Run                     &run,
-                               const std::string       &step = "Complex modes");
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
+
+  /**
+   * Field of a complex mode, coupled displacements n × 1, on the uncoupled
+   * bodies, with the normal reactions at all pairs of contact nodes. All processes must call.
+   */
+  ModeField mode_field(const Linearisation        &linearisation,
+                       const std::string          &name,
+                       const std::complex<double> &lambda,
+                       const MultiVector          &real_part,
+                       const MultiVector          &imaginary_part);
 
   /// Stable, squeal or static divergence, one line for each.
   std::vector<std::string> verdict(const FrictionModes &modes, double mu, double maximum_frequency);

@@ -11,15 +11,19 @@
 
 namespace Squeal
 {
-  /// Modes without friction, and the inverse that serves them and every μ.
+  /// Modes of the linearised scene without friction, and the inverse that serves them and every μ.
   struct FrictionlessModes
   {
+    Linearisation                   linearisation;
     ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
     double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
     std::unique_ptr<UpdatedInverse> inverse;
     SymmetricModes                  real;                    ///< coupled, in the band and its margin
     Cost                            factorisation, solution; ///< of the inverse, and of the real modes
     std::vector<ModeLabel>          labels;                  ///< of the coupled modes
+
+    /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
+    std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
   };
 
   /**
@@ -27,20 +31,13 @@ namespace Squeal
    * (1 + @p margin) times the end of the band, as steps of the run. Throws ParameterError if
    * there are more modes than the parameters allow.
    */
-  FrictionlessModes frictionless_modes(const Scene &scene, const Linearisation &linearisation, Run &run, double margin = 0.);
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0.);
 
   /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
-  void add_modal_damping(const FrictionlessModes &modes, const Parameters &parameters, Linearisation &linearisation);
-
-  /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
-  std::vector<ModeLabel> identify_coupled(const Scene             &scene,
-                                          const Linearisation     &linearisation,
-                                          const FrictionlessModes &modes,
-                                          const MultiVector       &real_part,
-                                          const MultiVector       *imaginary_part);
+  void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters);
 
   /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);

@@ -22,12 +22,7 @@ namespace Squeal
      *
      * Throws ParameterError or SolverError if there are no modes of a kind that is needed.
      */
-    ReductionSets(const ReductionPlan     &plan,
-                  const Scene             &scene,
-                  const Linearisation     &linearisation,
-                  const FrictionlessModes &frictionless,
-                  const CoupledSystem     &system,
-                  Run                     &run);
+    ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run);
 
     /// Computes component modes in the place of those of an earlier truncation. Throws SolverError if there are too few.
     void truncate(const ModeTruncation &truncation);
@@ -36,19 +31,27 @@ namespace Squeal
     void grow(double tolerance);
 
     /// Everything computed so far.
-    const BasisIngredients &ingredients() const;
+    const BasisIngredients &ingredients() const
+    {
+      return available;
+    }
 
     /// Processor seconds of all that a basis rests on, each set counted once.
     double cost(const BasisRecipe &recipe) const;
+
+    const ReductionPlan     &plan;
+    const FrictionlessModes &frictionless;
+    const CoupledSystem     &system;
+    Run                     &run;
 
   private:
     /// Computes something and books its processor seconds.
     template <typename Function>
     auto timed(BasisSource source, Function &&function);
 
-    /// The same for vectors, which are kept in the place of earlier ones.
+    /// The same for a set of vectors, which is kept in the place of an earlier one; returns their number.
     template <typename Function>
-    const MultiVector *compute(BasisSource source, Function &&function);
+    int compute(BasisSource source, Function &&function);
 
     void compute_real_modes();
     void compute_static_modes();
@@ -57,16 +60,12 @@ namespace Squeal
     /// The lowest modes of a component: @p count of them, or, where that is zero, all up to @p frequency [Hz].
     MultiVector lowest_modes(Component component, ContactBoundary boundary, double frequency, int count) const;
 
-    const ReductionPlan     &plan;
-    const Scene             &scene;
-    const Linearisation     &linearisation;
-    const FrictionlessModes &frictionless;
-    const CoupledSystem     &system;
-    Run                     &run;
+    const Scene         &scene;
+    const Linearisation &linearisation;
 
     std::map<BasisSource, double>                       seconds;
     std::map<BasisSource, std::unique_ptr<MultiVector>> vectors;
-    std::unique_ptr<StaticResponse>                     response;
+    std::unique_ptr<InertiaRelief>                      response;
     std::unique_ptr<StaticModes>                        static_modes;
     BasisIngredients                                    available;
   };

@@ -48,10 +48,19 @@ namespace Squeal
     const bool        is_dry, is_root;
 
     /// Folder of the results; a dry run has none.
-    const ResultFolder &folder() const;
+    const ResultFolder &folder() const
+    {
+      return *results;
+    }
 
-    void count(const std::string &name, long value);
-    void measure(const std::string &name, double value);
+    void count(const std::string &name, const long value)
+    {
+      record.counts.emplace_back(name, value);
+    }
+    void measure(const std::string &name, const double value)
+    {
+      record.quantities.emplace_back(name, value);
+    }
 
     /// Keeps a copy of a geometry of the user's own, so that the results repeat themselves.
     void keep_geometry();

@@ -21,7 +21,10 @@ namespace Squeal
     std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
     SecondOrderSystem      system;    ///< M, C, K: their sum
 
-    unsigned int n_pins() const;
+    unsigned int n_pins() const
+    {
+      return mesh.volume_names.size() - 1;
+    }
   };
 
   /// Contact at one friction coefficient, load and speed.
@@ -31,8 +34,10 @@ namespace Squeal
     ContactDamping            damping; ///< of all pairs; zeros at open ones
   };
 
-  /// Equal shares of the load on closed nodes where @p state is null; else the state of steady sliding.
-  StateOfContact state_of_contact(const ContactInterface &interface, const SlidingState *state, const OperationParameters &operation);
+  /// That of @p sliding; where there is none, equal shares of the load on all nodes.
+  StateOfContact state_of_contact(const ContactInterface            &interface,
+                                  const std::optional<SlidingState> &sliding,
+                                  const OperationParameters         &operation);
 
   /// Coefficients of all pairs @p chosen among them.
   ContactDamping selected(const ContactDamping &damping, const std::vector<unsigned int> &chosen);
@@ -43,6 +48,7 @@ namespace Squeal
    */
   struct Linearisation
   {
+    const Scene                *scene;     ///< must outlive it
     std::optional<SlidingState> sliding;   ///< where the state is steady sliding
     std::vector<unsigned int>   closed;    ///< numbers of the closed pairs: S_0
     ContactInterface            interface; ///< S_0
@@ -57,6 +63,9 @@ namespace Squeal
   /// Assembles the system of the uncoupled bodies.
   void assemble_scene(Scene &scene, Run &run);
 
+  /// What serves all steady sliding states of an assembled scene.
+  SlidingModel sliding_model(const Scene &scene, const Parameters &parameters);
+
   /// The quasi-static state that @p sliding asks for, as a step of the run.
   SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run);
 
@@ -64,8 +73,8 @@ namespace Squeal
   Linearisation linearised_scene(Scene &scene, Run &run);
 
   /**
-   * Couples the closed nodes of a state; where @p state is null all are closed
+   * Couples the closed nodes of a state; without one all are closed
    * with equal shares of the load. The contact damping follows @p operation.
    */
-  Linearisation linearise(const Scene &scene, const SlidingState *state, const OperationParameters &operation);
+  Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation);
 } // namespace Squeal

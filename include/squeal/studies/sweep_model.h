@@ -16,7 +16,7 @@ namespace Squeal
   struct SweepModel
   {
     /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
-    SweepModel(const Scene &scene, const SweepPlan &plan, const ContactRegime &regime, Run &run);
+    SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
 
     /// Modes of a line, known ones or new ones, which @p store keeps unless it is null. All processes must call.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients, ChartStore *store = nullptr);
@@ -27,20 +27,21 @@ namespace Squeal
     /// Identities of some modes of a point, without the signs of doublets.
     std::vector<ModeLabel> labels(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// The coupled system with the contact damping at a point of the main line.
-    CoupledSystem system_at(double friction_coefficient) const;
+    /// The linearised scene with the contact damping at a point of the main line.
+    Linearisation linearisation_at(double friction_coefficient) const;
 
-    bool is_in_band(const std::complex<double> &lambda) const;
+    bool is_in_band(const std::complex<double> &lambda) const
+    {
+      return lambda.imag() <= largest_circular_frequency;
+    }
 
     /// The mode of the band that grows most, or is damped least; -1: none.
     int leading_mode(const ChartPoint &point) const;
 
-    const Scene                                 &scene;
     const SweepPlan                             &plan;
     const ContactRegime                         &regime;
     Run                                         &run;
     const double                                 largest_circular_frequency; ///< end of the band [rad/s]
-    Linearisation                                linearisation;
     FrictionlessModes                            frictionless;
     std::unique_ptr<ChartModel>                  reduced;
     std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient

@@ -9,30 +9,6 @@
 
 namespace Squeal
 {
-  /**
-   * States of contact over friction coefficient, load and speed: equal shares of
-   * the load or steady sliding, whichever the parameters ask for. What serves
-   * all states is computed once, as a step of the run.
-   */
-  class ContactStates
-  {
-  public:
-    /// @p scene must outlive it.
-    ContactStates(const Scene &scene, Run &run);
-
-    /// Throws SolverError if there is no steady sliding state.
-    StateOfContact at(const OperationParameters &operation) const;
-
-    /// The steady sliding state, or nothing if the load is shared equally.
-    std::optional<SlidingState> sliding(const OperationParameters &operation) const;
-
-  private:
-    const Scene                      &scene;
-    SlidingParameters                 parameters;
-    std::unique_ptr<StaticResponse>   response; ///< null: equal shares
-    std::unique_ptr<SlidingResponses> responses;
-  };
-
   /// Friction coefficients at one load and speed.
   struct SweepLine
   {
@@ -65,12 +41,22 @@ namespace Squeal
   /// What a sweep asks for, with the states of contact there. The main line is the first.
   struct SweepPlan
   {
-    std::vector<SweepLine>     lines;
-    ContactStates              states;
-    std::vector<ContactRegime> regimes;
+    const Scene                  &scene;
+    SlidingParameters             sliding_parameters;
+    std::unique_ptr<SlidingModel> sliding; ///< serves all states; null: equal shares of the load
+    std::vector<SweepLine>        lines;
+    std::vector<ContactRegime>    regimes;
+
+    /// The steady sliding state, or nothing if the load is shared equally. Throws SolverError if there is no such state.
+    std::optional<SlidingState> sliding_state(const OperationParameters &operation) const;
+
+    StateOfContact state_at(int line, double friction_coefficient) const;
 
     /// Numbers of the closed pairs on the main line.
-    std::vector<unsigned int> closed_at(double friction_coefficient) const;
+    std::vector<unsigned int> closed_at(const double friction_coefficient) const
+    {
+      return state_at(0, friction_coefficient).closed;
+    }
 
     /// A point of a line with the damping of those contact nodes that are closed in a regime.
     OperatingPoint point(int line, double friction_coefficient, const std::vector<unsigned int> &closed) const;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/low_rank_factor.h>
-#include <squeal/system/second_order_system.h>
 
 #include <map>
 #include <memory>
@@ -10,6 +10,17 @@
 
 namespace Squeal
 {
+  /**
+   * M ü + C u̇ + K u = f of the uncoupled bodies (left-hand side of eq. (4) of
+   * the paper) on the free dofs; rows distributed over the processes.
+   */
+  struct SecondOrderSystem
+  {
+    std::shared_ptr<const SparseMatrix> mass;      ///< M [kg]
+    std::shared_ptr<const SparseMatrix> damping;   ///< C [N s/m]; null: none
+    std::shared_ptr<const SparseMatrix> stiffness; ///< K [N/m]
+  };
+
   /// Values of named parameters: one number each, or a list with one for each contact node or mode; an empty list means zeros.
   using ParameterValues = std::map<std::string, std::vector<double>>;
 
@@ -42,8 +53,8 @@ namespace Squeal
     Monomial                             coefficient;
     std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null: A is of low rank
     Symmetry                             symmetry = Symmetry::symmetric; ///< of the matrix
-    std::shared_ptr<const LowRankFactor> left, right;                    ///< L and R, n × m
-    std::string                          weights;                        ///< parameter that lists d; empty: ones
+    std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
+    std::string                          weights = {};                   ///< parameter that lists d; empty: ones
 
     /// θ(p) λ^p_k
     template <typename Number>

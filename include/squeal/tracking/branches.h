@@ -86,7 +86,7 @@ namespace Squeal
     BandEdge edge                 = BandEdge::end_of_band;
   };
 
-  /// Modes at a point and what crossings let expect.
+  /// Modes at a point and how many the crossings imply.
   struct ChartCount
   {
     double friction_coefficient = 0.;
@@ -106,9 +106,6 @@ namespace Squeal
     std::vector<ChartCount>   counts;               ///< one for each point
     int                       n_doubtful_steps = 0; ///< in which modes could not be told apart but by closeness of λ
   };
-
-  /// Whether a mode counts as growing: more than 10⁻⁸ per radian, less is rounding of a neutral mode.
-  bool is_growing(const std::complex<double> &lambda);
 
   /**
    * Follows modes over the friction coefficients of @p grid, ascending, which may
@@ -131,7 +128,7 @@ namespace Squeal
    *
    * Uncertainties: half the width of the interval if it is wider than the
    * tolerance, its width otherwise, and three times what the corrections of λ
-   * let expect. At a coalescence these are the change of δ² to
+   * imply. At a coalescence these are the change of δ² to
    *
    *   (λ_1 + D_11 − λ_2 − D_22)² + 4 D_12 D_21,
    *

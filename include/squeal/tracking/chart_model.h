@@ -44,9 +44,6 @@ namespace Squeal
     /// Vectors in the basis.
     int size() const;
 
-    /// Real modes among them.
-    int n_real_modes() const;
-
     const ReducedModel &reduced() const;
 
     /// Modes with their estimates. Only this process works, and no other need.
@@ -76,10 +73,10 @@ namespace Squeal
      * A smaller basis for about the same: the real modes, and the principal axes in the
      * K_c-norm of what modes of the @p charts, right and left, of unit
      * strain energy, have outside of them. Axes are left out whose squares are below
-     * @p tolerance; errors of λ are products of those of right and left vectors.
-     * All processes must call.
+     * @p tolerance, and the last ones where there would be more than @p maximum vectors; errors of λ are products of those of
+     * right and left vectors. All processes must call.
      */
-    MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance) const;
+    MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
     /// Begins anew with another basis. All processes must call.
     void restart(const MultiVector &vectors);

@@ -34,6 +34,12 @@ namespace Squeal
     std::vector<double> real_values; ///< real λ but zero, ascending [1/s]
     int                 n_zeros = 0; ///< λ = 0
 
+    /// Real λ, zeros included.
+    int n_real() const
+    {
+      return static_cast<int>(real_values.size()) + n_zeros;
+    }
+
     /// For boost's archives.
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)

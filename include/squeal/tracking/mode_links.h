@@ -4,6 +4,7 @@
 #include <squeal/tracking/chart_point.h>
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -16,7 +17,7 @@ namespace Squeal
   {
     std::vector<int> first, second; ///< numbers of the modes, as many at either point
     /**
-     * Whether it is known who is who: a single mode; a multiple λ at one of the
+     * Whether each mode has its counterpart: a single mode; a multiple λ at one of the
      * points, of which any order will do; two modes with an exceptional point
      * between. Otherwise the step is too long.
      */
@@ -43,16 +44,12 @@ namespace Squeal
    */
   ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<std::complex<double>> &lambda);
 
-  /**
-   * X of Φ_b ≈ Φ_a X in the least-squares sense and its inverse, for as many
-   * columns on either side; `exists` is false if one of them is not there.
-   */
+  /// X of Φ_b ≈ Φ_a X in the least-squares sense and its inverse, for as many columns on either side; nothing if one does not exist.
   struct Transformation
   {
     ComplexDenseMatrix X, inverse;
-    bool               exists;
   };
-  Transformation transformation(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second);
+  std::optional<Transformation> transformation(const ComplexDenseMatrix &first, const ComplexDenseMatrix &second);
 
   /// Sign of δ² = (λ_1 − λ_2)²: −1 for equal growth rates, +1 for equal frequencies, 0 where it is not real.
   int pair_sign(const std::complex<double> &lambda_1, const std::complex<double> &lambda_2);

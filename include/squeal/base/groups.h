@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace Squeal
+{
+  /// Group of each of n things, the number of its first member, where connected(i, j), j < i, puts two into one, in chains.
+  template <typename Predicate>
+  std::vector<int> connected_groups(const int n, const Predicate &connected)
+  {
+    std::vector<int> group(n);
+    std::iota(group.begin(), group.end(), 0);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < i; ++j)
+        if (const auto [first, second] = std::minmax({group[i], group[j]}); first != second && connected(i, j))
+          std::replace(group.begin(), group.end(), second, first);
+    return group;
+  }
+
+  /// The members of each group, ascending, by the first of them.
+  inline std::vector<std::vector<int>> members_of(const std::vector<int> &group)
+  {
+    std::vector<std::vector<int>> members(group.size());
+    for (std::size_t i = 0; i < group.size(); ++i)
+      members[group[i]].push_back(static_cast<int>(i));
+    members.erase(std::remove_if(members.begin(), members.end(), [](const auto &list) { return list.empty(); }), members.end());
+    return members;
+  }
+} // namespace Squeal

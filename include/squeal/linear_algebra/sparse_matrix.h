@@ -1,0 +1,156 @@
+#pragma once
+
+#include <squeal/linear_algebra/linear_operator.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+class Epetra_CrsMatrix;
+
+namespace Squeal
+{
+  /// A sparse matrix: distributed by rows, constant once it is there.
+  class SparseMatrix : public LinearOperator
+  {
+  public:
+    /// Entries of one row: number of the column, value.
+    using Row = std::vector<std::pair<int, double>>;
+
+    /**
+     * @param rows    distribution of the rows, and of A X
+     * @param columns distribution of X
+     * @param fill    appends the entries of the row at a place of this process to an empty row; entries of one column are added
+     */
+    SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill);
+
+    /// For linear_algebra/ alone; throws SolverError if rows and results are distributed differently.
+    explicit SparseMatrix(std::unique_ptr<Epetra_CrsMatrix> matrix);
+    const Epetra_CrsMatrix &implementation() const;
+
+    ~SparseMatrix() override;
+    SparseMatrix(const SparseMatrix &)            = delete;
+    SparseMatrix &operator=(const SparseMatrix &) = delete;
+
+    const RowMap &rows() const
+    {
+      return row_map;
+    }
+
+    const RowMap &columns() const
+    {
+      return column_map;
+    }
+
+    /// Of all processes.
+    int n_rows() const
+    {
+      return row_map.n();
+    }
+
+    int n_columns() const
+    {
+      return column_map.n();
+    }
+
+    long long n_entries() const;
+
+    MPI_Comm communicator() const
+    {
+      return row_map.communicator();
+    }
+
+    /// Replaces @p row by the entries of the row at a place of this process, in no certain order.
+    void get_row(int place, Row &row) const;
+
+    void apply(const MultiVector &X, MultiVector &Y) const override
+    {
+      multiply(false, X, Y);
+    }
+
+    /// Y = Aᵀ X.
+    void apply_transpose(const MultiVector &X, MultiVector &Y) const
+    {
+      multiply(true, X, Y);
+    }
+
+    const RowMap &map() const override
+    {
+      return row_map;
+    }
+
+  private:
+    void multiply(bool transposed, const MultiVector &X, MultiVector &Y) const;
+
+    std::unique_ptr<Epetra_CrsMatrix> matrix;
+    RowMap                            row_map, column_map;
+  };
+
+  /// A X.
+  MultiVector operator*(const SparseMatrix &A, const MultiVector &X);
+
+  /// Aᵀ X.
+  MultiVector transpose_times(const SparseMatrix &A, const MultiVector &X);
+
+  /// op(A) op(B), op = transpose where asked; rows distributed like those of op(A).
+  std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, bool transpose_A = false, bool transpose_B = false);
+
+  /// Aᵀ.
+  std::shared_ptr<SparseMatrix> transpose(const SparseMatrix &A);
+
+  /// Tᵀ A T, n_T × n_T, distributed like the columns of T.
+  std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T);
+
+  /// diag(f(0), f(1), ...) A, of the numbers of the rows.
+  std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f);
+
+  /// alpha A + beta B for matrices of the same shape and distribution; the patterns may differ.
+  std::shared_ptr<SparseMatrix> add(double alpha, const SparseMatrix &A, double beta, const SparseMatrix &B);
+
+  /// Σ factor A of one matrix at least, all of the same shape and distribution.
+  std::shared_ptr<SparseMatrix> linear_combination(const std::vector<std::pair<double, const SparseMatrix *>> &summands);
+
+  /// Largest absolute entry.
+  double max_norm(const SparseMatrix &A);
+
+  /// Largest sum of absolute entries of a row.
+  double row_sum_norm(const SparseMatrix &A);
+
+  /// max |A - Aᵀ| / max |A| of a square matrix; 0 for a zero matrix.
+  double symmetry_defect(const SparseMatrix &A);
+
+  /// A copy as a dense matrix, the same on every process: for small matrices only.
+  DenseMatrix to_dense(const SparseMatrix &A);
+
+  /// What the header of a Matrix Market file promises about its entries.
+  enum class MatrixMarketSymmetry
+  {
+    general,  ///< all entries are listed
+    symmetric ///< the lower triangle is listed
+  };
+
+  /**
+   * A in Matrix Market coordinate form with 17 significant digits, so that reading returns the same numbers: the whole text on
+   * process 0, nothing on the others. All processes must call.
+   */
+  std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
+
+  /**
+   * The local rows of a matrix with rows and columns numbered without gaps over
+   * all processes: those of process 0 first, then those of process 1, and so
+   * on, in the order of the local entries of vectors. Columns ascend in a row.
+   */
+  struct LocalRows
+  {
+    explicit LocalRows(const SparseMatrix &A);
+
+    int                 first_row; ///< number of the first local row
+    int                 n_rows;    ///< of all processes
+    int                 n_columns; ///< of all processes
+    std::vector<int>    start;     ///< start[i], ..., start[i+1]: entries of local row i
+    std::vector<int>    column;
+    std::vector<double> value;
+  };
+} // namespace Squeal

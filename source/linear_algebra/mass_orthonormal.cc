@@ -1,0 +1,198 @@
+#include <squeal/base/decision.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// X -= Q Qᵀ M X.
+    void project_out(const SparseMatrix &M, const MultiVector &Q, MultiVector &X)
+    {
+      multiply_add(-1., Q, gram(Q, M * X), 1., X);
+    }
+
+    /// Eigenpairs of a symmetric matrix, the same on all processes.
+    RealPairs common_eigenpairs(const MPI_Comm communicator, const DenseMatrix &A)
+    {
+      return agreed(communicator, symmetric_eigenpairs(A));
+    }
+
+    /// Eigenvectors of the @p n largest eigenvalues, each divided by the root of its value, largest first.
+    DenseMatrix largest_axes(const RealPairs &pairs, const int n)
+    {
+      return pairs.vectors.rightCols(n).rowwise().reverse() *
+             as_column(pairs.values).tail(n).reverse().cwiseSqrt().cwiseInverse().asDiagonal();
+    }
+
+    /// V diag(1 / √values) Vᵀ.
+    DenseMatrix inverse_root(const RealPairs &pairs)
+    {
+      return pairs.vectors * as_column(pairs.values).cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors.transpose();
+    }
+
+    const Decision independent("norm of a direction among unit vectors / tolerance of their rank", 1.);
+
+    /// Whether directions are looked for among the columns as they are or scaled to unit norm.
+    enum class Scaling
+    {
+      none,
+      unit_norm
+    };
+
+    /// Largest over smallest of ascending eigenvalues.
+    double condition_number(const std::vector<double> &values)
+    {
+      return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
+    }
+
+    std::optional<MultiVector> orthonormal_axes(const SparseMatrix &M,
+                                                const MultiVector  *Q,
+                                                const MultiVector  &X,
+                                                const double        tolerance,
+                                                const Scaling       scaling,
+                                                PrincipalAxes      *axes)
+    {
+      // A Gram matrix resolves directions down to the square root of the
+      // rounding unit; with this ratio per pass they still come out accurate.
+      const double resolved = 1e-10;
+
+      std::vector<MultiVector> kept;
+      const auto               project = [&](MultiVector &Y) {
+        if (Q != nullptr)
+          project_out(M, *Q, Y);
+        for (const MultiVector &W : kept)
+          project_out(M, W, Y);
+      };
+
+      // Scale to unit norm; the largest direction of the scaled columns is the yardstick.
+      std::optional<MultiVector> remaining;
+      double                     largest = 0.;
+      {
+        const DenseMatrix   G = gram(X, M * X);
+        std::vector<double> scale;
+        std::vector<int>    nonzero;
+        for (int j = 0; j < X.n_columns(); ++j)
+          {
+            if (!std::isfinite(G(j, j)))
+              throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values", "orthonormalisation",
+                                "check the step that computed the vectors");
+            if (G(j, j) > 0.)
+              {
+                nonzero.push_back(j);
+                scale.push_back(scaling == Scaling::unit_norm ? 1. / std::sqrt(G(j, j)) : 1.);
+              }
+          }
+        const int k = nonzero.size();
+        if (k == 0)
+          return {};
+        DenseMatrix S = DenseMatrix::Zero(X.n_columns(), k);
+        for (int j = 0; j < k; ++j)
+          S(nonzero[j], j) = scale[j];
+        remaining.emplace(X * S);
+        const auto                scales  = as_column(scale).asDiagonal();
+        const std::vector<double> squares = common_eigenpairs(X.communicator(), scales * G(nonzero, nonzero) * scales).values;
+        largest                           = squares.back();
+        if (axes != nullptr)
+          *axes = {{}, condition_number(squares)};
+      }
+      const double smallest = tolerance * tolerance * largest;
+
+      // One projection leaves components of the size of the rounding error, the second none.
+      project(*remaining);
+      project(*remaining);
+
+      while (remaining)
+        {
+          const RealPairs            pairs  = common_eigenpairs(X.communicator(), gram(*remaining, M * *remaining));
+          const std::vector<double> &values = pairs.values;
+          const int                  k      = values.size();
+
+          const double threshold = std::max(resolved * values.back(), smallest);
+          int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
+          // Directions between wait for the next pass
+          if (scaling == Scaling::unit_norm)
+            for (const double value : values)
+              if (value <= smallest || value >= threshold)
+                independent.exceeded_by(std::sqrt(std::max(value, 0.) / smallest));
+          if (!(values.back() > smallest) || n_rest == k)
+            break;
+
+          MultiVector W = *remaining * largest_axes(pairs, k - n_rest);
+          if (axes != nullptr)
+            std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms),
+                           [](const double x) { return std::sqrt(x); });
+          for (int pass = 0; pass < 2; ++pass)
+            {
+              project(W);
+              // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
+              W = W * inverse_root(common_eigenpairs(X.communicator(), gram(W, M * W)));
+            }
+          kept.push_back(std::move(W));
+
+          // Rounding in V leaves a trace of the kept directions in the others, which the projection removes.
+          if (n_rest > 0)
+            {
+              remaining.emplace(*remaining * pairs.vectors.leftCols(n_rest));
+              project(*remaining);
+              project(*remaining);
+            }
+          else
+            remaining.reset();
+        }
+
+      if (kept.empty())
+        return {};
+      if (kept.size() == 1)
+        return std::move(kept.front());
+      return join_all(kept);
+    }
+  } // namespace
+
+  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
+                                                   const MultiVector  *Q,
+                                                   const MultiVector  &X,
+                                                   const double        tolerance,
+                                                   PrincipalAxes      *axes)
+  {
+    return orthonormal_axes(M, Q, X, tolerance, Scaling::unit_norm, axes);
+  }
+
+  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance, PrincipalAxes *axes)
+  {
+    std::optional<MultiVector> W = orthonormalize_if_any(M, Q, X, tolerance, axes);
+    if (!W)
+      throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero or depend linearly on those already there",
+                        "orthonormalisation", "give other vectors, or a smaller tolerance");
+    return *W;
+  }
+
+  MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
+  {
+    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, axes);
+    if (!W)
+      throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
+                        "give other vectors");
+    if (maximum < 1)
+      throw SolverError("a basis of " + std::to_string(maximum) + " vectors was asked for", "proper orthogonal decomposition",
+                        "ask for one vector at least");
+    if (W->n_columns() <= maximum)
+      return *W;
+    if (axes != nullptr)
+      axes->norms.resize(maximum);
+    // Returned as it is the view would outlive W; its copy does not refer to it.
+    const MultiVector largest = view(*W, 0, maximum);
+    return largest;
+  }
+
+  double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
+  {
+    return max_norm(gram(X, M * X) - DenseMatrix::Identity(X.n_columns(), X.n_columns()));
+  }
+} // namespace Squeal
