@@ -4,9 +4,9 @@
     scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both]
 
 DIRECTORY is the output of a run with Output/Write matrices = true. The coupled quadratic problem is formed here
-from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc
-(two-level orthogonal Arnoldi, MUMPS). Each eigenvalue of the table is held against the nearest one found, one to
-one. The exit status is 1 when a difference exceeds the tolerance, a count differs or the matrices are not what
+from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc (MUMPS;
+Krylov-Schur on the linear problem in lambda^2, or with damping two-level orthogonal Arnoldi). Each eigenvalue of the
+table is held against the nearest one found, one to one. The exit status is 1 when a difference exceeds the tolerance, a count differs or the matrices are not what
 they should be.
 
 Where a body can move freely the stiffness is singular, and the eigenvalues are sought about a real shift that is
@@ -30,7 +30,7 @@ import scipy.sparse.linalg
 
 import exported_matrices
 import parameter_file
-import slepc_toar
+import slepc_modes
 
 STRUCTURE_TOLERANCE = 1e-10
 # Largest relative difference of eigenvalues that the table says nothing about the accuracy of
@@ -185,8 +185,8 @@ def main():
     print(f"  tolerance {tolerance:.1e}, {source}")
     solvers = {"SciPy": solve_by_scipy} if arguments.solver in ("scipy", "both") else {}
     if arguments.solver in ("slepc", "both"):
-        if slepc_toar.available():
-            solvers["SLEPc"] = slepc_toar.solve_band
+        if slepc_modes.available():
+            solvers["SLEPc"] = slepc_modes.solve_band
         elif arguments.solver == "slepc":
             sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
         else:

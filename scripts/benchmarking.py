@@ -1,0 +1,96 @@
+"""What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
+
+import csv
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+from parameter_file import read_parameters
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+SQUEAL = SOURCE / "build" / "release" / "squeal"
+PEER = SOURCE / "scripts" / "slepc_modes.py"
+
+
+def cpu():
+    """Name and abilities of the processor, as Linux tells them."""
+    fields = {}
+    for line in pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+        name, _, value = line.partition(":")
+        fields.setdefault(name.strip(), value.strip())
+    return fields.get("model name", "unknown processor"), fields.get("flags", "").split()
+
+
+def kernels():
+    """The OpenBLAS kernels for both programs: what the user chose, else the widest that the processor has."""
+    _, flags = cpu()
+    widest = "SkylakeX" if "avx512vl" in flags else "Haswell" if "avx2" in flags else None
+    return os.environ.get("OPENBLAS_CORETYPE", widest)
+
+
+def environment():
+    """One thread, the kernels, and Open MPI usable by root in a container."""
+    settings = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "DEAL_II_NUM_THREADS": "1",
+                "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+                "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    if kernels():
+        settings["OPENBLAS_CORETYPE"] = kernels()
+    return {**os.environ, **settings}
+
+
+def describe_machine(core):
+    """One line on what the times belong to."""
+    name, _ = cpu()
+    load = os.getloadavg()[0]
+    return (f"{name}, core {core} of {os.cpu_count()}, OpenBLAS kernels {kernels() or 'as OpenBLAS chooses'}, "
+            f"load of the machine {load:.1f}")
+
+
+def run_on_core(core, command):
+    """Runs a command on one core; its output, or an end with its messages."""
+    words = ["taskset", "-c", str(core), *map(str, command)]
+    process = subprocess.run(words, env=environment(), text=True, capture_output=True, check=False)
+    if process.returncode != 0:
+        sys.exit(f"{process.stdout}{process.stderr}This command failed: {' '.join(map(str, command))}")
+    return process.stdout
+
+
+def run_squeal(core, parameter_file, output, settings=()):
+    """Runs squeal with settings "Section/Name=value" and returns its run record."""
+    options = [word for setting in settings for word in ("--set", setting)]
+    run_on_core(core, [SQUEAL, parameter_file, "--output", output, *options])
+    return json.loads((pathlib.Path(output) / "run.json").read_text(encoding="utf-8"))
+
+
+def run_peer(core, directory, n_modes, formulation=None, friction_coefficient=None):
+    """Solves once by SLEPc; the record of scripts/slepc_modes.py --json."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as file:
+        options = ["--formulation", formulation] if formulation else []
+        options += ["--mu", repr(friction_coefficient)] if friction_coefficient is not None else []
+        run_on_core(core, [PEER, directory, "--modes", n_modes, "--runs", 1, "--json", file.name, *options])
+        return json.loads(pathlib.Path(file.name).read_text(encoding="utf-8"))[0]
+
+
+def cpu_seconds(record, steps=None):
+    """Processor seconds of the named steps of a run record, or of all."""
+    return sum(step["CPU time [s]"] for step in record["steps"] if steps is None or step["name"] in steps)
+
+
+def parameter(directory, name):
+    """A value of the run as text."""
+    return read_parameters(pathlib.Path(directory) / "parameters.prm")[name]
+
+
+def n_rows(table):
+    """Rows of a table."""
+    with open(table, newline="", encoding="utf-8") as file:
+        return sum(1 for _ in csv.DictReader(file))
+
+
+def spread(values, digits=1):
+    """Median with smallest and largest."""
+    return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"

@@ -1,0 +1,262 @@
+#!/usr/bin/python3
+"""Complex modes by SLEPc: Krylov methods, shift-invert with an LU factorisation by MUMPS, in several formulations.
+
+    scripts/slepc_modes.py DIRECTORY [--formulation linear|toar|q-arnoldi|linearised] [--modes 66] [--runs 3]
+
+DIRECTORY is the output of a run with Output/Write matrices = true. The formulations are
+
+    linear      K x = -lambda^2 M x by Krylov-Schur: of systems without damping, whose modes +-R + i omega are each found once
+    toar        lambda^2 M + lambda C + K by two-level orthogonal Arnoldi, which finds lambda and its conjugate
+    q-arnoldi   the same by the quadratic Arnoldi method
+    linearised  the same by Krylov-Schur on the companion form
+
+Without --formulation it is the fastest: linear, or toar where there is damping. Prints, for each run, the time from the coupled
+matrices in memory to the eigenvalues and eigenvectors. Like every Krylov method with one starting vector a run may miss members of
+multiple eigenvalues; the number found is printed. Needs Debian's python3-slepc4py (real scalars).
+"""
+
+import argparse
+import csv
+import importlib.util
+import json
+import math
+import os
+import pathlib
+import statistics
+import sys
+import time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+import scipy.optimize
+
+import exported_matrices
+
+FORMULATIONS = ("linear", "toar", "q-arnoldi", "linearised")
+
+
+def available():
+    """Whether SLEPc is installed."""
+    return importlib.util.find_spec("petsc4py") is not None and importlib.util.find_spec("slepc4py") is not None
+
+
+def is_undamped(problem):
+    """Whether the damping vanishes, so that the problem is linear in lambda^2."""
+    return problem.damping.nnz == 0 or abs(problem.damping).max() == 0
+
+
+def applicable(problem):
+    """The formulations that fit the problem; linear only without damping."""
+    return FORMULATIONS if is_undamped(problem) else FORMULATIONS[1:]
+
+
+def default_basis(formulation, n_eigenvalues):
+    """Vectors of the Krylov basis with which a formulation was fastest (doc/benchmarks.md)."""
+    return {"linear": 19 * n_eigenvalues // 10, "toar": 2 * n_eigenvalues}.get(formulation, 3 * n_eigenvalues // 2) + 1
+
+
+class Solution:
+    """One solution: the eigenvalues lambda nearest a real shift, their vectors, and the times it took.
+
+    n_eigenvalues are those of the formulation: lambda^2 of `linear`, else lambda, of which every mode has two.
+    """
+
+    def __init__(self, problem, n_eigenvalues, formulation=None, shift=0.0, tolerance=1e-12, basis=None, seed=1):
+        from petsc4py import PETSc
+
+        if np.issubdtype(PETSc.ScalarType, np.complexfloating):
+            sys.exit("The PETSc in use is one for complex scalars; choose the one for real scalars.")
+        self.formulation = formulation or applicable(problem)[0]
+        self.shift = shift
+        wall, cpu = time.perf_counter(), time.process_time()
+
+        matrices = [problem.stiffness, problem.mass] if self.formulation == "linear" else [problem.stiffness, problem.damping, problem.mass]
+        operators = [petsc_matrix(matrix) for matrix in matrices]
+        solver = self.linear_solver(operators) if self.formulation == "linear" else self.quadratic_solver(operators)
+        size = problem.size if self.formulation == "linear" else 2 * problem.size
+        solver.setDimensions(n_eigenvalues, min(basis or default_basis(self.formulation, n_eigenvalues), size))
+        solver.setTolerances(tol=tolerance, max_it=1000)
+        solver.setFromOptions()
+        start = operators[0].createVecRight()
+        start.setArray(np.random.default_rng(seed).standard_normal(problem.size))
+        solver.setInitialSpace(start)
+        solver.setUp()
+        self.setup_wall, self.setup_cpu = time.perf_counter() - wall, time.process_time() - cpu
+        solver.solve()
+
+        n_converged = solver.getConverged()
+        real, imaginary = operators[0].createVecs()
+        eigenvalues, vectors = [], []
+        for i in range(n_converged):
+            eigenvalues.append(solver.getEigenpair(i, real, imaginary))
+            vectors.append(real.getArray() + 1j * imaginary.getArray())
+        self.found = np.array(eigenvalues, dtype=complex)
+        self.eigenvalues = 1j * np.sqrt(self.found) if self.formulation == "linear" else self.found
+        self.vectors = np.array(vectors, dtype=complex).reshape(n_converged, problem.size).T
+        self.wall, self.cpu = time.perf_counter() - wall, time.process_time() - cpu
+
+        solver.destroy()
+        for operator in operators:
+            operator.destroy()
+
+    def linear_solver(self, operators):
+        """K x = nu M x with nu = -lambda^2, about -shift^2."""
+        from petsc4py import PETSc
+        from slepc4py import SLEPc
+
+        solver = SLEPc.EPS().create(PETSc.COMM_SELF)
+        solver.setOperators(*operators)
+        solver.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
+        solver.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
+        solver.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
+        solver.setTarget(-self.shift**2)
+        invert_by_mumps(solver.getST())
+        return solver
+
+    def quadratic_solver(self, operators):
+        from petsc4py import PETSc
+        from slepc4py import SLEPc
+
+        types = {"toar": SLEPc.PEP.Type.TOAR, "q-arnoldi": SLEPc.PEP.Type.QARNOLDI, "linearised": SLEPc.PEP.Type.LINEAR}
+        solver = SLEPc.PEP().create(PETSc.COMM_SELF)
+        solver.setOperators(operators)
+        solver.setProblemType(SLEPc.PEP.ProblemType.GENERAL)
+        solver.setType(types[self.formulation])
+        solver.setWhichEigenpairs(SLEPc.PEP.Which.TARGET_MAGNITUDE)
+        solver.setTarget(self.shift)
+        solver.setScale(SLEPc.PEP.Scale.SCALAR)
+        invert_by_mumps(solver.getST())
+        solver.getST().setTransform(True)
+        return solver
+
+    def covers(self, band):
+        """Whether the eigenvalues found reach beyond the band, so that those within are all there but for multiple ones."""
+        if self.found.size == 0:
+            return False
+        end = 2 * math.pi * band
+        if self.formulation == "linear":
+            return abs(self.found + self.shift**2).max() > end**2 + self.shift**2
+        return abs(self.found - self.shift).max() > end + abs(self.shift)
+
+
+def petsc_matrix(matrix):
+    from petsc4py import PETSc
+
+    matrix.sort_indices()
+    csr = (matrix.indptr.astype(PETSc.IntType), matrix.indices.astype(PETSc.IntType), matrix.data)
+    return PETSc.Mat().createAIJ(matrix.shape, csr=csr, comm=PETSc.COMM_SELF)
+
+
+def invert_by_mumps(transformation):
+    """Shift-invert by an LU factorisation."""
+    from slepc4py import SLEPc
+
+    transformation.setType(SLEPc.ST.Type.SINVERT)
+    inner = transformation.getKSP()
+    inner.setType("preonly")
+    inner.getPC().setType("lu")
+    inner.getPC().setFactorSolverType("mumps")
+
+
+def n_wanted(formulation, n_modes):
+    """Eigenvalues to ask for, so that some lie beyond the band."""
+    return n_modes + 4 if formulation == "linear" else 2 * n_modes + 4
+
+
+def solve_band(problem, band, n_modes, shift=0.0):
+    """All eigenvalues of the band (and their vectors): asks for more until the largest one lies beyond it."""
+    from petsc4py import PETSc
+
+    formulation = applicable(problem)[0]
+    size = problem.size if formulation == "linear" else 2 * problem.size
+
+    def solve(seed):
+        n_eigenvalues = n_wanted(formulation, n_modes)
+        while True:
+            try:
+                solution = Solution(problem, min(n_eigenvalues, size), formulation, shift, seed=seed)
+            except PETSc.Error:
+                return None  # Clusters make LAPACK fail in SLEPc's reordering now and then.
+            if solution.eigenvalues.size == 0:
+                return None
+            if solution.covers(band) or n_eigenvalues >= size:
+                listed = exported_matrices.in_band(solution.eigenvalues, band)
+                return solution.eigenvalues[listed], solution.vectors[:, listed]
+            n_eigenvalues = n_eigenvalues * 3 // 2
+
+    return exported_matrices.collect(solve)
+
+
+def largest_difference(eigenvalues, table):
+    """Largest relative difference to the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
+    with open(table, newline="", encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#"))]
+    expected = np.array([complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])) for row in rows])
+    if len(expected) != len(eigenvalues):
+        return None
+    differences = abs(expected[:, None] - eigenvalues[None, :])
+    pairs = scipy.optimize.linear_sum_assignment(differences)
+    return float((differences[pairs] / abs(expected[pairs[0]])).max(initial=0))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", metavar="DIRECTORY", help="output of a run with Output/Write matrices = true")
+    parser.add_argument("--formulation", choices=FORMULATIONS, help="(default: the fastest one)")
+    parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
+    parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
+    parser.add_argument("--modes", type=int, default=66, help="modes to ask for (default: %(default)s)")
+    parser.add_argument("--runs", type=int, default=3, help="repetitions (default: %(default)s)")
+    parser.add_argument("--tolerance", type=float, default=1e-12, help="SLEPc's tolerance (default: %(default)s)")
+    parser.add_argument("--basis", type=int, help="vectors of the Krylov basis (default: what was fastest)")
+    parser.add_argument("--json", metavar="FILE", help="also writes what was measured to FILE")
+    parser.epilog = "Other options are handed to PETSc, for example -st_mat_mumps_icntl_7 5 or -log_view."
+    arguments, options = parser.parse_known_args()
+    if not available():
+        sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+    import slepc4py
+    slepc4py.init([sys.argv[0], *options])
+    from petsc4py import PETSc
+
+    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
+    band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
+    start = time.perf_counter()
+    matrices = exported_matrices.read_matrices(arguments.directory)
+    print(f"reading the matrices: {time.perf_counter() - start:.2f} s (not counted)")
+    start = time.perf_counter()
+    problem = exported_matrices.couple(matrices, friction_coefficient)
+    print(f"coupling them: {time.perf_counter() - start:.2f} s (not counted); {problem.size} dofs, "
+          f"{problem.stiffness.nnz} entries in the stiffness")
+    if arguments.formulation == "linear" and not is_undamped(problem):
+        sys.exit("With damping the problem is not linear in lambda^2; choose another --formulation.")
+    formulation = arguments.formulation or applicable(problem)[0]
+
+    records = []
+    for run in range(arguments.runs):
+        try:
+            solution = Solution(problem, n_wanted(formulation, arguments.modes), formulation, tolerance=arguments.tolerance,
+                                basis=arguments.basis, seed=run + 1)
+        except PETSc.Error as error:
+            sys.exit(f"SLEPc failed; another --basis may help:\n{error}")
+        listed = exported_matrices.in_band(solution.eigenvalues, band)
+        errors = problem.backward_errors(solution.eigenvalues[listed], solution.vectors[:, listed])
+        records.append({"formulation": formulation, "CPU time [s]": solution.cpu, "wall time [s]": solution.wall,
+                        "modes": int(listed.sum()), "covers the band": bool(solution.covers(band)),
+                        "largest backward error": float(errors.max(initial=0))})
+        if arguments.mu is None and arguments.band is None:
+            records[-1]["largest difference"] = largest_difference(
+                solution.eigenvalues[listed], pathlib.Path(arguments.directory) / "complex_modes.csv")
+        print(f"run {run + 1}, {formulation}: {solution.wall:.2f} s wall, {solution.cpu:.2f} s CPU "
+              f"(setup {solution.setup_wall:.2f} s wall, {solution.setup_cpu:.2f} s CPU); {listed.sum()} modes up to {band:g} Hz, "
+              f"{'the last one found lies beyond' if solution.covers(band) else 'the band is not covered'}, "
+              f"largest backward error {errors.max(initial=0):.1e}")
+    print(f"median: {statistics.median(record['wall time [s]'] for record in records):.2f} s wall, "
+          f"{statistics.median(record['CPU time [s]'] for record in records):.2f} s CPU")
+    if arguments.json:
+        pathlib.Path(arguments.json).write_text(json.dumps(records, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
