@@ -14,7 +14,7 @@ def draw(panel, table, names_column, title):
     """A column of marks for each row of a table, one mark for each reading; returns the names of the rows."""
     style.prepare(panel, title, "", style.DIVERGENCE)
     names = table.texts(names_column)
-    readings = [column for column in table.columns if column != names_column]
+    readings = [column for column in table.columns if column.endswith(" [%]")]
     for number, column in enumerate(readings):
         offset = 0.6 * (number / (len(readings) - 1) - 0.5) if len(readings) > 1 else 0.0
         places = [(place + offset, rate) for place, rate in enumerate(table.numbers(column)) if not math.isnan(rate)]

@@ -224,7 +224,8 @@ namespace Squeal
 
   bool Parameters::has_contact_damping() const
   {
-    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study->compares_dissipation;
+    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study->compares_dissipation ||
+           study->adds_dissipation;
   }
 
   bool Parameters::has_friction() const

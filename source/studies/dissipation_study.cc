@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/paper_scene.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
 
@@ -29,10 +30,11 @@ namespace Squeal
       return result;
     }
 
-    /// A line of a table: what the paper prints, where it does, and the divergence rates [%] of all readings.
+    /// A line of a table: what the paper prints, where it does, and under which label, and the divergence rates [%] of all readings.
     struct Row
     {
       std::string                        label;
+      std::string                        paper_label; ///< empty where it prints no divergence rate
       std::optional<double>              paper;
       std::vector<std::optional<double>> rates;
     };
@@ -45,7 +47,10 @@ namespace Squeal
     {
       Columns<Row> columns = {{head, "", &Row::label}};
       if (beside_paper)
-        columns.push_back({"paper with C_b", "%", &Row::paper, digits});
+        {
+          columns.push_back({"label in the paper", "", &Row::paper_label});
+          columns.push_back({"paper with C_b", "%", &Row::paper, digits});
+        }
       for (std::size_t i = 0; i < readings.size(); ++i)
         columns.push_back({readings[i].name, "%", [i](const Row &row) { return row.rates[i]; }, digits});
       return Table(columns, rows);
@@ -68,8 +73,10 @@ namespace Squeal
               std::sort(reading.rates[label.shape()].begin(), reading.rates[label.shape()].end());
           for (std::size_t member = 0; member < n; ++member)
             {
-              label.sign = n != 2 ? DoubletSign::none : member == 0 ? DoubletSign::minus : DoubletSign::plus;
-              rows.push_back({to_string(label), paper_divergence_damped(label), {}});
+              label.sign       = n != 2 ? DoubletSign::none : member == 0 ? DoubletSign::minus : DoubletSign::plus;
+              const auto paper = paper_divergence_damped(label);
+              rows.push_back(
+                {to_string(label), paper ? to_string(paper->label) : "", paper ? std::make_optional(paper->rate) : std::nullopt, {}});
               for (Reading &reading : all)
                 {
                   const auto &rates = reading.rates[label.shape()];
@@ -87,8 +94,10 @@ namespace Squeal
       for (const PaperRange &range : paper_ranges_damped)
         for (const bool lowest : {true, false})
           {
-            rows.push_back(
-              {to_string(range.label) + (lowest ? " most damped" : " least damped"), lowest ? range.lowest : range.highest, {}});
+            rows.push_back({to_string(range.label) + (lowest ? " most damped" : " least damped"),
+                            to_string(range.label),
+                            lowest ? range.lowest : range.highest,
+                            {}});
             for (Reading &reading : all)
               {
                 auto &rates = reading.rates[range.label.shape()];

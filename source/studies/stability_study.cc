@@ -3,10 +3,10 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/mode_tables.h>
+#include <squeal/studies/paper_scene.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
-
-#include <boost/range/irange.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,99 +22,6 @@ namespace Squeal
     constexpr std::size_t n_shown_modes = 20;
 
     // ------------------------------------------------------------------ tables
-
-    /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
-    Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
-    {
-      struct Row
-      {
-        const char *component, *contact;
-        ModeLabel   label;
-        double      frequency, residual;
-      };
-      std::vector<Row> rows;
-      const auto       add = [&](const char *component, const char *contact, const ComponentModes &set) {
-        const std::size_t      n = n_in_band(set.eigenvalues, largest_eigenvalue);
-        std::vector<ModeLabel> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
-        mark_doublets(labels);
-        for (std::size_t j = 0; j < n; ++j)
-          rows.push_back({component, contact, labels[j], hertz(std::sqrt(set.eigenvalues[j])), set.residuals[j]});
-      };
-      add("disc", "free", modes.disc);
-      add("pins", "sliding", modes.pins_sliding);
-      add("pins", "free", modes.pins_free);
-      return Table(Columns<Row>{{"component", "", &Row::component},
-                                {"contact", "", &Row::contact},
-                                {"label", "", &Row::label},
-                                {"frequency", "Hz", &Row::frequency, 2},
-                                {"residual", "-", &Row::residual, 1, true}},
-                   rows);
-    }
-
-    /// Real coupled modes: label, share, frequency, residual.
-    Table real_table(const FrictionlessModes &modes)
-    {
-      return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
-                                {"share", "-", [&](const int j) { return modes.labels[j].participation; }, 3},
-                                {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
-                                {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
-                   boost::irange<int>(0, modes.labels.size()));
-    }
-
-    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
-    Column<int> column_of(const FrictionModes &friction,
-                          const std::string   &name,
-                          const std::string   &unit,
-                          double ModalQuantities::*quantity,
-                          const int                digits)
-    {
-      const double factor = unit == "%" ? 100. : 1.;
-      return {name, unit,
-              [&friction, quantity, factor](const int j) { return factor * (modal_quantities(friction.modes.lambda[j]).*quantity); },
-              digits};
-    }
-
-    /**
-     * Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are
-     * unstable, and estimates where there are any.
-     */
-    Table complex_table(const FrictionModes &friction)
-    {
-      const ComplexModes &modes   = friction.modes;
-      Columns<int>        columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
-                                     {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
-                                     column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
-                                     column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
-                                     column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                                     column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
-                                     {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
-                                     {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
-                                     {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }}};
-      if (!modes.estimated_errors.empty())
-        columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      return Table(columns, boost::irange<int>(0, friction.labels.size()));
-    }
-
-    /**
-     * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most
-     * @p n_largest rows.
-     */
-    Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
-    {
-      std::vector<int> growing;
-      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
-        if (friction.unstable[j])
-          growing.push_back(static_cast<int>(j));
-      const auto rate = [&](const int j) { return modal_quantities(friction.modes.lambda[j]).divergence_rate; };
-      std::stable_sort(growing.begin(), growing.end(), [&](const int a, const int b) { return rate(a) > rate(b); });
-      growing.resize(std::min(growing.size(), n_largest));
-      return Table(Columns<int>{{"unstable mode", "", [&](const int j) { return friction.labels[j]; }},
-                                column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
-                                column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
-                                column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                                {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3}},
-                   growing);
-    }
 
     /// Real eigenvalues, fastest growth first: growth rate, kind.
     Table real_eigenvalue_table(std::vector<double> values)
@@ -222,32 +129,18 @@ namespace Squeal
 
     // ------------------------------------------------------------ beside the paper
 
-    TableOneResults beside_paper(const FrictionlessModes &frictionless, const FrictionModes &friction, const bool with_complex)
-    {
-      const auto      undamped = [](const double eigenvalue) { return modal_quantities({0., std::sqrt(eigenvalue)}); };
-      TableOneResults results;
-      for (const ComponentModes *set : {&frictionless.disc, &frictionless.pins_sliding})
-        {
-          std::vector<ModeLabel> labels = set->labels;
-          mark_doublets(labels);
-          for (std::size_t j = 0; j < labels.size(); ++j)
-            results.component.push_back({labels[j], undamped(set->eigenvalues[j])});
-        }
-      for (std::size_t j = 0; j < frictionless.labels.size(); ++j)
-        results.coupled.push_back({frictionless.labels[j], undamped(frictionless.real.eigenvalues[j])});
-      for (std::size_t j = 0; with_complex && j < friction.labels.size(); ++j)
-        results.complex.push_back({friction.labels[j], modal_quantities(friction.modes.lambda[j])});
-      return results;
-    }
-
+    /// The columns that the run has: complex modes without or with radial dissipation, at the friction coefficient of the paper.
     void write_table_one(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
     {
       const Parameters &parameters = run.parameters;
-      const TableOne    one =
-        table_one(beside_paper(frictionless, friction, is_paper_operation(parameters)), parameters.operation.radial_dissipation);
+      TableOneResults   results    = {component_modes_to_compare(frictionless), coupled_modes_to_compare(frictionless), {}, {}};
+      if (is_paper_operation(parameters))
+        (parameters.operation.radial_dissipation == RadialDissipation::none ? results.undamped : results.damped) =
+          complex_modes_to_compare(friction);
+      const TableOne one = table_one(results);
       run.store_table("table1", one.table);
-      run.progress.note(text("  beside the paper's Table 1: component frequencies ", 100. * one.component.difference, " % rms (",
-                             one.component.n, "), coupled ", 100. * one.coupled.difference, " % rms (", one.coupled.n, ")"));
+      run.progress.note("  beside the paper's Table 1: component frequencies " + to_string(one.component) + ", coupled " +
+                        to_string(one.coupled));
     }
 
     // ----------------------------------------------------------------- the answer

@@ -1,4 +1,4 @@
-#include <squeal/studies/paper_table.h>
+#include <squeal/studies/paper_scene.h>
 
 #include <gtest/gtest.h>
 
@@ -51,5 +51,20 @@ TEST(PaperScene, HasItsComplexModesAtOneOperation)
   expect_other([](Parameters &p) { p.operation.friction_coefficient = 0.3; });
   expect_other([](Parameters &p) { p.operation.load_per_side = 500.; });
   expect_other([](Parameters &p) { p.operation.friction_slope = 0.01; });
+  expect_other([](Parameters &p) { p.operation.rotating_disc = true; });
+  expect_other([](Parameters &p) {
+    p.sliding.state   = ContactState::steady_sliding;
+    p.sliding.control = BackplateControl::displacement;
+  });
   expect_other([](Parameters &p) { p.damping.modal_ratios = {{100., 0.01}}; });
+}
+
+TEST(PaperScene, DifferencesAreNamed)
+{
+  Parameters parameters;
+  parameters.geometry.disc_thickness  = 0.04;
+  parameters.geometry.element_size    = 0.04;
+  parameters.operation.rotation_speed = 5.;
+  EXPECT_EQ(differences_from_paper_scene(parameters), std::vector<std::string>{"Geometry/Disc thickness"});
+  EXPECT_EQ(differences_from_paper_operation(parameters), std::vector<std::string>{"Operation/Rotation speed"});
 }

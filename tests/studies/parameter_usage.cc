@@ -167,7 +167,7 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "paper", "reduction", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
@@ -189,6 +189,15 @@ TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
             those_of({"Reduction/", "Sweep/", "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
+}
+
+TEST(ParameterUsage, OfThePaper)
+{
+  const std::vector<std::string> always = {"Reduction/", "Sweep/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
+  EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
+  EXPECT_EQ(unused_alone({"Study=paper", "Steady sliding/Contact state=steady sliding"}), those_of(always));
 }
 
 TEST(ParameterUsage, OfReduction)

@@ -47,6 +47,9 @@ namespace Squeal
     /// Whether it goes through contact states and radial dissipations on its own, whatever the parameters say.
     bool compares_dissipation = false;
 
+    /// Whether some of its modes have radial dissipation, whatever the parameters say.
+    bool adds_dissipation = false;
+
     /// Throws ParameterError where parameters do not fit the study; null: nothing to check.
     void (*check)(const Parameters &) = nullptr;
   };
