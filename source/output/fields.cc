@@ -21,12 +21,25 @@ namespace Squeal
     using Interpretation = DataComponentInterpretation::DataComponentInterpretation;
     const std::vector<Interpretation> vector_field(3, DataComponentInterpretation::component_is_part_of_vector);
 
-    double largest_amplitude(const ModeField &mode)
+    /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
+    constexpr double least_relative_step = 1e-6, least_step = 1e-6;
+
+    template <typename Number>
+    double largest_amplitude(const std::vector<Number> &displacement)
     {
       double largest = 0.;
-      for (const auto &u : mode.displacement)
-        largest = std::max(largest, std::abs(u));
+      for (const Number &u : displacement)
+        largest = std::max<double>(largest, std::abs(u));
       return largest > 0. ? largest : 1.;
+    }
+
+    /// A text in the field data of a file, as codes of its characters.
+    void write_text(std::ostream &stream, const char *name, const std::string &text)
+    {
+      stream << "<FieldData>\n<DataArray type=\"String\" Name=\"" << name << "\" NumberOfTuples=\"1\" format=\"ascii\">\n";
+      for (const char c : text)
+        stream << int(static_cast<unsigned char>(c)) << ' ';
+      stream << "0\n</DataArray>\n</FieldData>\n";
     }
 
     DataOutBase::VtkFlags compressed()
@@ -40,10 +53,15 @@ namespace Squeal
     class BodyOutput : public DataOut<3>
     {
     public:
-      explicit BodyOutput(const Model &model)
+      /// Of one component, or of all bodies.
+      explicit BodyOutput(const Model &model, const std::optional<Component> component = {})
         : model(model)
       {
         attach_dof_handler(model.dof_handler());
+        if (component)
+          set_cell_selection([component](const Triangulation<3>::cell_iterator &cell) {
+            return cell->is_locally_owned() && (cell->material_id() == 0) == (*component == Component::disc);
+          });
       }
 
       void add(const Vector<double> &displacement, const char *name)
@@ -51,8 +69,11 @@ namespace Squeal
         add_data_vector(displacement, std::vector<std::string>(3, name), type_dof_data, vector_field);
       }
 
-      /// Writes one file with the cells of all processes; all must call. Unlike deal.II's own, it tells why a file could not be written.
-      void write(const ResultFolder &folder, const std::string &name)
+      /**
+       * Writes one file with the cells of all processes, and a @p title unless it is empty; all must call. Unlike deal.II's own, it tells why
+       * a file could not be written.
+       */
+      void write(const ResultFolder &folder, const std::string &name, const std::string &title = {})
       {
         build_patches(model.mapping(), model.degree());
         std::ostringstream piece;
@@ -64,6 +85,8 @@ namespace Squeal
                                                   Utilities::MPI::gather(model.communicator(), piece.str());
         folder.write(name, [&](std::ostream &stream) {
           DataOutBase::write_vtu_header(stream, compressed());
+          if (!title.empty())
+            write_text(stream, "mode", title);
           for (const std::string &text : pieces)
             stream << text;
           DataOutBase::write_vtu_footer(stream);
@@ -118,7 +141,7 @@ namespace Squeal
   void FieldWriter::write_mode(const ModeField &mode) const
   {
     using Complex      = std::complex<double>;
-    const double scale = 1. / largest_amplitude(mode);
+    const double scale = 1. / largest_amplitude(mode.displacement);
     const auto   re    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.real(); });
     const auto   im    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.imag(); });
     const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
@@ -130,7 +153,7 @@ namespace Squeal
     output.add(mod, "amplitude");
     output.add(arg, "phase");
     output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    output.write(folder, "modes/" + mode.name + ".vtu");
+    output.write(folder, "modes/" + mode.name + ".vtu", mode.title);
 
     std::vector<double> reactions_re, reactions_im;
     for (const Complex &r : mode.reactions)
@@ -140,6 +163,30 @@ namespace Squeal
       }
     write_contact("modes/" + mode.name + "_contact.vtu",
                   {{&reactions_re, "normal_reaction_real"}, {&reactions_im, "normal_reaction_imag"}, {&closed, "closed"}});
+  }
+
+  void FieldWriter::write_mode(const RealModeField &mode) const
+  {
+    const double scale = 1. / largest_amplitude(mode.displacement);
+    const auto   u     = dof_vector(mode.displacement, [&](const double value) { return scale * value; });
+    const auto   mod   = dof_vector(mode.displacement, [&](const double value) { return scale * std::abs(value); });
+
+    BodyOutput output(model, mode.component);
+    output.add(u, "displacement");
+    output.add(mod, "amplitude");
+    output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
+    output.write(folder, "modes/" + mode.name + ".vtu", mode.title);
+  }
+
+  void FieldWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes) const
+  {
+    std::vector<std::pair<double, std::string>> files;
+    for (const ListedMode &mode : modes)
+      {
+        const double least = files.empty() ? 0. : (1. + least_relative_step) * files.back().first + least_step;
+        files.emplace_back(std::max(mode.frequency, least), "modes/" + mode.name + ".vtu");
+      }
+    folder.write(name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, files); });
   }
 
   void FieldWriter::write_contact(const std::string                                                       &file,
@@ -196,15 +243,21 @@ namespace Squeal
                                                 {&state.sliding_damping, "c_t"}});
   }
 
-  void FieldWriter::write_animation(const ModeField &mode, const unsigned int n_frames) const
+  void FieldWriter::write_animation(const ModeField &mode, const AnimationOptions &options) const
   {
-    const double                                scale  = 1. / largest_amplitude(mode);
-    const double                                period = 2. * M_PI / mode.lambda.imag();
+    const double       scale    = 1. / largest_amplitude(mode.displacement);
+    const double       period   = 2. * M_PI / mode.lambda.imag();
+    const unsigned int n_steps  = options.frames_per_period * options.periods;
+    const unsigned int n_frames = options.grows ? n_steps + 1 : n_steps;
+    const double       growth   = options.grows ? mode.lambda.real() : 0.;
+    // When the amplitude is largest: scaled to this time, growth cannot overflow
+    const double largest_at = growth > 0. ? options.periods * period : 0.;
+
     std::vector<std::pair<double, std::string>> frames;
     for (unsigned int frame = 0; frame < n_frames; ++frame)
       {
-        const double time = period * frame / n_frames;
-        const auto   turn = std::polar(scale, mode.lambda.imag() * time);
+        const double time = period * frame / options.frames_per_period;
+        const auto   turn = std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time);
         const auto   u    = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (turn * value).real(); });
 
         BodyOutput output(model);

@@ -67,8 +67,14 @@ namespace Squeal
   {
     declarations.enter("Output");
     declarations.add("Mode shapes", fields, "Complex modes of which VTU files are written.");
+    declarations.add("Component mode shapes", component_fields,
+                     "Writes VTU files of the modes of the disc alone and of the pins alone, free and sliding.");
+    declarations.add("Real mode shapes", real_fields, "Writes VTU files of the coupled modes without friction.");
     declarations.add("Animation frames", animation_frames,
                      "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", {0, 1000});
+    declarations.add("Animation periods", animation_periods, "Periods that an animation shows. Units: none.", {1, 1000});
+    declarations.add("Animation growth", animation_growth,
+                     "Shows the mode with its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
     declarations.add("Write matrices", write_matrices,
                      "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, T_c of the closed contact nodes in "
                      "Matrix Market form and the node coordinates.");

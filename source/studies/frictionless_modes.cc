@@ -35,6 +35,27 @@ namespace Squeal
     return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
   }
 
+  double ListedComponentMode::frequency() const
+  {
+    return hertz(std::sqrt(set->eigenvalues[number]));
+  }
+
+  std::vector<ListedComponentMode> listed_component_modes(const FrictionlessModes &modes, const double largest_eigenvalue)
+  {
+    std::vector<ListedComponentMode> result;
+    const auto                       add = [&](const char *component, const char *contact, const ComponentModes &set) {
+      const std::size_t      n = n_in_band(set.eigenvalues, largest_eigenvalue);
+      std::vector<ModeLabel> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
+      mark_doublets(labels);
+      for (std::size_t j = 0; j < n; ++j)
+        result.push_back({component, contact, &set, static_cast<int>(j), labels[j]});
+    };
+    add("disc", "free", modes.disc);
+    add("pins", "sliding", modes.pins_sliding);
+    add("pins", "free", modes.pins_free);
+    return result;
+  }
+
   void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters)
   {
     if (parameters.damping.modal_ratios.empty())

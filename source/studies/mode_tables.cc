@@ -10,29 +10,13 @@ namespace Squeal
 {
   Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
   {
-    struct Row
-    {
-      const char *component, *contact;
-      ModeLabel   label;
-      double      frequency, residual;
-    };
-    std::vector<Row> rows;
-    const auto       add = [&](const char *component, const char *contact, const ComponentModes &set) {
-      const std::size_t      n = n_in_band(set.eigenvalues, largest_eigenvalue);
-      std::vector<ModeLabel> labels(set.labels.begin(), set.labels.begin() + static_cast<std::ptrdiff_t>(n));
-      mark_doublets(labels);
-      for (std::size_t j = 0; j < n; ++j)
-        rows.push_back({component, contact, labels[j], hertz(std::sqrt(set.eigenvalues[j])), set.residuals[j]});
-    };
-    add("disc", "free", modes.disc);
-    add("pins", "sliding", modes.pins_sliding);
-    add("pins", "free", modes.pins_free);
+    using Row = ListedComponentMode;
     return Table(Columns<Row>{{"component", "", &Row::component},
                               {"contact", "", &Row::contact},
                               {"label", "", &Row::label},
-                              {"frequency", "Hz", &Row::frequency, 2},
-                              {"residual", "-", &Row::residual, 1, true}},
-                 rows);
+                              {"frequency", "Hz", [](const Row &row) { return row.frequency(); }, 2},
+                              {"residual", "-", [](const Row &row) { return row.set->residuals[row.number]; }, 1, true}},
+                 listed_component_modes(modes, largest_eigenvalue));
   }
 
   Table real_table(const FrictionlessModes &modes)

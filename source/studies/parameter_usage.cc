@@ -46,6 +46,16 @@ namespace Squeal
       return p.study->no_mode_shapes == nullptr ? nullptr : p.study->no_mode_shapes(p);
     }
 
+    Reason no_animation(const Parameters &p)
+    {
+      return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
+    }
+
+    Reason no_frames(const Parameters &p)
+    {
+      return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_animation(p);
+    }
+
     /// What holds for all studies that have no rule of their own.
     const std::vector<UsageRule> &general_rules()
     {
@@ -87,11 +97,11 @@ namespace Squeal
         {"Output/Mode shapes",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
-        {"Output/Animation frames", [](const Parameters &p) {
-           if (p.output.animation_frames == 0)
-             return Reason(nullptr);
-           return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
-         }}};
+        {"Output/Animation frames",
+         // Who wants none gets none
+         [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_animation(p); }},
+        {"Output/Animation periods", no_frames},
+        {"Output/Animation growth", no_frames}};
       return table;
     }
 

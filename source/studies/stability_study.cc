@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/mode_shapes.h>
 #include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_scene.h>
 #include <squeal/studies/paper_table.h>
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
-#include <sstream>
 
 namespace Squeal
 {
@@ -30,42 +30,6 @@ namespace Squeal
       return Table(Columns<double>{{"growth rate", "1/s", [](const double value) { return value; }, 4},
                                    {"kind", "", [](const double value) { return value > 0. ? "static divergence" : "decay"; }}},
                    values);
-    }
-
-    // ------------------------------------------------------------------ fields
-
-    /// File name of a mode: its place in the table and its label.
-    std::string file_name(const std::size_t number, const ModeLabel &label)
-    {
-      std::ostringstream name;
-      name << "complex_" << std::setw(3) << std::setfill('0') << number + 1 << "_" << file_text(label);
-      return name.str();
-    }
-
-    void write_modes(const Linearisation &linearisation, const FrictionModes &friction, const FieldWriter &writer, Run &run)
-    {
-      const Parameters   &parameters = run.parameters;
-      const ComplexModes &modes      = friction.modes;
-      run.progress.begin("Mode shapes");
-      unsigned int n_modes = 0, n_animations = 0;
-      for (std::size_t j = 0; j < friction.labels.size(); ++j)
-        {
-          if (parameters.output.fields != FieldSelection::all && !friction.unstable[j])
-            continue;
-          const ModeLabel &label = friction.labels[j];
-          run.progress.update(text(to_string(label), ", ", modal_quantities(modes.lambda[j]).frequency, " Hz"));
-          const int       column = static_cast<int>(j);
-          const ModeField field  = mode_field(linearisation, file_name(j, label), modes.lambda[j], view(*modes.real_part, column, 1),
-                                              view(*modes.imaginary_part, column, 1));
-          writer.write_mode(field);
-          ++n_modes;
-          if (friction.unstable[j] && parameters.output.animation_frames > 0)
-            {
-              writer.write_animation(field, parameters.output.animation_frames);
-              ++n_animations;
-            }
-        }
-      run.progress.finish(text(n_modes, " modes, ", n_animations, " animations"));
     }
 
     // ---------------------------------------------------------------- matrices
@@ -202,18 +166,17 @@ namespace Squeal
     if (is_paper_scene(parameters))
       write_table_one(frictionless, friction, run);
 
-    if (parameters.output.fields != FieldSelection::none)
-      {
-        const FieldWriter writer(*scene.model, scene.interface, linearisation.closed, run.folder());
-        if (sliding)
-          write_sliding_fields(scene, *sliding, operation, writer);
-        write_modes(linearisation, friction, writer, run);
-      }
+    const FieldWriter writer(*scene.model, scene.interface, linearisation.closed, run.folder());
+    if (sliding && parameters.output.fields != FieldSelection::none)
+      write_sliding_fields(scene, *sliding, operation, writer);
+    write_mode_shapes(frictionless, friction, writer, run);
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }
 
-  extern const Study stability_study = {"stability", run_stability_study, {"Output/Write matrices"}};
+  extern const Study stability_study = {"stability",
+                                        run_stability_study,
+                                        {"Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
 } // namespace Squeal

@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/mode_shapes.h>
 #include <squeal/studies/sweep_results.h>
 
 #include <algorithm>
@@ -125,11 +126,13 @@ namespace Squeal
             continue;
           }
         const auto [re, im] = model.shapes(point, {mode});
-        const auto name     = text("mu_", mu, "_", file_text(model.labels(point, {mode}).front()));
-        const auto field    = mode_field(model.linearisation_at(mu), name, point.lambda[mode], re, im);
+        const auto label    = model.labels(point, {mode}).front();
+        const auto name     = text("mu_", mu, "_", file_text(label));
+        ModeField  field    = mode_field(model.linearisation_at(mu), name, point.lambda[mode], re, im);
+        field.title         = mode_title(label, point.lambda[mode]);
         writer.write_mode(field);
         if (run.parameters.output.animation_frames > 0)
-          writer.write_animation(field, run.parameters.output.animation_frames);
+          writer.write_animation(field, animation_options(run.parameters.output));
         ++n_written;
       }
     run.progress.finish(text(n_written, " leading modes"));

@@ -15,9 +15,11 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <sstream>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 namespace fs = std::filesystem;
 
 namespace
@@ -36,6 +38,42 @@ namespace
     text << stream.rdbuf();
     return text.str();
   }
+
+  /// What a field file holds, without the date at its top.
+  std::string pieces(const fs::path &file)
+  {
+    const std::string text = content(file);
+    return text.substr(std::min(text.find("<Piece"), text.size()));
+  }
+
+  /// Times of a .pvd with the files that it lists.
+  std::vector<std::pair<double, std::string>> listed(const fs::path &file)
+  {
+    std::vector<std::pair<double, std::string>> result;
+    const std::string                           pvd = content(file);
+    for (auto at = pvd.find("timestep=\""); at != std::string::npos; at = pvd.find("timestep=\"", at + 1))
+      {
+        const auto name = pvd.find("file=\"", at) + 6;
+        result.emplace_back(std::stod(pvd.substr(at + 10)), pvd.substr(name, pvd.find('"', name) - name));
+      }
+    return result;
+  }
+
+  /// A disc of 24 cells with one pin.
+  struct DiscWithPin : Scene
+  {
+    explicit DiscWithPin(const unsigned int degree)
+      : Scene(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), degree)
+    {}
+    ModeField mode(const std::complex<double> &lambda) const
+    {
+      ModeField result{"complex_001_A0-2", lambda, {}, {}, "A0-2, 160 Hz"};
+      for (int i = 0; i < model.free_map().n(); ++i)
+        result.displacement.emplace_back(std::cos(i), std::sin(i));
+      result.reactions.assign(interface.size(), {-1., 2.});
+      return result;
+    }
+  };
 
   /// An empty folder of its own that is removed at the end.
   class ResultFolders : public ::testing::Test
@@ -219,18 +257,14 @@ TEST(RunRecords, AreJson)
 
 TEST_F(ResultFolders, ModeShapesAndAnimations)
 {
-  using namespace Squeal::Testing;
   for (const unsigned int degree : {1u, 2u})
     {
-      const Scene  s(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), degree);
-      ResultFolder folder(results, true);
+      const DiscWithPin s(degree);
+      ResultFolder      folder(results, true);
       const FieldWriter writer(s.model, s.interface, {}, folder);
-      ModeField         mode{"complex_001_A0-2", {1., 1000.}, {}, {}};
-      for (int i = 0; i < s.model.free_map().n(); ++i)
-        mode.displacement.emplace_back(std::cos(i), std::sin(i));
-      mode.reactions.assign(s.interface.size(), {-1., 2.});
+      const ModeField   mode = s.mode({1., 1000.});
       writer.write_mode(mode);
-      writer.write_animation(mode, 4);
+      writer.write_animation(mode, {4});
       folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
       folder.commit();
 
@@ -240,16 +274,94 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
         EXPECT_NE(body.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
       for (const char *field : {"normal_reaction_real", "normal_reaction_imag", "closed"})
         EXPECT_NE(contact.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
+      // The title as codes of its characters
+      EXPECT_NE(body.find("Name=\"mode\""), std::string::npos);
+      EXPECT_NE(body.find("\n65 48 45 50 44 32 49 54 48 32 72 122 0\n"), std::string::npos) << body.substr(0, 600);
 
       // The animation covers one period 2π/ω with equal steps, and its pictures exist where it says.
-      const std::string pvd      = content(results + "/animations/complex_001_A0-2.pvd");
-      int               n_frames = 0;
-      for (auto at = pvd.find("timestep=\""); at != std::string::npos; at = pvd.find("timestep=\"", at + 1), ++n_frames)
+      const auto frames = listed(results + "/animations/complex_001_A0-2.pvd");
+      ASSERT_EQ(frames.size(), 4u);
+      for (std::size_t frame = 0; frame < frames.size(); ++frame)
         {
-          EXPECT_NEAR(std::stod(pvd.substr(at + 10)), 2. * M_PI / 1000. * n_frames / 4., 1e-6);
-          const auto file = pvd.find("file=\"", at) + 6;
-          EXPECT_TRUE(fs::exists(results + "/animations/" + pvd.substr(file, pvd.find('"', file) - file)));
+          EXPECT_NEAR(frames[frame].first, 2. * M_PI / 1000. * frame / 4., 1e-12);
+          EXPECT_TRUE(fs::exists(results + "/animations/" + frames[frame].second));
         }
-      EXPECT_EQ(n_frames, 4);
+    }
+}
+
+TEST_F(ResultFolders, AnimationsWithGrowthAreLargestWhereTheModeIs)
+{
+  const DiscWithPin                  s(1);
+  const double                       period = 2. * M_PI / 1000.;
+  std::map<std::string, std::string> first, last;
+  for (const auto &[name, lambda] : {std::make_pair("grows", std::complex<double>(50., 1000.)), {"decays", {-50., 1000.}}})
+    for (const bool grows : {false, true})
+      {
+        ResultFolder      folder(results, true);
+        const FieldWriter writer(s.model, s.interface, {}, folder);
+        writer.write_animation(s.mode(lambda), {4, 3, grows});
+        folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+        folder.commit();
+
+        // With growth the last picture is that of the end; without it that would be the first one again
+        const auto frames = listed(results + "/animations/complex_001_A0-2.pvd");
+        ASSERT_EQ(frames.size(), grows ? 13u : 12u) << name;
+        EXPECT_EQ(frames.front().first, 0.);
+        EXPECT_NEAR(frames.back().first, (frames.size() - 1) * period / 4., 1e-12);
+        const std::string key = grows ? name : "neither";
+        first[key]            = pieces(results + "/animations/" + frames.front().second);
+        last[key]             = pieces(results + "/animations/" + frames.back().second);
+      }
+  // The largest amplitude is that without growth
+  EXPECT_EQ(first["decays"], first["neither"]);
+  EXPECT_EQ(last["grows"], first["neither"]);
+  EXPECT_NE(first["grows"], first["neither"]);
+  EXPECT_NE(last["decays"], first["neither"]);
+}
+
+TEST_F(ResultFolders, RealModesOfAllBodiesAndOfOne)
+{
+  const DiscWithPin         s(1);
+  ResultFolder              folder(results, true);
+  const FieldWriter         writer(s.model, s.interface, {}, folder);
+  const std::vector<double> displacement(s.model.free_map().n(), -3.);
+  writer.write_mode({"real", "real mode A0-2", displacement, {}});
+  writer.write_mode({"disc", "free disc A0-2", displacement, Component::disc});
+  writer.write_mode({"pins", "free pins F1", displacement, Component::pins});
+  folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+  folder.commit();
+
+  const auto n_cells = [&](const std::string &name) {
+    const std::string text = content(results + "/modes/" + name + ".vtu"), key = "NumberOfCells=\"";
+    for (const char *field : {"displacement", "amplitude", "component"})
+      EXPECT_NE(text.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
+    return std::stoi(text.substr(text.find(key) + key.size()));
+  };
+  EXPECT_EQ(n_cells("disc"), 24);
+  EXPECT_EQ(n_cells("pins"), static_cast<int>(s.model.triangulation().n_active_cells()) - 24);
+  EXPECT_EQ(n_cells("real"), static_cast<int>(s.model.triangulation().n_active_cells()));
+}
+
+TEST_F(ResultFolders, ListsOfModesHaveATimeForEach)
+{
+  const DiscWithPin s(1);
+  ResultFolder      folder(results, true);
+  const FieldWriter writer(s.model, s.interface, {}, folder);
+  // Rigid-body modes, doublets equal to rounding, and one that is farther away
+  const std::vector<double> frequencies = {0., 0., 500., 500., 500. * (1. + 1e-14), 500.1, 4999.};
+  std::vector<ListedMode>   modes;
+  for (const double frequency : frequencies)
+    modes.push_back({"mode_" + std::to_string(modes.size()), frequency});
+  writer.write_list("modes", modes);
+  folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+  folder.commit();
+
+  const auto list = listed(results + "/modes.pvd");
+  ASSERT_EQ(list.size(), frequencies.size());
+  for (std::size_t j = 0; j < list.size(); ++j)
+    {
+      EXPECT_EQ(list[j].second, "modes/" + modes[j].name + ".vtu");
+      EXPECT_NEAR(list[j].first, frequencies[j], 3e-6 * frequencies[j] + 1e-3) << j;
+      EXPECT_TRUE(j == 0 || list[j].first > list[j - 1].first) << j;
     }
 }

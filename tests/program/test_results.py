@@ -107,6 +107,109 @@ class Results(ProgramTest):
                              [row["label"] for row in read_table(self.results / name)])
 
 
+class Shapes(ProgramTest):
+    """Fields of modes without friction, and animations with growth."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        # Degree 1 on a coarse mesh; of the complex modes the unstable ones
+        cls.results = cls.run_scene("results", "Output/Mode shapes=unstable", "Output/Component mode shapes=true",
+                                    "Output/Real mode shapes=true", "Output/Animation periods=2", "Output/Animation growth=true")
+
+    def fields_of(self, pattern):
+        return {int(path.stem.split("_")[pattern.count("_")]): path for path in sorted((self.results / "modes").glob(pattern))}
+
+    def assert_normalised(self, fields):
+        self.assertAlmostEqual(max(abs(u) for vector in fields["displacement"] for u in vector), 1, delta=1e-6)
+        for displacement, amplitude in zip(fields["displacement"], fields["amplitude"]):
+            self.assertEqual([abs(u) for u in displacement], list(amplitude))
+
+    def test_real_modes(self):
+        rows = read_table(self.results / "real_modes.csv")
+        files = self.fields_of("real_*.vtu")
+        self.assertEqual(list(files), list(range(1, len(rows) + 1)))
+        for row, path in zip(rows, files.values()):
+            self.assertEqual(path.stem.split("_", 2)[2], file_text(row["label"]))
+        self.assertEqual(arrays(files[1]), {"displacement", "amplitude", "component"})
+        self.assert_normalised(VtuFile(files[1]).fields)
+
+    def test_component_modes(self):
+        rows = read_table(self.results / "component_modes.csv")
+        for component, contact, kind in (("disc", "free", "disc"), ("pins", "sliding", "pins_sliding"), ("pins", "free", "pins_free")):
+            files = self.fields_of(f"component_{kind}_*.vtu")
+            own = [number for number, row in enumerate(rows, start=1) if (row["component"], row["contact"]) == (component, contact)]
+            self.assertEqual(list(files), own)
+            for number, path in files.items():
+                self.assertTrue(path.stem.endswith(f"_{number:03d}_{file_text(rows[number - 1]['label'])}"), path)
+            fields = VtuFile(files[own[0]]).fields
+            self.assertEqual(set(fields["component"]), {0} if component == "disc" else {1, 2, 3, 4})
+            self.assert_normalised(fields)
+
+    def test_lists(self):
+        listed = {"modes": ("complex_modes", "complex_*.vtu"), "real_modes": ("real_modes", "real_*.vtu"),
+                  **{f"component_modes_{kind}": ("component_modes", f"component_{kind}_*.vtu")
+                     for kind in ("disc", "pins_sliding", "pins_free")}}
+        record = json.loads((self.results / "run.json").read_text(encoding="utf-8"))
+        for name, (table, pattern) in listed.items():
+            with self.subTest(name):
+                self.assertIn(f"{name}.pvd", record["files [byte]"])
+                entries = xml.etree.ElementTree.parse(self.results / f"{name}.pvd").findall(".//DataSet")
+                files = [path for path in sorted((self.results / "modes").glob(pattern)) if not path.stem.endswith("_contact")]
+                self.assertEqual([self.results / entry.get("file") for entry in entries], files)
+                # As texts, as ParaView finds them
+                times = [entry.get("timestep") for entry in entries]
+                self.assertEqual(len(set(times)), len(times))
+                self.assertEqual(sorted(times, key=float), times)
+                frequencies = real_frequencies(self.results, f"{table}.csv")
+                for path, time in zip(files, times):
+                    number = next(int(word) for word in path.stem.split("_") if word.isdigit())
+                    # As far away as modes of one frequency are many
+                    self.assertAlmostEqual(float(time) / frequencies[number - 1], 1, delta=2e-6 * len(times))
+
+    def test_titles(self):
+        row = read_table(self.results / "real_modes.csv")[0]
+        grid = xml.etree.ElementTree.parse(self.fields_of("real_*.vtu")[1])
+        codes = grid.find(".//FieldData/DataArray[@Name='mode']").text.split()
+        title = "".join(chr(int(code)) for code in codes[:-1])
+        self.assertEqual(codes[-1], "0")
+        self.assertTrue(title.startswith(f"real mode {row['label']}, {float(row['frequency [Hz]']):.4g}"), title)
+
+    def test_growth(self):
+        """A period later every displacement is larger by e^(2 pi R / omega); the end is the mode."""
+        rows = read_table(self.results / "complex_modes.csv")
+        number, row = max(enumerate(rows, start=1), key=lambda entry: float(entry[1]["divergence rate [%]"]))
+        animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
+        frames = xml.etree.ElementTree.parse(animation).findall(".//DataSet")
+        self.assertEqual(len(frames), 2 * 3 + 1)
+        period = 1 / float(row["frequency [Hz]"])
+        for frame, entry in enumerate(frames):
+            self.assertAlmostEqual(float(entry.get("timestep")), frame * period / 3, delta=1e-9 * period)
+        first, second, last = ([u for vector in VtuFile(animation.parent / frames[k].get("file")).fields["displacement"] for u in vector]
+                               for k in (0, 3, 6))
+        growth = math.exp(2 * math.pi * float(row["divergence rate [%]"]) / 100)
+        self.assertGreater(growth, 1.001)
+        for a, b, c in zip(first, second, last):
+            self.assertAlmostEqual(b, growth * a, delta=1e-6)
+            self.assertAlmostEqual(c, growth * b, delta=1e-6)
+        mode, = (self.results / "modes").glob(f"complex_{number:03d}_*[!t].vtu")
+        for u, v in zip(last, [u for vector in VtuFile(mode).fields["displacement_real"] for u in vector]):
+            self.assertAlmostEqual(u, v, delta=1e-6)
+
+    def test_nothing_is_left_by_a_run_without(self):
+        """A rerun takes away fields and lists of modes that it does not write again."""
+        shutil.copytree(self.results, self.folder / "again")
+        again = self.run_scene("again")
+        self.addCleanup(shutil.rmtree, again)
+        self.assertEqual(list(again.glob("*.pvd")), [])
+        self.assertFalse((again / "modes").exists())
+
+
+def file_text(label):
+    """A label as it stands in the names of files."""
+    return label.replace(" -", "_minus").replace(" +", "_plus")
+
+
 def arrays(path):
     """Names of the arrays on the points and cells of a .vtu."""
     piece = xml.etree.ElementTree.parse(path).find(".//Piece")

@@ -82,7 +82,11 @@ namespace
                                                               {"Complex modes/Iteration tolerance", "1e-6"},
                                                               {"Complex modes/Maximum basis", "1000"},
                                                               {"Output/Mode shapes", "unstable"},
+                                                              {"Output/Component mode shapes", "true"},
+                                                              {"Output/Real mode shapes", "true"},
                                                               {"Output/Animation frames", "3"},
+                                                              {"Output/Animation periods", "2"},
+                                                              {"Output/Animation growth", "true"},
                                                               {"Output/Write matrices", "true"}};
     return values;
   }
@@ -183,6 +187,9 @@ TEST(ParameterUsage, OfStability)
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
             those_of(joined({"Reduction/", "Sweep/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}, steady)));
+  EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
+            those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
+                            {"Output/Animation periods", "Output/Animation growth"})));
 }
 
 TEST(ParameterUsage, OfDissipation)
@@ -221,7 +228,8 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {"Reduction/", "Complex modes/", "Operation/Friction coefficient", "Output/Write"};
+  const std::vector<std::string> always = {"Reduction/",   "Complex modes/",   "Operation/Friction coefficient",
+                                           "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),

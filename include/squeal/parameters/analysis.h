@@ -79,9 +79,13 @@ namespace Squeal
   /// What a run leaves behind (section `Output`).
   struct OutputParameters
   {
-    FieldSelection fields           = FieldSelection::all;
-    unsigned int   animation_frames = 16; ///< per period of an unstable mode; 0: no animation
-    bool           write_matrices   = false;
+    FieldSelection fields            = FieldSelection::all;
+    bool           component_fields  = false; ///< modes of disc and pins alone, too
+    bool           real_fields       = false; ///< coupled modes without friction, too
+    unsigned int   animation_frames  = 16;    ///< per period of an unstable mode; 0: no animation
+    unsigned int   animation_periods = 1;
+    bool           animation_growth  = false; ///< shown with e^{Rt}
+    bool           write_matrices    = false;
 
     void declare(Declarations &declarations);
   };

@@ -39,6 +39,20 @@ namespace Squeal
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
   void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters);
 
+  /// A mode of a component in the band, as the tables list it.
+  struct ListedComponentMode
+  {
+    const char           *component, *contact; ///< "disc" or "pins", "free" or "sliding"
+    const ComponentModes *set;
+    int                   number; ///< in the set, from 0
+    ModeLabel             label;  ///< with the sign of a doublet
+
+    double frequency() const; ///< [Hz]
+  };
+
+  /// Component modes with ω² ≤ @p largest_eigenvalue: of the free disc, the sliding pins and the free pins, each set ascending.
+  std::vector<ListedComponentMode> listed_component_modes(const FrictionlessModes &modes, double largest_eigenvalue);
+
   /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
   std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);
 } // namespace Squeal
