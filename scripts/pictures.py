@@ -165,14 +165,14 @@ def text_actor(text, x, y, size, bold=False, grey=0.13):
     return actor
 
 
-def colour_bar(table, caption, limits, overlay):
-    """A horizontal bar with ticks and labels, drawn at the lower edge of the window."""
-    left, right, bottom, height = 0.03, 0.43, 0.048, 0.022
+def colour_bar(table, caption, limits, overlay, size=SIZE):
+    """A horizontal bar with ticks and labels, drawn at the lower edge of a picture of that size [pixels]."""
+    left, right, bottom, height = 0.03, 0.43, 48 / size[1], 22 / size[1]
     steps = 128
 
     points, cells, colours = vtk.vtkPoints(), vtk.vtkCellArray(), vtk.vtkUnsignedCharArray()
     colours.SetNumberOfComponents(3)
-    width, depth = SIZE[0] * OVERSAMPLING, SIZE[1] * OVERSAMPLING
+    width, depth = size[0] * OVERSAMPLING, size[1] * OVERSAMPLING
     for i in range(steps):
         x = [width * (left + (right - left) * (i + k) / steps) for k in (0, 1)]
         y = [depth * bottom, depth * (bottom + height)]
@@ -194,19 +194,19 @@ def colour_bar(table, caption, limits, overlay):
     for i in range(n_ticks):
         share = i / (n_ticks - 1)
         value = limits[0] + (limits[1] - limits[0]) * share
-        label = text_actor(f"{value:.3g}".replace("-", "\u2212"), left + (right - left) * share, bottom - 0.012, 20)
+        label = text_actor(f"{value:.3g}".replace("-", "\u2212"), left + (right - left) * share, bottom - 12 / size[1], 20)
         label.GetTextProperty().SetJustification(0 if i == 0 else 2 if i == n_ticks - 1 else 1)  # left, right, centred
         label.GetTextProperty().SetVerticalJustificationToTop()
         overlay.AddActor2D(label)
-    overlay.AddActor2D(text_actor(caption, left, bottom + height + 0.014, 21))
+    overlay.AddActor2D(text_actor(caption, left, bottom + height + 14 / size[1], 21))
 
 
-def new_window():
-    """A window without a screen, white, and the layer above it for texts."""
+def new_window(size=SIZE):
+    """A window without a screen for a picture of that size [pixels], white, and the layer above it for texts."""
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(0)
-    window.SetSize(SIZE[0] * OVERSAMPLING, SIZE[1] * OVERSAMPLING)
+    window.SetSize(size[0] * OVERSAMPLING, size[1] * OVERSAMPLING)
     window.SetNumberOfLayers(2)
     page = vtk.vtkRenderer()
     page.SetBackground(1, 1, 1)
@@ -217,8 +217,8 @@ def new_window():
     return window, overlay
 
 
-def save(window, overlay, picture):
-    """Draws the window, texts last, into the file `picture`."""
+def save(window, overlay, picture, width=None):
+    """Draws the window, texts last, into the file `picture`, which is as wide as the window was asked to be, or `width` pixels."""
     window.AddRenderer(overlay)
     window.Render()
     grabber = vtk.vtkWindowToImageFilter()
@@ -227,8 +227,10 @@ def save(window, overlay, picture):
     grabber.Update()
     smaller = vtk.vtkImageResize()
     smaller.SetInputConnection(grabber.GetOutputPort())
-    smaller.SetOutputDimensions(*SIZE, 1)
+    full = [pixels // OVERSAMPLING for pixels in window.GetSize()]
+    smaller.SetOutputDimensions(*([width, round(width * full[1] / full[0])] if width else full), 1)
     writer = vtk.vtkPNGWriter()
+    writer.SetCompressionLevel(9)
     writer.SetFileName(str(picture))
     writer.SetInputConnection(smaller.GetOutputPort())
     writer.Write()

@@ -1,21 +1,22 @@
 #!/usr/bin/python3
-"""Draws a mode: the deformed bodies, coloured, over the outline of the undeformed ones.
+"""Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones.
 
-    scripts/render_mode.py MODE.vtu [-o PICTURE.png] [--field FIELD] [--view VIEW]
+    scripts/render_mode.py MODE.vtu... [-o PICTURE.png] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
-MODE.vtu is one of the mode files of a run. The bodies are displaced by the real part of the mode. Needs no screen:
-without one the script starts itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth
-(scripts/setup.sh pictures).
+MODE.vtu are mode files of a run: complex, real or component modes. Several of them come side by side in one picture with
+one scale of colours. The bodies are displaced by the real part of the mode. Needs no screen: without one the script starts
+itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 
 import argparse
+import dataclasses
 import math
 import pathlib
 import sys
 
 import numpy as np
 
-from pictures import (INK, RED_BLUE, SIZE, TWILIGHT, YELLOW_BLUE, add_array, colour_bar, colour_table, ensure_display, line_actor,
+from pictures import (INK, RED_BLUE, TWILIGHT, YELLOW_BLUE, add_array, colour_bar, colour_table, ensure_display, line_actor,
                       new_window, nice_range, read, save, sharp_edges, surface_of, text_actor, values_of)
 
 import vtk
@@ -24,7 +25,10 @@ from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 LARGEST_DISPLACEMENT = 0.08  # of the size of the bodies
 SHORTEST_EDGE, LARGEST_SHEAR = 0.35, 1.0  # of the length of an element edge at rest
 VIEW_ANGLE = 24  # degree
+MANY_EDGES, FAINT, CLEAR = 2000, 0.16, 0.5  # edges of elements and their opacity, which grows where they are few
 MARGIN = 1.03  # around the bodies
+LEAST_MOTION = 0.01  # of the largest amplitude, below which a body is at rest
+PANEL, HEAD, FOOT = (800, 500), 84, 130  # one of several modes, its title, and what stands below all of them [pixels]
 
 VIEWS = {  # direction from the bodies to the eye, and what is up
     "iso": ((0.62, -0.52, 0.62), (0, 0, 1)),
@@ -56,20 +60,34 @@ def automatic_scale(grid, displacement):
     return scale
 
 
-def colour_field(grid, field):
-    """Values to draw, their caption, their range and the anchors of their colour map.
+def shape_of(grid):
+    """The mode, complex; of a real mode its displacement."""
+    if grid.GetPointData().HasArray("displacement_real"):
+        return values_of(grid, "displacement_real") + 1j * values_of(grid, "displacement_imag")
+    return values_of(grid, "displacement").astype(complex)
 
-    The size of a mode is arbitrary, so displacements are drawn as shares of the largest amplitude.
-    """
-    mode = values_of(grid, "displacement_real") + 1j * values_of(grid, "displacement_imag")
+
+@dataclasses.dataclass
+class Colours:
+    """Values to draw with their caption and the anchors of their colour map; limits where they do not follow from the values."""
+
+    values: np.ndarray
+    caption: str
+    anchors: tuple
+    limits: tuple = None
+
+
+def colours_of(grid, field):
+    """What a field looks like. The size of a mode is arbitrary, so displacements are drawn as shares of the largest amplitude."""
+    if field not in ("displacement", "displacement_real", "displacement_imag", "amplitude", "phase"):
+        values = values_of(grid, field)
+        values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+        return Colours(values, field.replace("_", " "), YELLOW_BLUE if values.min() >= 0 else RED_BLUE)
+    mode = shape_of(grid)
     amplitude = np.linalg.norm(mode, axis=1)
     largest = amplitude.max() or 1.0
     if field == "amplitude":
-        return amplitude / largest, "amplitude, share of the largest", (0, 1), YELLOW_BLUE
-    if field not in ("displacement_real", "displacement_imag", "phase"):
-        values = values_of(grid, field)
-        values = values if values.ndim == 1 else np.linalg.norm(values, axis=1)
-        return values, field.replace("_", " "), nice_range(values), YELLOW_BLUE if values.min() >= 0 else RED_BLUE
+        return Colours(amplitude / largest, "amplitude, share of the largest", YELLOW_BLUE, (0, 1))
     # The component that moves most, with its sign or phase, tells the shape.
     points = vtk_to_numpy(grid.GetPoints().GetData())
     azimuth = np.arctan2(points[:, 1], points[:, 0])
@@ -78,17 +96,41 @@ def colour_field(grid, field):
                   "circumferential": mode[:, 1] * np.cos(azimuth) - mode[:, 0] * np.sin(azimuth)}
     name = max(components, key=lambda key: np.sum(abs(components[key]) ** 2))
     if field == "phase":
-        return np.degrees(np.angle(components[name])), f"phase of the {name} displacement [degree]", (-180, 180), TWILIGHT
-    values, part = (components[name].real, "real") if field == "displacement_real" else (components[name].imag, "imaginary")
-    values = values / largest
-    return values, f"{name} displacement, {part} part, share of the largest", nice_range(np.append(values, -values)), RED_BLUE
+        return Colours(np.degrees(np.angle(components[name])), f"phase of the {name} displacement [degree]", TWILIGHT, (-180, 180))
+    part = ", imaginary part" if field == "displacement_imag" else ", real part" if np.any(mode.imag) else ""
+    values = components[name].imag if field == "displacement_imag" else components[name].real
+    return Colours(values / largest, f"{name} displacement{part}, share of the largest", RED_BLUE)
+
+
+def common_limits(colours):
+    """Limits of the colours of several modes: symmetric where one has two signs."""
+    if colours[0].limits:
+        return colours[0].limits
+    values = np.concatenate([one.values for one in colours])
+    return nice_range(np.append(values, -values) if any(one.anchors is RED_BLUE for one in colours) else values)
+
+
+def moving_bodies(grid):
+    """The bodies that take part in the mode."""
+    amplitude = np.linalg.norm(shape_of(grid), axis=1)
+    body = values_of(grid, "component")
+    moving = [number for number in np.unique(body) if amplitude[body == number].max() > LEAST_MOTION * amplitude.max()]
+    first_points = vtk_to_numpy(grid.GetCells().GetConnectivityArray())[vtk_to_numpy(grid.GetCells().GetOffsetsArray())[:-1]]
+    extract = vtk.vtkExtractCells()
+    extract.SetInputData(grid)
+    for cell in np.flatnonzero(np.isin(body[first_points], moving)):
+        extract.AddCellRange(int(cell), int(cell))
+    extract.Update()
+    result = extract.GetOutput()
+    result.SetFieldData(grid.GetFieldData())
+    return result
 
 
 def displaced(polygons, scale):
     """The polygons displaced by the real part of the mode."""
     result = vtk.vtkPolyData()
     result.DeepCopy(polygons)
-    displacement = vtk_to_numpy(polygons.GetPointData().GetArray("displacement_real"))
+    displacement = vtk_to_numpy(polygons.GetPointData().GetArray("shape"))
     points = vtk.vtkPoints()
     points.SetData(numpy_to_vtk(vtk_to_numpy(polygons.GetPoints().GetData()) + scale * displacement, deep=True))
     result.SetPoints(points)
@@ -125,13 +167,14 @@ def actors_of(grid, scale, table, cyclic):
     elements.SetInputData(deformed)
     elements.Update()
     return [surface,
-            line_actor(elements.GetOutput(), INK, 0.6, 0.16),
+            line_actor(elements.GetOutput(), INK, 0.6, FAINT if elements.GetOutput().GetNumberOfCells() > MANY_EDGES else CLEAR),
             line_actor(displaced(rest_edges, scale), INK, 1.3, 0.9),
             line_actor(rest_edges, (0.45, 0.45, 0.48), 1.0, 0.55)]
 
 
-def add_renderer(window, viewport, actors, direction, up):
-    """One picture in the window: the bodies, the first of the actors, seen from a direction, fill the viewport."""
+def add_renderer(window, viewport, actors, view):
+    """One picture in the window: the actors, seen from a direction, fill the viewport."""
+    direction, up = view
     renderer = vtk.vtkRenderer()
     renderer.SetViewport(*viewport)
     renderer.SetBackground(1, 1, 1)
@@ -139,13 +182,17 @@ def add_renderer(window, viewport, actors, direction, up):
         renderer.AddActor(actor)
     window.AddRenderer(renderer)
 
-    actors[0].GetMapper().Update()
-    points = vtk_to_numpy(actors[0].GetMapper().GetInput().GetPoints().GetData()).astype(float)
+    points = []
+    for actor in actors:  # deformed and at rest
+        actor.GetMapper().Update()
+        points.append(vtk_to_numpy(actor.GetMapper().GetInput().GetPoints().GetData()).astype(float))
+    points = np.concatenate(points)
     backward = np.array(direction, dtype=float) / np.linalg.norm(direction)
     right = np.cross(up, backward)
     right /= np.linalg.norm(right)
     upward = np.cross(backward, right)
-    aspect = (viewport[2] - viewport[0]) * SIZE[0] / ((viewport[3] - viewport[1]) * SIZE[1])
+    width, height = window.GetSize()
+    aspect = (viewport[2] - viewport[0]) * width / ((viewport[3] - viewport[1]) * height)
     tangent = math.tan(math.radians(VIEW_ANGLE) / 2)
 
     # The eye is as far away as makes the picture of every point fit; then that picture is centred, which
@@ -188,57 +235,102 @@ def title_of(path, grid):
     return ",  ".join(parts) or path.stem.replace("_", " ")
 
 
-def draw(path, picture, field, scale, view, title):
-    """Draws the mode in `path` into the file `picture`; scale and title may be None."""
-    grid = read(path)
-    title = title or title_of(path, grid)
-    displacement = values_of(grid, "displacement_real")
-    if scale is None:
-        scale = automatic_scale(grid, displacement)
-    values, caption, limits, anchors = colour_field(grid, field)
-    add_array(grid, "colour", values)
-    table = colour_table(anchors, limits)
-    actors = actors_of(grid, scale, table, field == "phase")
+class Mode:
+    """A mode to be drawn: its bodies with the real part of its shape, how much that is magnified, and its colours."""
 
+    def __init__(self, path, field, scale, bodies):
+        grid = read(path)
+        self.grid = moving_bodies(grid) if bodies == "moving" else grid
+        self.title = title_of(path, grid)
+        self.displacement = shape_of(self.grid).real
+        self.scale = automatic_scale(self.grid, self.displacement) if scale is None else scale
+        self.colours = colours_of(self.grid, field)
+        add_array(self.grid, "shape", self.displacement)
+        add_array(self.grid, "colour", self.colours.values)
+
+    def actors(self, table):
+        return actors_of(self.grid, self.scale, table, self.colours.anchors is TWILIGHT)
+
+    def drawn(self):
+        """What the largest displacement is drawn as [mm]."""
+        return 1000 * self.scale * np.linalg.norm(self.displacement, axis=1).max()
+
+
+def draw_one(mode, picture, view, title, width):
+    """Draws a mode into the file `picture`; title may be None."""
+    limits = common_limits([mode.colours])
+    table = colour_table(mode.colours.anchors, limits)
+    actors = mode.actors(table)
     window, overlay = new_window()
 
     if view == "iso":
         direction, up = VIEWS["iso"]
-        add_renderer(window, (0.02, 0.13, 0.69, 0.93), actors, direction, up)
-        add_renderer(window, (0.71, 0.50, 0.99, 0.86), actors, (direction[0], direction[1], -direction[2]), up)
-        add_renderer(window, (0.71, 0.13, 0.99, 0.36), actors, *VIEWS["side"])
+        add_renderer(window, (0.02, 0.13, 0.69, 0.93), actors, VIEWS["iso"])
+        add_renderer(window, (0.71, 0.50, 0.99, 0.86), actors, ((direction[0], direction[1], -direction[2]), up))
+        add_renderer(window, (0.71, 0.13, 0.99, 0.36), actors, VIEWS["side"])
         overlay.AddActor2D(text_actor("from below", 0.72, 0.875, 20, grey=0.35))
         overlay.AddActor2D(text_actor("from the side", 0.72, 0.375, 20, grey=0.35))
     else:
-        add_renderer(window, (0.01, 0.14, 0.99, 0.93), actors, *VIEWS[view])
+        add_renderer(window, (0.01, 0.14, 0.99, 0.93), actors, VIEWS[view])
 
-    drawn = 1000 * scale * np.linalg.norm(displacement, axis=1).max()
-    overlay.AddActor2D(text_actor(title, 0.03, 0.945, 30, bold=True))
-    overlay.AddActor2D(text_actor(f"largest displacement drawn as {drawn:.3g} mm; grey lines: the bodies at rest", 0.50, 0.05, 20, grey=0.35))
-    colour_bar(table, caption, limits, overlay)
+    overlay.AddActor2D(text_actor(title or mode.title, 0.03, 0.945, 30, bold=True))
+    overlay.AddActor2D(text_actor(f"largest displacement drawn as {mode.drawn():.3g} mm; grey lines: the bodies at rest", 0.50, 0.05, 20,
+                                  grey=0.35))
+    colour_bar(table, mode.colours.caption, limits, overlay)
+    save(window, overlay, picture, width)
 
-    save(window, overlay, picture)
+
+def draw_several(modes, picture, view, width):
+    """Draws modes side by side, in two columns, into the file `picture`: each says below its title what its colours are."""
+    columns, rows = 2, (len(modes) + 1) // 2
+    size = (columns * PANEL[0], rows * PANEL[1] + FOOT)
+    limits = common_limits([mode.colours for mode in modes])
+    table = colour_table(modes[0].colours.anchors, limits)
+    window, overlay = new_window(size)
+    for number, mode in enumerate(modes):
+        left, top = number % columns / columns, 1 - number // columns * PANEL[1] / size[1]
+        viewport = (left + 0.01, top - (PANEL[1] - 4) / size[1], left + 1 / columns - 0.01, top - HEAD / size[1])
+        add_renderer(window, viewport, mode.actors(table), VIEWS[view])
+        letter = f"({chr(ord('a') + number)})  "
+        overlay.AddActor2D(text_actor(letter + mode.title, left + 0.03, top - 42 / size[1], 26, bold=True))
+        what = mode.colours.caption.removesuffix(", share of the largest")
+        overlay.AddActor2D(text_actor(what, left + 0.03, top - 72 / size[1], 20, grey=0.35))
+    overlay.AddActor2D(text_actor("deformation magnified; grey lines: the bodies at rest", 0.50, 50 / size[1], 20, grey=0.35))
+    colour_bar(table, "share of the largest" if limits[1] <= 1 else "", limits, overlay, size)
+    save(window, overlay, picture, width)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("mode", metavar="MODE.vtu", type=pathlib.Path)
-    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside MODE.vtu)")
-    parser.add_argument("--field", default="displacement_real",
-                        help="displacement_real, displacement_imag, amplitude, phase or another point field (default: %(default)s)")
+    parser.add_argument("modes", metavar="MODE.vtu", type=pathlib.Path, nargs="+")
+    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE.vtu)")
+    parser.add_argument("--field", default="displacement",
+                        help="displacement (its real part), displacement_imag, amplitude, phase or another point field (default: %(default)s)")
+    parser.add_argument("--bodies", choices=("all", "moving"), default="all",
+                        help="moving: only those that take part in the mode (default: %(default)s)")
     parser.add_argument("--scale", default="auto", help="factor of the displacement, or auto (default)")
     parser.add_argument("--view", choices=tuple(VIEWS), default="iso", help="(default: %(default)s)")
-    parser.add_argument("--title", help="(default: the file's field data, or its name)")
+    parser.add_argument("--title", help="of a single mode (default: the file's field data, or its name)")
+    parser.add_argument("--width", type=int, help="of the picture [pixels] (default: 1600)")
     arguments = parser.parse_args()
-    if not arguments.mode.is_file():
-        sys.exit(f"There is no file {arguments.mode}.")
+    for path in arguments.modes:
+        if not path.is_file():
+            sys.exit(f"There is no file {path}.")
+    if arguments.title and len(arguments.modes) > 1:
+        parser.error("--title is of a single mode")
+    if arguments.width is not None and arguments.width < 1:
+        parser.error(f"--width takes a positive number, not {arguments.width}")
     try:
         scale = None if arguments.scale == "auto" else float(arguments.scale)
     except ValueError:
         parser.error(f"--scale takes a number or auto, not {arguments.scale}")
     ensure_display()
-    picture = arguments.output or arguments.mode.with_suffix(".png")
-    draw(arguments.mode, picture, arguments.field, scale, arguments.view, arguments.title)
+    picture = arguments.output or arguments.modes[0].with_suffix(".png")
+    modes = [Mode(path, arguments.field, scale, arguments.bodies) for path in arguments.modes]
+    if len(modes) == 1:
+        draw_one(modes[0], picture, arguments.view, arguments.title, arguments.width)
+    else:
+        draw_several(modes, picture, arguments.view, arguments.width)
     print(picture)
 
 

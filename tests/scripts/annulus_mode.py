@@ -66,6 +66,16 @@ def write(path, n_diameters=4, disc_cells=(16, 150, 3), pin_cells=(6, 6, 4)):
     write_grid(path, points, 8, vtk.VTK_HEXAHEDRON, arrays, {"component": component})
 
 
+def write_real(path, n_diameters=4, disc_cells=(4, 40, 1), pin_cells=(2, 2, 2)):
+    """A real mode of the disc; the pins are at rest."""
+    bodies = [disc(disc_cells)] + [pin(*place, side, pin_cells) for side in (1, -1) for place in PINS]
+    points = np.concatenate(bodies).reshape(-1, 3)
+    component = np.repeat(np.arange(len(bodies)), [len(body) for body in bodies])
+    mode = bending(points, n_diameters, 0.0)
+    mode[len(bodies[0]) * 8:] = 0
+    write_grid(path, points, 8, vtk.VTK_HEXAHEDRON, {"displacement": mode, "amplitude": abs(mode)}, {"component": component})
+
+
 def write_contact(path, pin_cells=(6, 6, 4)):
     """Contact faces of the pins: pressure falls along the sliding in the positive sense, and the last nodes are open."""
     faces, ahead = [], []
