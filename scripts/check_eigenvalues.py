@@ -6,8 +6,8 @@
 DIRECTORY is the output of a run with Output/Write matrices = true. The coupled quadratic problem is formed here
 from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc (MUMPS;
 Krylov-Schur on the linear problem in lambda^2, or with damping two-level orthogonal Arnoldi). Each eigenvalue of the
-table is held against the nearest one found, one to one. The exit status is 1 when a difference exceeds the tolerance, a count differs or the matrices are not what
-they should be.
+table is held against the nearest one found, one to one. The exit status is 1 when a difference exceeds the tolerance, a count
+differs or the matrices are not what they should be.
 
 Where a body can move freely the stiffness is singular, and the eigenvalues are sought about a real shift that is
 chosen here. Where the table estimates the errors of its eigenvalues, as that of the residual iteration does, they may

@@ -1,0 +1,21 @@
+"""doc/mechanics.md"""
+
+from reproduction.numbers import Number, entry
+
+QUADRATIC = ("Discretization/Degree=2", "Geometry/Nodes per pin face=19", "Geometry/Element size=0.04", "Geometry/Disc layers=2")
+
+
+def bending(runs, ratio, *settings, suffix=""):
+    """The lowest F1 frequency [Hz] of a sliding pin."""
+    results = runs(f"poisson_{ratio}{suffix}", "disc_pins.prm", "Output/Mode shapes=none", f"Pin material/Poisson ratio={ratio}", *settings)
+    return min(mode["frequency [Hz]"] for mode in results.table("component_modes.csv")
+               if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"] == "F1")
+
+
+@entry("mechanics", "Volumetric locking: F1 of a sliding pin beside quadratic elements, more than at Poisson's ratio 0.25")
+def locking(runs):
+    def excess(ratio):
+        return 100 * (bending(runs, ratio) / bending(runs, ratio, *QUADRATIC, suffix="_quadratic") - 1)
+
+    for ratio, quoted in ((0.47, "1.1"), (0.49, "1.8"), (0.499, "2.7")):
+        yield Number(f"at {ratio} [%]", quoted, excess(ratio) - excess(0.25))

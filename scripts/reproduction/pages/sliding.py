@@ -1,0 +1,75 @@
+"""doc/sliding.md"""
+
+import random
+
+from reproduction.numbers import Number, entry
+
+NO_SHAPES = "Output/Mode shapes=none"
+FEW_MODES = "Band/Maximum frequency=600"
+PINS = [f"pin_{side}_{number}" for side in ("top", "bottom") for number in range(1, 7)]
+MEAN_PRESSURE = 1000.0 / (6 * 0.002028)  # load of a side over the area of its pins, as a run prints it [Pa]
+OVER_FRICTION = {  # mu: open nodes, largest pressure / mean, travel of the backplates [um]
+    0.0: ("0", "1.09", "1.335"), 0.2: ("0", "1.79", "1.328"), 0.4: ("0", "2.79", "1.307"), 0.6: ("24", "4.06", "1.268"),
+    0.8: ("48", "5.63", "1.201"), 1.0: ("60", "7.54", "1.106"), 1.5: ("144", "13.8", "0.604"), 2.0: ("192", "17.0", "-1.98"),
+}
+
+
+def steady(runs, name, *settings):
+    """Steady sliding on the default scene, with as few modes as possible."""
+    return runs(name, "sliding.prm", NO_SHAPES, FEW_MODES, *settings)
+
+
+def certificate(results):
+    return {row["quantity"]: row["value"] for row in results.table("sliding_certificate.csv")}
+
+
+@entry("sliding", "Proof: the certificate at mu = 0.4, and the friction coefficient below which the state is the only one")
+def proof(runs):
+    values = certificate(steady(runs, "sliding_0.4", "Operation/Friction coefficient=0.4"))
+    for quantity, bound in (("residual of the full system [-]", "1e-11"), ("error of the prescribed loads [-]", "1e-14"),
+                            ("largest overlap over travel [-]", "1e-13"), ("complementarity |r_n g| over load and travel [-]", "1e-14"),
+                            ("force balance with the supports [-]", "1e-11"), ("moment balance with the supports [-]", "1e-11")):
+        yield Number(quantity, bound, values[quantity], bound=True)
+    yield Number("largest tension over load", "-2e-5", values["largest tension over load [-]"])
+    yield Number("the state is the only one below mu =", "1.348", values["friction coefficient below which the state is unique [-]"])
+
+
+@entry("sliding", "The table over mu: open nodes, largest pressure beside the mean, travel of the backplates")
+def over_friction(runs):
+    for mu, (n_open, ratio, travel) in OVER_FRICTION.items():
+        pins = steady(runs, f"sliding_{mu}", f"Operation/Friction coefficient={mu}").table("sliding_pins.csv")
+        yield Number(f"mu = {mu}: open nodes", n_open, sum(pin["open nodes [-]"] for pin in pins))
+        yield Number(f"mu = {mu}: largest pressure / mean", ratio, max(pin["largest pressure [Pa]"] for pin in pins) / MEAN_PRESSURE)
+        yield Number(f"mu = {mu}: travel [um]", travel, 1e6 * max(pin["travel of backplate [m]"] for pin in pins))
+
+
+@entry("sliding", "Largest nodal pressure with 19, 37 and 61 nodes per face, open nodes of each pin, centres of pressure")
+def meshes(runs):
+    for nodes, pressure, n_open, centre in ((19, "217", "0", "-6.32"), (37, "280", "1", "-6.33"), (61, "358", "3", "-6.34")):
+        pins = steady(runs, f"sliding_faces_{nodes}", f"Geometry/Nodes per pin face={nodes}").table("sliding_pins.csv")
+        yield Number(f"{nodes} nodes: largest pressure [kPa]", pressure, 1e-3 * max(pin["largest pressure [Pa]"] for pin in pins))
+        yield Number(f"{nodes} nodes: open nodes of a pin", n_open, max(pin["open nodes [-]"] for pin in pins))
+        yield Number(f"{nodes} nodes: centre of pressure [mm]", centre, 1e3 * pins[0]["pressure offset along t [m]"])
+
+
+def random_gaps(seed):
+    """Gaps [m] and both tapers of every pin, and a friction coefficient."""
+    generator = random.Random(seed)
+    gaps = "; ".join(f"{pin}: {generator.uniform(0, 3e-6):.3e}, {generator.uniform(-5e-5, 5e-5):.3e}, {generator.uniform(-5e-5, 5e-5):.3e}"
+                     for pin in PINS)
+    return gaps, round(generator.uniform(0.03, 1.11), 3)
+
+
+@entry("sliding", "20 random patterns of gaps: all solved, the state is the only one, residuals are small")
+def random_patterns(runs):
+    residuals, overlaps, unique = [], [], 0
+    for seed in range(20):
+        gaps, mu = random_gaps(seed)
+        values = certificate(steady(runs, f"gaps_{seed}", f"Steady sliding/Gaps={gaps}", f"Operation/Friction coefficient={mu}"))
+        residuals.append(values["residual of the full system [-]"])
+        overlaps.append(values["largest overlap over travel [-]"])
+        unique += values["friction coefficient below which the state is unique [-]"] > mu
+    yield Number("patterns that are solved", "20", len(residuals))
+    yield Number("  whose state is the only one", "20", unique)
+    yield Number("largest residual", "1e-11", max(residuals), bound=True)
+    yield Number("largest overlap", "1e-13", max(overlaps), bound=True)

@@ -1,0 +1,110 @@
+"""doc/sweep.md"""
+
+import math
+import re
+
+import numpy as np
+import scipy.optimize
+
+from reproduction.numbers import Number, entry
+
+NO_SHAPES = "Output/Mode shapes=none"
+UNCOMPARED = "Sweep/Compare dissipation=false"
+NO_COUNT = "Sweep/Count modes at="
+GRID = [0.45 * place / 89 for place in (9, 27, 45, 62, 80)]
+SWEEPS = {  # name: parameter file, settings of the sweep, settings of single friction coefficients
+    "without": ("sweep.prm", [], []),
+    "consistent": ("sweep_damped.prm", [UNCOMPARED, NO_COUNT], ["Operation/Radial dissipation=consistent"]),
+    "published": ("sweep_damped.prm", [UNCOMPARED, NO_COUNT, "Operation/Radial dissipation=published"],
+                  ["Operation/Radial dissipation=published"]),
+}
+
+
+def sweep(runs, name, *settings, suffix=""):
+    parameter_file, own, _ = SWEEPS[name]
+    return runs(f"sweep_{name}{suffix}", parameter_file, NO_SHAPES, *own, *settings)
+
+
+def full_order(runs, name, mu):
+    """Modes at one friction coefficient by the Krylov solver."""
+    settings = SWEEPS[name][2]
+    return runs(f"full_{name}_{mu:.8f}", "disc_pins.prm", NO_SHAPES, f"Operation/Friction coefficient={mu!r}", *settings)
+
+
+def at_value(results, mu):
+    """lambda of every branch at a friction coefficient of the grid."""
+    rows = [row for row in results.table("branches.csv") if abs(row["mu [-]"] - mu) < 1e-9 and row["refinement [-]"] == 0]
+    return np.array([complex(row["growth rate [1/s]"], 2 * math.pi * row["frequency [Hz]"]) for row in rows])
+
+
+def largest_differences(runs, name, results):
+    """Largest relative difference of lambda, and of the divergence rate, to full order at five friction coefficients."""
+    of_lambda, of_divergence = 0.0, 0.0
+    for mu in GRID:
+        swept, full = at_value(results, mu), np.array(full_order(runs, name, mu).eigenvalues())
+        if len(swept) != len(full):
+            return math.inf, math.inf
+        distances = abs(swept[:, None] - full[None, :])
+        pairs = scipy.optimize.linear_sum_assignment(distances)
+        of_lambda = max(of_lambda, float((distances[pairs] / abs(full[pairs[1]])).max()))
+        rates = [values.real / values.imag for values in (swept[pairs[0]], full[pairs[1]])]
+        of_divergence = max(of_divergence, float(abs(rates[0] - rates[1]).max()))
+    return of_lambda, of_divergence
+
+
+def step_number(results, step, pattern):
+    """A number that the run record gives as the result of a step."""
+    text = next(entry["result"] for entry in results.record["steps"] if entry["name"] == step)
+    return float(re.search(pattern, text)[1])
+
+
+@entry("sweep", "How: vectors to start from, and with which the tolerance is met")
+def vectors(runs):
+    for name, start, end in (("without", "198", "220"), ("consistent", "263", "290")):
+        results = sweep(runs, name)
+        yield Number(f"{name}: vectors to start from", start, step_number(results, "Reduced model", r"(\d+) vectors"))
+        yield Number(f"{name}: vectors at the end", end, step_number(results, "Sweep", r"(\d+) vectors"), bound=True)
+
+
+@entry("sweep", "Full-order modes at five values, without, with consistent and with published dissipation: at most the tolerance")
+def against_full_order(runs):
+    for name in SWEEPS:
+        of_lambda, of_divergence = largest_differences(runs, name, sweep(runs, name))
+        yield Number(f"{name}: largest relative difference of lambda", "1e-6", of_lambda, bound=True)
+        yield Number(f"{name}: largest difference of xi", "5e-7", of_divergence, bound=True)
+
+
+@entry("sweep", "The same at Sweep/Tolerance = 1e-8")
+def against_full_order_tightly(runs):
+    for name in ("without", "consistent"):
+        results = sweep(runs, name, "Sweep/Tolerance=1e-8", suffix="_1e-8")
+        of_lambda, of_divergence = largest_differences(runs, name, results)
+        yield Number(f"{name}: largest relative difference of lambda", "1e-8", of_lambda, bound=True)
+        yield Number(f"{name}: largest difference of xi", "5e-9", of_divergence, bound=True)
+
+
+@entry("sweep", "1e-5 to either side of a threshold full order finds one growing mode more on one than on the other")
+def thresholds(runs):
+    for name, label, quoted in (("without", "A0-5", "0.0893"), ("without", "F1", "0.0424"), ("without", "R0-2", "0.3987"),
+                                ("without", "F1", "0.3785"), ("consistent", "A0-4", "0.0837"), ("consistent", "F1", "0.0496")):
+        rows = [row for row in sweep(runs, name).table("thresholds.csv") if row["label"].startswith(label)]
+        threshold = min(rows, key=lambda row: abs(row["mu [-]"] - float(quoted)))
+        yield Number(f"{name}: threshold of {label}", quoted, threshold["mu [-]"])
+        below, above = (full_order(runs, name, threshold["mu [-]"] + side * 1e-5).n_unstable() for side in (-1, 1))
+        yield Number("  growing modes that come or go there", "1", abs(above - below))
+
+
+@entry("sweep", "With 10 values instead of 90, 22 of the 24 thresholds are seen")
+def few_values(runs):
+    yield Number("thresholds with 90 values", "24", len(sweep(runs, "without").table("thresholds.csv")))
+    few = sweep(runs, "without", "Sweep/Number of friction coefficients=10", suffix="_10")
+    yield Number("thresholds with 10 values", "22", len(few.table("thresholds.csv")))
+
+
+@entry("sweep", "The argument principle at mu = 0.4 counts 66 modes without and with dissipation")
+def counts(runs):
+    for name, settings in (("without", ["Sweep/Count modes at=0.4"]), ("consistent", ["Sweep/Count modes at=0.4"])):
+        row = sweep(runs, name, *settings, suffix="_counted").table("argument_counts.csv")[0]
+        for column, quoted in zip(row, ("0.4", "66", "66")):
+            if isinstance(row[column], float):
+                yield Number(f"{name}: {column}", quoted, row[column])

@@ -1,0 +1,97 @@
+"""doc/table1.md"""
+
+import math
+
+from reproduction.numbers import Number, entry
+
+NO_SHAPES = "Output/Mode shapes=none"
+FINE = ("Geometry/Element size=0.008", "Geometry/Disc layers=4", "Geometry/Pin layers=6")
+MESHES = {
+    "7 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=7"], "2350", "0.556", "3471", "0.709", "3593", "0.934"),
+    "19 nodes": ("disc_pins.prm", [], "2353", "0.680", "3452", "0.856", "3569", "1.068"),
+    "37 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=37"], "2352", "0.712", "3441", "0.884", "3556", "1.101"),
+    "37 nodes, 8 mm": ("disc_pins.prm", ["Geometry/Nodes per pin face=37", *FINE], "2335", "0.727", "3411", "0.894", "3524", "1.110"),
+    "degree 2": ("quadratic.prm", [], "2315", "0.76", "3383", "0.93", "3501", "1.10"),
+}
+
+
+def paper(runs):
+    return runs("paper", "paper.prm")
+
+
+def rms(rows, column):
+    values = [row[column] for row in rows if isinstance(row[column], float)]
+    return math.sqrt(sum(value**2 for value in values) / len(values)), len(values)
+
+
+@entry("table1", "The agreement: component, coupled and complex frequencies, numbers below 5 kHz")
+def agreement(runs):
+    results = paper(runs)
+    for name, quoted, of in (("component", "3.2", "34"), ("coupled", "3.0", "34"), ("without C_b", "2.8", "38"), ("with C_b", "2.8", "39")):
+        value, number = rms(results.table("table1.csv"), f"{name} difference [%]")
+        yield Number(f"{name}: difference, rms [%]", quoted, value)
+        yield Number("  of so many", of, number)
+    counts = results.record["counts"]
+    for name, quoted in (("disc modes", "30"), ("sliding pin modes", "36"), ("real modes", "66")):
+        yield Number(name, quoted, counts[name])
+    yield Number("complex modes", "66", len(results.table("complex_modes.csv")))
+
+
+@entry("table1", "Unstable pairs without radial dissipation")
+def unstable_pairs(runs):
+    modes = paper(runs).table("complex_modes.csv")
+    growing = sorted((mode for mode in modes if mode["divergence rate [%]"] > 0.01), key=lambda mode: -mode["divergence rate [%]"])
+    for place, (label, frequency, rate) in enumerate((("F1", "3569", "1.07"), ("A0-5", "3452", "0.86"), ("A0-4", "2353", "0.68"),
+                                                      ("F1", "3548", "0.32"), ("F1", "3542", "0.12"))):
+        yield Number(f"{place + 1}. {growing[place]['label']} ({label} in the page) [Hz]", frequency, growing[place]["frequency [Hz]"])
+        yield Number("  [%]", rate, growing[place]["divergence rate [%]"])
+
+
+@entry("table1", "With C_b, consistent and about steady sliding")
+def damped(runs):
+    modes = paper(runs).table("complex_modes_damped.csv")
+
+    def rates(label):
+        return sorted((mode["divergence rate [%]"], mode["frequency [Hz]"]) for mode in modes if mode["label"].startswith(label))
+
+    for label, grows, decays in (("A0-4", ("2353", "0.67"), ("2353", "-0.69")), ("A0-5", ("3455", "0.82"), ("3451", "-0.94"))):
+        for (frequency, rate), found in ((grows, rates(label)[-1]), (decays, rates(label)[0])):
+            yield Number(f"{label} [%]", rate, found[0])
+            yield Number("  [Hz]", frequency, found[1])
+    bending = rates("F1")
+    for name, place, rate, frequency in (("growing", -1, "0.97", "3566"), ("next damped", 12, "-0.39", "3543"),
+                                         ("the one after", 13, "-0.31", "3521")):
+        yield Number(f"F1, {name} [%]", rate, bending[place][0])
+        yield Number("  [Hz]", frequency, bending[place][1])
+    for name, places, least, most in (("neutral", slice(14, 23), "0.02", "0.09"), ("damped half", slice(0, 12), "-1.41", "-0.89")):
+        yield Number(f"F1, {name}, least [%]", least, bending[places][0][0])
+        yield Number(f"F1, {name}, most [%]", most, bending[places][-1][0])
+    for label, rate in (("T1", "-1.80"), ("R0-1 +", "-0.110"), ("A1-2 +", "-0.123")):
+        yield Number(f"{label}, most damped [%]", rate, rates(label)[0][0])
+    yield Number("T1, least damped [%]", "-1.36", rates("T1")[-1][0])
+
+
+@entry("table1", "What differs by more than 7 %")
+def large_differences(runs):
+    rows = {row["label"]: row for row in paper(runs).table("table1.csv")}
+    for label, column, quoted in (("C0-0", "component", "-8.0"), ("C0-0", "coupled", "-8.0"), ("R0-1 -", "component", "6.3"),
+                                  ("R0-1 -", "coupled", "7.3"), ("A0-2 +", "coupled", "-7.2"), ("A0-2 +", "component", "-6.1")):
+        yield Number(f"{label}, {column} [%]", quoted, rows[label][f"{column} difference [%]"])
+
+
+@entry("table1", "Convergence in the band: A0-4, A0-5 and the leading F1 on five meshes")
+def convergence(runs):
+    for name, (parameter_file, settings, *quoted) in MESHES.items():
+        folder = "default" if name == "19 nodes" else f"mesh_{name.replace(', ', '_').replace(' ', '_')}"
+        results = runs(folder, parameter_file, NO_SHAPES, *settings)
+        for label, frequency, rate in zip(("A0-4", "A0-5", "F1"), quoted[::2], quoted[1::2]):
+            mode = results.leading(label)
+            yield Number(f"{name}: {label} [Hz]", frequency, mode["frequency [Hz]"])
+            yield Number(f"{name}: {label} [%]", rate, mode["divergence rate [%]"])
+
+
+@entry("table1", "F1 at 3353 Hz: the coupled modes up to there in the paper's table")
+def coupled_modes_up_to_f1(runs):
+    rows = paper(runs).table("table1.csv")
+    printed = [row["coupled paper [Hz]"] for row in rows if isinstance(row["coupled paper [Hz]"], float)]
+    yield Number("coupled modes up to 3353 Hz", "18", sum(frequency <= 3353 for frequency in printed))
