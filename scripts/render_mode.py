@@ -305,7 +305,8 @@ def main():
     parser.add_argument("modes", metavar="MODE.vtu", type=pathlib.Path, nargs="+")
     parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE.vtu)")
     parser.add_argument("--field", default="displacement",
-                        help="displacement (its real part), displacement_imag, amplitude, phase or another point field (default: %(default)s)")
+                        help="displacement (its real part), displacement_imag, amplitude, phase or another point field "
+                             "(default: %(default)s)")
     parser.add_argument("--bodies", choices=("all", "moving"), default="all",
                         help="moving: only those that take part in the mode (default: %(default)s)")
     parser.add_argument("--scale", default="auto", help="factor of the displacement, or auto (default)")

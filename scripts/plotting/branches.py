@@ -184,6 +184,5 @@ def figures(results):
     if not all_charts:
         return {}
     band_end = results.number("Band/Maximum frequency")
-    shown = results.number_list("Sweep/Mode shapes at") or [max(mu for chart in all_charts for mu in chart.mus)]
-    return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(all_charts, shown, band_end),
+    return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),
             "overview": overview_figure(all_charts, band_end)}

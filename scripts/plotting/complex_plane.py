@@ -126,22 +126,30 @@ def draw(panel, size, title, series, band_end):
     plane.draw_names()
 
 
-def nearest(all_charts, title, mu):
-    """Of the charts of a title the value nearest to mu, and the modes there."""
-    value, chart = min(((value, chart) for chart in all_charts if chart.title == title for value in chart.mus),
-                       key=lambda entry: (abs(entry[0] - mu), entry[0]))
-    return value, chart.modes_at(value)
+def planes_of_table(table):
+    """Series by friction coefficient, in the order of a table complex_plane, without radial dissipation first."""
+    planes = {}
+    columns = (table.numbers("mu [-]"), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
+               table.numbers("divergence rate [%]"), table.texts("verdict"))
+    for mu, dissipation, label, frequency, divergence, verdict in zip(*columns):
+        title = charts.WITHOUT if dissipation == "none" else charts.WITH
+        mode = charts.Mode(label, frequency, divergence, verdict == "unstable", verdict == "undecided")
+        planes.setdefault(mu, {}).setdefault(title, []).append(mode)
+    return {mu: [Series(title, found[title]) for title in (charts.WITHOUT, charts.WITH) if title in found] for mu, found in planes.items()}
 
 
-def sweep_figure(all_charts, friction_coefficients, band_end):
-    """A panel for each friction coefficient, at the values of the sweep nearest to it."""
-    picture = style.Picture("Modes in the complex plane", len(friction_coefficients), 2, (5.2, 3.6))
-    titles = list(dict.fromkeys(chart.title for chart in all_charts))
-    for panel, mu in zip(picture.panels, friction_coefficients):
-        found = {title: nearest(all_charts, title, mu) for title in titles}
-        others = sorted({value for value, _ in found.values() if abs(value - mu) > 1e-9})
-        caption = f"\u03bc = {mu:g}" + (f" (nearest of the sweep: {', '.join(f'{value:.6g}' for value in others)})" if others else "")
-        draw(panel, picture.size, caption, [Series(title, modes) for title, (_, modes) in found.items()], band_end)
+def last_plane(all_charts):
+    """Series at the last value of a sweep."""
+    mu = max(mu for chart in all_charts for mu in chart.mus)
+    return {mu: [Series(chart.title, chart.modes_at(mu)) for chart in all_charts if mu in chart.mus]}
+
+
+def sweep_figure(results, all_charts, band_end):
+    """A panel for each friction coefficient of the complex plane; where none is asked for, one for the last of the sweep."""
+    planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
+    picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
+    for panel, (mu, series) in zip(picture.panels, planes.items()):
+        draw(panel, picture.size, f"\u03bc = {mu:.6g}", series, band_end)
     return picture.add_key()
 
 

@@ -73,6 +73,11 @@ namespace Squeal
     declarations.add("Mode shapes at", mode_shapes,
                      "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.",
                      coefficients, most_coefficients);
+    declarations.add(
+      "Complex plane at", planes,
+      "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and drawn in "
+      "the complex plane, separated by commas; empty: those of Mode shapes at. Units: none.",
+      coefficients, most_coefficients);
     declarations.add("Count modes at", counts,
                      "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
                      "in finding them, separated by commas. Units: none.",
@@ -91,6 +96,7 @@ namespace Squeal
     check_range(friction_coefficients, "friction coefficients",
                 "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients");
     check_inside(mode_shapes, friction_coefficients, "Mode shapes at");
+    check_inside(planes, friction_coefficients, "Complex plane at");
     check_inside(counts, friction_coefficients, "Count modes at");
     if (map_parameter == MapParameter::none)
       return;

@@ -33,14 +33,15 @@ namespace Squeal
       return label;
     }
 
-    /// The modes at one of the chosen friction coefficients, which may miss the tolerance.
-    ChartPoint modes_at(SweepModel &model, const double mu)
+    /// The modes of a line at one of the chosen friction coefficients, which may miss the tolerance.
+    ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
     {
-      const ChartPoint point     = model.evaluate(0, {mu}).front();
+      const bool       is_new    = model.known.count({line, mu}) == 0;
+      const ChartPoint point     = model.evaluate(line, {mu}).front();
       const double     tolerance = model.run.parameters.sweep.tolerance, error = model.reduced->largest_error(point);
-      if (!(error <= tolerance))
-        model.run.progress.note(
-          text("  note: at mu = ", mu, " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
+      if (is_new && !(error <= tolerance))
+        model.run.progress.note(text("  note: at mu = ", mu, line > 0 ? " without radial dissipation" : "",
+                                     " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
       return point;
     }
   } // namespace
@@ -73,6 +74,33 @@ namespace Squeal
             }
         cell.error = model.reduced->largest_error(point);
       }
+  }
+
+  void append_plane_modes(SweepModel &model, std::vector<PlaneMode> &modes)
+  {
+    for (const double mu : model.run.parameters.sweep.complex_plane())
+      for (std::size_t line = 0; line < model.plan.lines.size(); ++line)
+        {
+          if (model.plan.lines[line].kind == SweepLine::Kind::map || model.plan.closed_at(mu) != model.regime.closed)
+            continue;
+          const ChartPoint    point = modes_at(model, mu, static_cast<int>(line));
+          std::vector<int>    in_band;
+          std::vector<double> growth; // zero for a mode that does not grow, as in a run at one friction coefficient
+          for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+            if (model.is_in_band(point.lambda[j]))
+              {
+                in_band.push_back(j);
+                growth.push_back(point.verdicts[j] == Verdict::unstable ? point.lambda[j].real() : 0.);
+              }
+          std::vector<ModeLabel> labels = model.labels(point, in_band);
+          mark_doublets(labels, growth);
+          for (std::size_t k = 0; k < in_band.size(); ++k)
+            {
+              const int j = in_band[k];
+              modes.push_back(
+                {mu, model.plan.lines[line].operation.radial_dissipation, point.lambda[j], labels[k], point.errors[j], point.verdicts[j]});
+            }
+        }
   }
 
   void append_counts(SweepModel &model, std::vector<CountAt> &counts)

@@ -25,6 +25,7 @@ namespace Squeal
       Parameters parameters        = run.parameters;
       parameters.output            = {};
       parameters.sweep.mode_shapes = {};
+      parameters.sweep.planes      = {};
       parameters.sweep.counts      = {};
       std::ostringstream stream;
       stream << "# squeal " << version << '\n';
@@ -54,14 +55,17 @@ namespace Squeal
     /// Friction coefficients of the parameters at which other contact nodes are closed than at any value of the sweep.
     void note_unknown_contact(const SweepPlan &plan, Run &run)
     {
-      const SweepParameters &sweep = run.parameters.sweep;
-      for (const auto *chosen : {&sweep.mode_shapes, &sweep.counts})
-        for (const double mu : *chosen)
+      const SweepParameters                                                  &sweep  = run.parameters.sweep;
+      const std::vector<std::pair<const std::vector<double> *, const char *>> chosen = {
+        {&sweep.mode_shapes, "no mode shape is written"},
+        {&sweep.complex_plane(), "the complex plane is left out"},
+        {&sweep.counts, "modes are not counted"}};
+      for (const auto &[values, what_is_missing] : chosen)
+        for (const double mu : *values)
           if (const auto closed = plan.closed_at(mu);
               std::none_of(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &regime) { return regime.closed == closed; }))
             run.progress.note(text("  note: at mu = ", mu, " other contact nodes are closed than at any value of the sweep: ",
-                                   chosen == &sweep.counts ? "modes are not counted" : "no mode shape is written",
-                                   ". Raise Sweep/Number of friction coefficients"));
+                                   what_is_missing, ". Raise Sweep/Number of friction coefficients"));
     }
 
     // ------------------------------------------------------------------ tables
@@ -173,6 +177,24 @@ namespace Squeal
                    cells);
     }
 
+    /// Modes at the friction coefficients of the complex plane, in the order of the parameter, without dissipation last.
+    Table plane_table(const std::vector<PlaneMode> &modes)
+    {
+      using Row           = PlaneMode;
+      const auto quantity = [](double ModalQuantities::*member, const double factor = 1.) {
+        return [member, factor](const Row &row) { return factor * (modal_quantities(row.lambda).*member); };
+      };
+      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+                                {"radial dissipation", "", [](const Row &row) { return to_string(row.dissipation); }},
+                                {"label", "", &Row::label},
+                                {"frequency", "Hz", quantity(&ModalQuantities::frequency), 3},
+                                {"growth rate", "1/s", quantity(&ModalQuantities::growth_rate), 4},
+                                {"divergence rate", "%", quantity(&ModalQuantities::divergence_rate, 100.), 4},
+                                {"estimated error of lambda", "-", &Row::error, 1, true},
+                                {"verdict", "", &Row::verdict}},
+                   modes);
+    }
+
     /// Numbers of modes beside those of the argument principle.
     Table argument_table(const std::vector<CountAt> &counts)
     {
@@ -249,6 +271,7 @@ namespace Squeal
     std::vector<std::vector<SweepChart>> charts(plan.lines.size());
     const std::vector<SweepChart>       &main = charts[0];
     std::vector<MapCell>                 map;
+    std::vector<PlaneMode>               plane;
     std::vector<CountAt>                 counts;
     for (const ContactRegime &regime : plan.regimes)
       {
@@ -256,6 +279,7 @@ namespace Squeal
         evaluate_points(model, *store_of(model, checkpoint, "sweep"));
         follow_branches(model, checkpoint, charts);
         append_map_cells(model, main.empty() ? nullptr : &main.back(), map);
+        append_plane_modes(model, plane);
         append_counts(model, counts);
         write_leading_modes(model);
       }
@@ -264,6 +288,8 @@ namespace Squeal
     if (!main.empty())
       run.progress.note("\n" + verdict(main, plan.lines[0].friction_coefficients.size(), omega_max));
     write_charts(plan, charts, omega_max, run);
+    if (!plane.empty())
+      run.store_table("complex_plane", plane_table(plane));
     if (!counts.empty())
       run.write_table("argument_counts", argument_table(counts));
     if (plan.regimes.size() > 1)

@@ -19,7 +19,7 @@ except ModuleNotFoundError as missing:
 
 BAND = 100.0  # [Hz]
 PARAMETERS = {"Band": {"Maximum frequency": BAND}, "Operation": {"Radial dissipation": "none", "Friction coefficient": 0.4},
-              "Sweep": {"Mode shapes at": ""}, "Reduction": {"Problem": "friction"}}
+              "Reduction": {"Problem": "friction"}}
 BRANCHES = ("mu [-]", "branch [-]", "label", "frequency [Hz]", "divergence rate [%]", "verdict", "growing [-]")
 THRESHOLDS = ("mu [-]", "event", "branch [-]", "partner [-]", "frequency [Hz]")
 
@@ -147,25 +147,43 @@ class Charts(PlotTest):
 
 
 class ComplexPlane(PlotTest):
+    COLUMNS = ("mu [-]", "radial dissipation", "label", "frequency [Hz]", "divergence rate [%]", "verdict")
+
+    def sweep_axes(self):
+        return complex_plane.sweep_figure(Results(self.folder), self.charts(), BAND).axes
+
     def test_rings_squares_and_names(self):
+        """Of a sweep that asks for no value, at its last one."""
         self.write_chart(undecided=[(3, 4)])
-        first, last = complex_plane.sweep_figure(self.charts(), [0.1, 1.0], BAND).axes
-        self.assertEqual(len(line_of(first, charts.WITHOUT)), 3)
-        self.assertEqual(line_of(first, "growing"), [])
-        # The point nearest to 1 is the last
-        self.assertIn("0.4", last.get_title())
-        (x, y), = line_of(last, "growing")
+        axes, = self.sweep_axes()
+        self.assertEqual(axes.get_title(), "\u03bc = 0.4")
+        (x, y), = line_of(axes, "growing")
         self.assertAlmostEqual(x, 0.010)
         self.assertAlmostEqual(y, math.sqrt(0.15))
-        self.assertEqual(line_of(last, "undecided"), [(0.050, -1.0)])
-        self.assertEqual([text.get_text() for text in last.texts], ["A0-4 -"])
+        self.assertEqual(line_of(axes, "undecided"), [(0.050, -1.0)])
+        self.assertEqual([text.get_text() for text in axes.texts], ["A0-4 -"])
 
     def test_growth_that_is_undecided_has_no_ring(self):
         self.write_chart(undecided=[(1, 4)])
-        axes, = complex_plane.sweep_figure(self.charts(), [0.4], BAND).axes
+        axes, = self.sweep_axes()
         self.assertEqual(line_of(axes, "growing"), [])
         self.assertEqual(len(line_of(axes, "undecided")), 1)
         self.assertEqual(len(axes.texts), 0)
+
+    def test_values_that_are_asked_for(self):
+        """They need not be values of the chart."""
+        self.write_chart()
+        self.write("complex_plane", self.COLUMNS, [(0.33, "published", "A0-4 +", 20, 0.5, "unstable"),
+                                                   (0.33, "none", "A0-4 +", 21, 0.7, "unstable"),
+                                                   (0.33, "none", "F1", 30, 0, "stable"), (0.12, "published", "F1", 31, 0.2, "undecided")])
+        first, second = self.sweep_axes()
+        self.assertEqual([axes.get_title() for axes in (first, second)], ["\u03bc = 0.33", "\u03bc = 0.12"])
+        self.assertEqual(line_of(first, charts.WITHOUT), [(0.021, 0.7), (0.030, 0.0)])
+        self.assertEqual(line_of(first, charts.WITH), [(0.020, 0.5)])
+        self.assertEqual(sorted(line_of(first, "growing")), [(0.020, 0.5), (0.021, 0.7)])
+        self.assertEqual(line_of(second, charts.WITHOUT), [])
+        self.assertEqual(line_of(second, "growing"), [])
+        self.assertEqual(line_of(second, "undecided"), [(0.031, 0.2)])
 
     def test_faster_decay_lies_at_the_edge(self):
         modes = [charts.Mode("F1", 50, 0.1, True, False), charts.Mode("T1", 60, -5, False, False)]

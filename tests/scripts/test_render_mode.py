@@ -52,7 +52,8 @@ class RenderMode(unittest.TestCase):
 
     def test_draws_several_side_by_side(self):
         annulus_mode.write(self.directory / "other.vtu", n_diameters=2, disc_cells=(4, 40, 1), pin_cells=(2, 2, 2))
-        result = self.render(self.directory / "other.vtu", self.directory / "mode.vtu", "-o", self.directory / "three.png", "--width", "800")
+        files = [self.directory / "other.vtu", self.directory / "mode.vtu"]
+        result = self.render(*files, "-o", self.directory / "three.png", "--width", "800")
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         pixels = self.pixels("three.png", (800, 565))
         # Rows count from below: two rows of modes above the colour bar, the last of the four places empty
@@ -65,7 +66,8 @@ class RenderMode(unittest.TestCase):
         annulus_mode.write_real(self.directory / "real.vtu")
         pictures = []
         for bodies in ("all", "moving"):
-            result = self.render(self.directory / "real.vtu", "--bodies", bodies, "-o", self.directory / f"{bodies}.png", "--width", "800")
+            picture = self.directory / f"{bodies}.png"
+            result = self.render(self.directory / "real.vtu", "--bodies", bodies, "-o", picture, "--width", "800")
             self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
             pictures.append(self.pixels(f"{bodies}.png", (800, 315))[:, 400:])
         # The pins hide part of the disc

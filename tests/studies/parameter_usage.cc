@@ -70,6 +70,7 @@ namespace
                                                               {"Sweep/Threshold tolerance", "1e-5"},
                                                               {"Sweep/Compare dissipation", "false"},
                                                               {"Sweep/Mode shapes at", "0.2"},
+                                                              {"Sweep/Complex plane at", "0.2"},
                                                               {"Sweep/Count modes at", "0.2"},
                                                               {"Sweep/Map parameter", "load"},
                                                               {"Sweep/First map value", "200"},

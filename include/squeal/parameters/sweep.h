@@ -42,11 +42,18 @@ namespace Squeal
     double              threshold_tolerance   = 1e-6; ///< of the friction coefficient [-]
     bool                compare_dissipation   = true; ///< also without radial dissipation
     std::vector<double> mode_shapes;                  ///< friction coefficients at which the leading mode is written
+    std::vector<double> planes;                       ///< friction coefficients at which all modes are written; empty: mode_shapes
     std::vector<double> counts;                       ///< friction coefficients at which modes are counted by the argument principle
 
     MapParameter map_parameter             = MapParameter::none;
     ValueRange   map_values                = {100., 10000., 11}; ///< [N] or [rad/s]
     unsigned int map_friction_coefficients = 19;
+
+    /// Friction coefficients of the complex plane.
+    const std::vector<double> &complex_plane() const
+    {
+      return planes.empty() ? mode_shapes : planes;
+    }
 
     /// Friction coefficients of the map: from the first to the last of the sweep.
     std::vector<double> map_grid() const;

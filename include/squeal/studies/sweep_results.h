@@ -3,6 +3,7 @@
 #include <squeal/counting/contour_count.h>
 #include <squeal/studies/sweep_charts.h>
 
+#include <complex>
 #include <optional>
 #include <vector>
 
@@ -23,6 +24,23 @@ namespace Squeal
 
   /// Appends the points of the map in a contact set; modes are named after the branches of the chart @p main, unless it is null.
   void append_map_cells(const SweepModel &model, const SweepChart *main, std::vector<MapCell> &cells);
+
+  /// A mode of the band at one of the friction coefficients of the complex plane.
+  struct PlaneMode
+  {
+    double               friction_coefficient; ///< [-]
+    RadialDissipation    dissipation;
+    std::complex<double> lambda; ///< [rad/s]
+    ModeLabel            label;
+    double               error; ///< estimated |δλ| / |λ| [-]
+    Verdict              verdict;
+  };
+
+  /**
+   * Appends the modes of the band at the friction coefficients of the complex plane that belong to the contact set, on the main line
+   * and on that without radial dissipation, from the basis as it is then: charts do not change.
+   */
+  void append_plane_modes(SweepModel &model, std::vector<PlaneMode> &modes);
 
   /// Number of modes at one friction coefficient by the sweep and by the argument principle.
   struct CountAt
