@@ -9,24 +9,31 @@ import json
 from program import ProgramTest, eigenvalues, read_table, real_frequencies
 from test_sliding import LOAD, SINGLE, STEADY, ContactFaces, SlidingTest, pins
 from test_solvers import DISSIPATION, RESIDUAL_ITERATION
-from test_sweep import DEFAULT_ACCURACY, MAP, SweepTest, by_mu, grid_of, modes_by_mu, thresholds
+from test_sweep import DEFAULT_ACCURACY, MAP, SweepTest, by_mu, eigenvalue, grid_of, modes_by_mu, thresholds
+from vtu_file import VtuFile
 
 UNSTABLE_SHAPES = "Output/Mode shapes=unstable"
+COMPONENT_SHAPES = "Output/Component mode shapes=true"
 
 
 class Solvers(ProgramTest):
     def test_modes(self):
         for name, overrides in {"Krylov": [], "Krylov, dissipation": [DISSIPATION], "residual iteration": RESIDUAL_ITERATION,
                                 "residual iteration, dissipation": [DISSIPATION, *RESIDUAL_ITERATION]}.items():
-            one = self.run_scene("one", UNSTABLE_SHAPES, *overrides)
+            one = self.run_scene("one", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides)
             # Three processes see no other code than two: half of the cases do.
             for n_processes in (2, 3) if name in ("Krylov", "residual iteration, dissipation") else (2,):
                 with self.subTest(name, n_processes=n_processes):
-                    several = self.run_scene("several", UNSTABLE_SHAPES, *overrides, n_processes=n_processes)
+                    several = self.run_scene("several", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides, n_processes=n_processes)
                     self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(one))
                     self.assert_same_eigenvalues(real_frequencies(several), real_frequencies(one))
                     fields, others = (sorted(path.name for path in (folder / "modes").iterdir()) for folder in (one, several))
                     self.assertEqual(others, fields)
+                    # A process may own no cell of a component
+                    for component in ("disc", "pins_sliding"):
+                        name = next(name for name in fields if name.startswith(f"component_{component}"))
+                        cells = [len(VtuFile(folder / "modes" / name).cell_types) for folder in (one, several)]
+                        self.assertEqual(cells[1], cells[0])
                     record = json.loads((several / "run.json").read_text(encoding="utf-8"))
                     self.assertEqual(record["machine"]["processes"], n_processes)
 
@@ -55,7 +62,7 @@ class Sliding(SlidingTest):
 class Sweep(SweepTest):
     def test_branches_and_thresholds(self):
         overrides = [DISSIPATION, "Sweep/Number of friction coefficients=4", "Sweep/Count modes at=0.2, 0.33",
-                     "Sweep/Mode shapes at=0, 0.4", UNSTABLE_SHAPES, "Sweep/Map parameter=load", "Sweep/First map value=250",
+                     "Sweep/Mode shapes at=0, 0.4", UNSTABLE_SHAPES, "Sweep/Complex plane at=0.33", "Sweep/Map parameter=load", "Sweep/First map value=250",
                      "Sweep/Last map value=4000", *MAP]
         one, two = (self.sweep(f"sweep_{n}", *overrides, n_processes=n) for n in (1, 2))
         for suffix in ("", "_without_dissipation"):
@@ -68,6 +75,8 @@ class Sweep(SweepTest):
             self.assertEqual([row["event"] for row in actual], [row["event"] for row in expected])
             for a, b in zip(expected, actual):
                 self.assertAlmostEqual(a["mu [-]"], b["mu [-]"], delta=a["uncertainty [-]"] + b["uncertainty [-]"] + 1e-6)
+        planes = [[eigenvalue(row) for row in read_table(folder / "complex_plane.csv")] for folder in (one, two)]
+        self.assert_same_modes(planes[1], planes[0], DEFAULT_ACCURACY)
         for a, b in zip(read_table(one / "argument_counts.csv"), read_table(two / "argument_counts.csv"), strict=True):
             self.assertEqual(a["modes counted [-]"], b["modes counted [-]"])
         self.assertEqual([len(by_mu(read_table(folder / "map.csv"))) for folder in (one, two)], [4, 4])
