@@ -153,14 +153,23 @@ def sweep_figure(results, all_charts, band_end):
     return picture.add_key()
 
 
+def modes_of_run(table):
+    columns = (table.texts("label"), table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.flags("unstable [-]"))
+    return [charts.Mode(*row, False) for row in zip(*columns)]
+
+
+def series_of_run(results):
+    """Modes at one friction coefficient: those of the study `paper` without and with radial dissipation, else those of the one solution."""
+    modes = modes_of_run(results.table("complex_modes"))
+    if results.has("complex_modes_damped"):
+        return [Series(charts.WITHOUT, modes), Series(charts.WITH, modes_of_run(results.table("complex_modes_damped")))]
+    return [Series(charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH, modes)]
+
+
 def run_figure(results):
     """The complex modes of a run at one friction coefficient."""
-    table = results.table("complex_modes")
-    columns = (table.texts("label"), table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.flags("unstable [-]"))
-    modes = [charts.Mode(*row, False) for row in zip(*columns)]
-    title = charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
-    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [Series(title, modes)],
+    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", series_of_run(results),
          results.number("Band/Maximum frequency"))
     if results.has("real_eigenvalues"):
         rates = [rate for rate in results.table("real_eigenvalues").numbers("growth rate [1/s]") if rate > 0]
