@@ -103,8 +103,9 @@ def few_values(runs):
 
 @entry("sweep", "The argument principle at mu = 0.4 counts 66 modes without and with dissipation")
 def counts(runs):
-    for name, settings in (("without", ["Sweep/Count modes at=0.4"]), ("consistent", ["Sweep/Count modes at=0.4"])):
-        row = sweep(runs, name, *settings, suffix="_counted").table("argument_counts.csv")[0]
-        for column, quoted in zip(row, ("0.4", "66", "66")):
-            if isinstance(row[column], float):
-                yield Number(f"{name}: {column}", quoted, row[column])
+    for name, n_points, phase in (("without", "40", "0.17"), ("consistent", "81", "0.93")):
+        results = sweep(runs, name, "Sweep/Number of friction coefficients=10", "Sweep/Count modes at=0.4", suffix="_counted")
+        row = results.table("argument_counts.csv")[0]
+        yield Number(f"{name}: modes counted", "66", row["modes counted [-]"])
+        yield Number(f"{name}: points", n_points, row["contour points [-]"])
+        yield Number(f"{name}: largest phase step [rad]", phase, row["largest phase step [rad]"])

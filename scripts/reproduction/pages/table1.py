@@ -9,7 +9,7 @@ FINE = ("Geometry/Element size=0.008", "Geometry/Disc layers=4", "Geometry/Pin l
 MESHES = {
     "7 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=7"], "2349", "0.556", "3471", "0.709", "3593", "0.934"),
     "19 nodes": ("disc_pins.prm", [], "2353", "0.680", "3452", "0.856", "3569", "1.068"),
-    "37 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=37"], "2352", "0.712", "3441", "0.884", "3556", "1.101"),
+    "37 nodes": ("disc_pins.prm", ["Geometry/Nodes per pin face=37"], "2351", "0.712", "3441", "0.884", "3556", "1.101"),
     "37 nodes, 8 mm": ("disc_pins.prm", ["Geometry/Nodes per pin face=37", *FINE], "2335", "0.727", "3411", "0.894", "3524", "1.110"),
     "degree 2": ("quadratic.prm", [], "2315", "0.76", "3383", "0.93", "3501", "1.10"),
 }
