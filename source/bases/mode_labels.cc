@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <map>
 
 namespace Squeal
@@ -100,6 +101,9 @@ namespace Squeal
 
     // -------------------------------------------------------------------- disc
 
+    /// Families of disc modes in the order of the displacement components of DiscHarmonics::cylindrical().
+    constexpr std::array<ModeFamily, 3> disc_families = {{ModeFamily::axial, ModeFamily::radial, ModeFamily::circumferential}};
+
     constexpr int n_radial_functions = 5;
     constexpr int largest_harmonic   = 16;
 
@@ -108,6 +112,7 @@ namespace Squeal
     {
       Nodes                   disc;
       Eigen::VectorXd         cosines, sines;
+      DenseMatrix             radial; ///< powers of the radius, which is scaled to [-1, 1], at the nodes
       std::vector<Projection> harmonics;
 
       DiscHarmonics(const Model &model, const std::vector<double> &nodal_masses)
@@ -119,9 +124,9 @@ namespace Squeal
         cosines = theta.array().cos();
         sines   = theta.array().sin();
 
-        // Columns: powers of the radius, scaled to [-1, 1], times cosine, then times sine
-        const double      inner = radii.minCoeff(), outer = radii.maxCoeff();
-        const DenseMatrix radial = powers((2. * radii.array() - inner - outer) / (outer - inner), n_radial_functions);
+        // Columns: powers of the radius times cosine, then times sine
+        const double inner = radii.minCoeff(), outer = radii.maxCoeff();
+        radial = powers((2. * radii.array() - inner - outer) / (outer - inner), n_radial_functions);
         for (int n = 0; n <= largest_harmonic; ++n)
           {
             DenseMatrix functions(radii.size(), (n == 0 ? 1 : 2) * n_radial_functions);
@@ -175,6 +180,17 @@ namespace Squeal
               last = value;
             }
         return changes;
+      }
+
+      /// How a field travels in harmonic n > 0; nothing where it has none of it.
+      std::optional<WaveShares> wave_shares(const Eigen::VectorXd &real_part, const Eigen::VectorXd &imaginary_part, const int n) const
+      {
+        constexpr std::complex<double> i(0., 1.);
+        const Eigen::VectorXcd         factors = harmonics[n].coefficients(real_part) + i * harmonics[n].coefficients(imaginary_part);
+        const Eigen::VectorXcd         a = radial * factors.head(n_radial_functions), b = radial * factors.tail(n_radial_functions);
+        const double positive = disc.masses.dot((a + i * b).cwiseAbs2()), negative = disc.masses.dot((a - i * b).cwiseAbs2());
+        const double both = positive + negative;
+        return both > 0. ? std::make_optional(WaveShares{positive / both, negative / both}) : std::nullopt;
       }
     };
 
@@ -233,9 +249,8 @@ namespace Squeal
 
   std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
   {
-    constexpr std::array<ModeFamily, 3> families = {{ModeFamily::axial, ModeFamily::radial, ModeFamily::circumferential}};
-    const DiscHarmonics                 disc(model, nodal_masses);
-    std::vector<ModeLabel>              labels;
+    const DiscHarmonics    disc(model, nodal_masses);
+    std::vector<ModeLabel> labels;
     for (Eigen::Index j = 0; j < modes.cols(); ++j)
       {
         const Eigen::MatrixX3d fields = disc.cylindrical(modes.col(j));
@@ -248,9 +263,25 @@ namespace Squeal
         energies.colwise().sum().maxCoeff(&diameters);
         energies.col(diameters).maxCoeff(&family);
         labels.push_back(
-          {families[family], disc.nodal_circles(fields.col(family), static_cast<int>(diameters)), static_cast<int>(diameters)});
+          {disc_families[family], disc.nodal_circles(fields.col(family), static_cast<int>(diameters)), static_cast<int>(diameters)});
       }
     return labels;
+  }
+
+  std::vector<std::optional<WaveShares>> wave_shares(const Model                  &model,
+                                                     const std::vector<double>    &nodal_masses,
+                                                     const std::vector<ModeLabel> &labels,
+                                                     const DenseMatrix            &real_part,
+                                                     const DenseMatrix            &imaginary_part)
+  {
+    const DiscHarmonics                    disc(model, nodal_masses);
+    std::vector<std::optional<WaveShares>> shares(labels.size());
+    for (std::size_t j = 0; j < labels.size(); ++j)
+      for (std::size_t component = 0; component < disc_families.size(); ++component)
+        if (labels[j].family == disc_families[component] && labels[j].nodal_diameters > 0)
+          shares[j] = disc.wave_shares(disc.cylindrical(real_part.col(j)).col(component),
+                                       disc.cylindrical(imaginary_part.col(j)).col(component), labels[j].nodal_diameters);
+    return shares;
   }
 
   std::vector<ModeLabel> pin_labels(const Model               &model,

@@ -3,6 +3,7 @@
 #include <squeal/base/text.h>
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/krylov_modes.h>
 #include <squeal/modes/verdict.h>
 #include <squeal/studies/friction_modes.h>
@@ -144,6 +145,21 @@ namespace Squeal
     if (2 * n_complex + n_values == 2 * n_real_modes)
       return counts + real;
     return counts + (n_values > 0 ? real + ", and " : "") + "with friction modes crossed its end";
+  }
+
+  std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
+                                                             const FrictionModes     &friction,
+                                                             const Rotation           rotation)
+  {
+    const Scene        &scene  = *frictionless.linearisation.scene;
+    const SparseMatrix &T_c    = *frictionless.linearisation.coupled.kernel;
+    auto                result = wave_shares(*scene.model, nodal_masses(*scene.model, *scene.system.mass), friction.labels,
+                                             replicate(T_c * *friction.modes.real_part), replicate(T_c * *friction.modes.imaginary_part));
+    if (rotation == Rotation::negative)
+      for (auto &shares : result)
+        if (shares)
+          std::swap(shares->positive, shares->negative);
+    return result;
   }
 
   ModeField mode_field(const Linearisation        &linearisation,

@@ -44,18 +44,23 @@ namespace Squeal
     }
   } // namespace
 
-  Table complex_table(const FrictionModes &friction)
+  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves)
   {
-    const ComplexModes &modes   = friction.modes;
-    Columns<int>        columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
-                                   {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
-                                   column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
-                                   column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
-                                   column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                                   column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
-                                   {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
-                                   {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
-                                   {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }}};
+    const ComplexModes &modes = friction.modes;
+    const auto          wave  = [&waves](double WaveShares::*share) {
+      return [&waves, share](const int j) { return waves[j] ? std::make_optional(*waves[j].*share) : std::nullopt; };
+    };
+    Columns<int> columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
+                            {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
+                            column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
+                            column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
+                            column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                            column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
+                            {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
+                            {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
+                            {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }},
+                            {"wave with rotation", "-", wave(&WaveShares::positive), 3},
+                            {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     if (!modes.estimated_errors.empty())
       columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
     return Table(columns, boost::irange<int>(0, friction.labels.size()));

@@ -85,8 +85,8 @@ namespace Squeal
     if (sliding)
       write_sliding_tables(scene, *sliding, parameters.operation, run);
 
-    run.store_table("complex_modes", complex_table(undamped));
-    run.store_table("complex_modes_damped", complex_table(damped));
+    run.store_table("complex_modes", complex_table(undamped, waves_with_rotation(frictionless, undamped, with.rotation)));
+    run.store_table("complex_modes_damped", complex_table(damped, waves_with_rotation(frictionless, damped, with.rotation)));
     run.store_table("real_modes", real_table(frictionless));
     const double omega_max = circular_frequency(band);
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));

@@ -158,7 +158,7 @@ namespace Squeal
     report(frictionless, friction, run);
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
-    run.store_table("complex_modes", complex_table(friction));
+    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation)));
     run.store_table("real_modes", real_table(frictionless));
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     if (!friction.modes.real_values.empty())

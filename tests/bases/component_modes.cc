@@ -109,6 +109,69 @@ TEST(DiscLabels, TheLargerPartDecides)
   EXPECT_EQ(texts(disc_labels(s.model, masses, columns_of({mixed(1., 0.9), mixed(0.9, 1.)}))), (std::vector<std::string>{"R0-3", "C0-3"}));
 }
 
+TEST(WaveShares, AnalyticFields)
+{
+  // f cos(nθ - ωt) + g cos(nθ + ωt) = Re(φ e^{iωt}), φ = (f + g) cos nθ + i (g - f) sin nθ: f travels along +e_θ
+  const Scene              s      = disc_scene();
+  const auto               masses = nodal_masses(s.model, *s.system.mass);
+  std::vector<MultiVector> re, im;
+  std::vector<ModeLabel>   labels;
+  std::vector<double>      expected;
+  for (const ModeFamily family : {A, R, C})
+    for (int n = 1; n <= 9; ++n)
+      for (const auto &[f, g] : {std::make_pair(1., 0.), std::make_pair(0., 1.), std::make_pair(0.8, 0.8), std::make_pair(-0.3, 0.4)})
+        {
+          const auto field = [&](const bool imaginary) {
+            return displacements(s.model, 0, [&, f = f, g = g](const Point3 &p) {
+              const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]), profile = 1. + 5. * r;
+              const double value = profile * (imaginary ? (g - f) * std::sin(n * theta) : (f + g) * std::cos(n * theta));
+              // What another direction does, and another harmonic, does not count
+              const double other = 0.3 * std::cos((n + 1) * theta);
+              switch (family)
+                {
+                  case A:
+                    return Point3{{0.2 * p[0], 0.2 * p[1], value + other}};
+                  case R:
+                    return Point3{{(value + other) * p[0] / r, (value + other) * p[1] / r, 0.2}};
+                  default:
+                    return Point3{{-(value + other) * p[1] / r, (value + other) * p[0] / r, 0.2}};
+                }
+            });
+          };
+          re.push_back(field(false));
+          im.push_back(field(true));
+          labels.push_back({family, 0, n});
+          expected.push_back(f * f / (f * f + g * g));
+        }
+  const auto shares = wave_shares(s.model, masses, labels, columns_of(re), columns_of(im));
+  ASSERT_EQ(shares.size(), expected.size());
+  for (std::size_t j = 0; j < shares.size(); ++j)
+    {
+      ASSERT_TRUE(shares[j]) << to_string(labels[j]);
+      EXPECT_NEAR(shares[j]->positive, expected[j], 1e-10) << to_string(labels[j]);
+      EXPECT_NEAR(shares[j]->negative, 1. - expected[j], 1e-10) << to_string(labels[j]);
+    }
+
+  // A common phase changes nothing
+  DenseMatrix turned_re = 0.6 * columns_of(re) - 0.8 * columns_of(im), turned_im = 0.8 * columns_of(re) + 0.6 * columns_of(im);
+  const auto  turned = wave_shares(s.model, masses, labels, turned_re, turned_im);
+  for (std::size_t j = 0; j < shares.size(); ++j)
+    EXPECT_NEAR(turned[j]->positive, expected[j], 1e-10);
+}
+
+TEST(WaveShares, OfDiscModesWithNodalDiametersOnly)
+{
+  const Scene       s     = disc_scene();
+  const DenseMatrix field = columns_of({displacements(s.model, 0, [](const Point3 &p) { return Point3{{0., 0., p[0]}}; })});
+  const auto        of    = [&](const ModeLabel &label) {
+    return wave_shares(s.model, nodal_masses(s.model, *s.system.mass), {label}, field, DenseMatrix::Zero(field.rows(), 1))[0];
+  };
+  ASSERT_TRUE(of({A, 0, 1}));
+  EXPECT_NEAR(of({A, 0, 1})->positive, 0.5, 1e-12);
+  for (const ModeLabel &label : {ModeLabel{A, 0, 0}, pin_mode(F, 1), ModeLabel(), ModeLabel{ModeFamily::rigid_body}, ModeLabel{R, 0, 1}})
+    EXPECT_FALSE(of(label)) << to_string(label); // the last one has no radial motion
+}
+
 TEST(PinLabels, AnalyticFields)
 {
   // Round pin, its axis at (0.2, 0); fields vanish at the clamp

@@ -34,7 +34,7 @@ end
 """
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
-                   "residual [-]", "eps_res [-]", "unstable [-]"]
+                   "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]"]
 
 # Of the same eigenvalue found in another way [-]
 SAME = 1e-9

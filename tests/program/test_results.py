@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import shutil
 import unittest
 import xml.etree.ElementTree
@@ -49,6 +50,17 @@ class Results(ProgramTest):
         # Without dissipation growth and decay come in pairs.
         values = eigenvalues(self.results)
         self.assertLess(distance([-value.conjugate() for value in values], values), 1e-9)
+
+    def test_waves(self):
+        """Modes of the disc with nodal diameters have shares; those of the others are empty."""
+        rows = read_table(self.results / "complex_modes.csv")
+        with_shares = {row["label"] for row in rows if row["wave with rotation [-]"]}
+        self.assertEqual(with_shares, {row["label"] for row in rows if re.fullmatch(r"[ARC]\d-[1-9]( [-+])?", row["label"])})
+        for row in rows:
+            if row["label"] in with_shares:
+                self.assertAlmostEqual(float(row["wave with rotation [-]"]) + float(row["wave against rotation [-]"]), 1, places=9)
+                # No mode of the disc grows or decays here: all stand still
+                self.assertAlmostEqual(float(row["wave with rotation [-]"]), 0.5, places=5, msg=row["label"])
 
     def test_record(self):
         self.assertIn("--output results", self.record["command"])

@@ -173,6 +173,19 @@ class Words(ProgramTest):
             for one, other in zip(*rates):
                 self.assertAlmostEqual(one, other, delta=1e-4)
 
+    def test_growing_modes_of_the_disc_are_waves(self):
+        """The two of a pair travel opposite ways, and that with regard to the sense in which the disc turns."""
+        self.write("default.prm", "")
+        for rotation in ("positive", "negative"):
+            results = self.run_scene("waves", *COARSE, f"Operation/Rotation={rotation}", file="default.prm")
+            rows = {row["label"]: row for row in read_table(results / "complex_modes.csv")}
+            for shape in ("A0-4", "A0-5"):
+                growing, decaying = rows[f"{shape} +"], rows[f"{shape} -"]
+                self.assertEqual((growing["unstable [-]"], decaying["unstable [-]"]), ("1", "0"))
+                for one, other in (("with", "against"), ("against", "with")):
+                    self.assertAlmostEqual(float(growing[f"wave {one} rotation [-]"]), float(decaying[f"wave {other} rotation [-]"]), places=5)
+            self.assertGreater(float(rows["A0-4 +"]["wave with rotation [-]"]), 0.8, rotation)
+
     def test_table_1_needs_its_scene(self):
         message = self.message("scene.prm", "--set", "Study=paper", "--set", "Operation/Load per side=500")
         for path in ("Geometry/Top pin angles", "Operation/Load per side"):

@@ -5,6 +5,7 @@
 #include <squeal/linear_algebra/dense.h>
 #include <squeal/model/model.h>
 
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -22,6 +23,33 @@ namespace Squeal
    * @param nodal_masses n_nodes, lumped [kg]
    */
   std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes);
+
+  /// Parts of a disc mode that travel about the axis, of the energy of both; 0.5 each in a standing wave [-].
+  struct WaveShares
+  {
+    double positive; ///< along +e_θ
+    double negative; ///< along -e_θ
+  };
+
+  /**
+   * How disc modes travel. Of the component that names the mode (axial, radial or circumferential) the harmonic n of its label is
+   * projected as for disc_labels(),
+   *
+   *   φ = a(r) cos nθ + b(r) sin nθ = ½ (a + ib) e^{-inθ} + ½ (a - ib) e^{inθ}.
+   *
+   * With u = Re(φ e^{λt}) and ω = Im λ > 0 the first part depends on ωt - nθ and travels along +e_θ with the speed ω/n, the
+   * second one along -e_θ. The shares are those of Σ m |a ± ib|² over the nodes. Nothing for modes without such a label: of
+   * pins, without nodal diameters, unnamed.
+   *
+   * @param labels         of the modes
+   * @param real_part      n_free × k displacements
+   * @param imaginary_part n_free × k
+   */
+  std::vector<std::optional<WaveShares>> wave_shares(const Model                  &model,
+                                                     const std::vector<double>    &nodal_masses,
+                                                     const std::vector<ModeLabel> &labels,
+                                                     const DenseMatrix            &real_part,
+                                                     const DenseMatrix            &imaginary_part);
 
   /**
    * Names of pin modes: F flexural, T torsional, L longitudinal about the axis

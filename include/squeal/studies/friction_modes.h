@@ -4,6 +4,7 @@
 #include <squeal/output/fields.h>
 #include <squeal/studies/frictionless_modes.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ namespace Squeal
 
   /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
+
+  /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
+  std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
+                                                             const FrictionModes     &friction,
+                                                             Rotation                 rotation);
 
   /**
    * Field of a complex mode, coupled displacements n × 1, on the uncoupled

@@ -3,6 +3,9 @@
 #include <squeal/output/table.h>
 #include <squeal/studies/friction_modes.h>
 
+#include <optional>
+#include <vector>
+
 namespace Squeal
 {
   /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
@@ -13,9 +16,11 @@ namespace Squeal
 
   /**
    * Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are
-   * unstable, and estimates where there are any.
+   * unstable, how they travel, and estimates where there are any.
+   *
+   * @param waves of waves_with_rotation()
    */
-  Table complex_table(const FrictionModes &friction);
+  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves);
 
   /**
    * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most
