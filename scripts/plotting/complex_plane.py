@@ -46,23 +46,30 @@ class NameRoom:
         return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]
 
 
-class Plane:
-    """A panel with its limits; modes that decay much faster than any grows would squeeze the others and lie at its lower edge."""
+class Limits:
+    """Of divergence rates; modes that decay much faster than any grows would squeeze the others and lie at the lower edge."""
 
-    def __init__(self, panel, size, series, band_end):
-        self.panel, self.series = panel, series
+    def __init__(self, series):
         rates = [mode.divergence for one in series for mode in one.modes] + [0.0]
         highest, lowest = max(rates), min(rates)
         is_cut = highest > ROUNDING and lowest < -4 * highest
         self.edge = -2.5 * highest if is_cut else lowest
         if is_cut:
-            panel.set_ylim(1.08 * self.edge, 1.25 * highest)
+            self.ends = 1.08 * self.edge, 1.25 * highest
         elif highest > ROUNDING:
-            panel.set_ylim(1.15 * self.edge - 0.1 * highest, 1.25 * highest)
+            self.ends = 1.15 * self.edge - 0.1 * highest, 1.25 * highest
         elif lowest < -ROUNDING:
-            panel.set_ylim(1.15 * lowest, -0.15 * lowest)
+            self.ends = 1.15 * lowest, -0.15 * lowest
         else:
-            panel.set_ylim(-1, 1)
+            self.ends = -1, 1
+
+
+class Plane:
+    """A panel with its limits."""
+
+    def __init__(self, panel, size, series, band_end, limits):
+        self.panel, self.series, self.edge = panel, series, limits.edge
+        panel.set_ylim(*limits.ends)
         panel.set_xlim(0, 1e-3 * band_end)
         # What labels and title take of the panel
         self.points = ((size[0] - 0.9) * style.INCH, (size[1] - 0.9) * style.INCH)
@@ -116,11 +123,11 @@ class Plane:
                     named.append((one, mode.label, x))
 
 
-def draw(panel, size, title, series, band_end):
-    """Draws modes up to `band_end` [Hz] into a panel of a picture."""
+def draw(panel, size, title, series, band_end, limits=None):
+    """Draws modes up to `band_end` [Hz] into a panel of a picture; `limits` that it shares with others."""
     style.prepare(panel, title, "frequency [kHz]", style.DIVERGENCE)
     style.zero_line(panel)
-    plane = Plane(panel, size, series, band_end)
+    plane = Plane(panel, size, series, band_end, limits or Limits(series))
     plane.draw_modes()
     plane.draw_marks()
     plane.draw_names()
@@ -166,10 +173,18 @@ def series_of_run(results):
     return [Series(charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH, modes)]
 
 
-def run_figure(results):
+def paper_figure(results, series):
+    """Figure 6 of the paper: without and with radial dissipation, beside each other with the same axes."""
+    picture = style.Picture(f"Stability charts for \u03bc = {results.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
+    for panel, caption, one in zip(picture.panels, ("(a) $C_b = 0$", "(b) $C_b \\neq 0$"), series):
+        draw(panel, picture.size, caption, [one], results.number("Band/Maximum frequency"), Limits(series))
+    return picture.add_key()
+
+
+def run_figure(results, series):
     """The complex modes of a run at one friction coefficient."""
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
-    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", series_of_run(results),
+    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", series,
          results.number("Band/Maximum frequency"))
     if results.has("real_eigenvalues"):
         rates = [rate for rate in results.table("real_eigenvalues").numbers("growth rate [1/s]") if rate > 0]
@@ -181,4 +196,7 @@ def run_figure(results):
 
 def figures(results):
     """Of a run at one friction coefficient."""
-    return {"complex_plane": run_figure(results)} if results.has("complex_modes") else {}
+    if not results.has("complex_modes"):
+        return {}
+    series = series_of_run(results)
+    return {"complex_plane": (run_figure if len(series) == 1 else paper_figure)(results, series)}

@@ -3,6 +3,7 @@
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_scene.h>
+#include <squeal/studies/paper_statements.h>
 #include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
 
@@ -41,6 +42,16 @@ namespace Squeal
     {
       operation.radial_dissipation = RadialDissipation::none;
       return operation;
+    }
+
+    /// Frequency up to which section 4 of the paper counts modes [Hz].
+    constexpr double paper_band = 5000.;
+
+    void write_statements(const SectionFour &results, Run &run)
+    {
+      run.screen << "\n  statements.csv\n\n";
+      statements(results, false).print(run.screen);
+      run.store_table("statements", statements(results));
     }
 
     void write_table_one(const TableOneResults &results, Run &run)
@@ -85,14 +96,19 @@ namespace Squeal
     if (sliding)
       write_sliding_tables(scene, *sliding, parameters.operation, run);
 
-    run.store_table("complex_modes", complex_table(undamped, waves_with_rotation(frictionless, undamped, with.rotation)));
-    run.store_table("complex_modes_damped", complex_table(damped, waves_with_rotation(frictionless, damped, with.rotation)));
+    const auto waves        = waves_with_rotation(frictionless, undamped, with.rotation),
+               waves_damped = waves_with_rotation(frictionless, damped, with.rotation);
+    run.store_table("complex_modes", complex_table(undamped, waves));
+    run.store_table("complex_modes_damped", complex_table(damped, waves_damped));
     run.store_table("real_modes", real_table(frictionless));
     const double omega_max = circular_frequency(band);
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
-    write_table_one({component_modes_to_compare(frictionless), coupled_modes_to_compare(frictionless), complex_modes_to_compare(undamped),
-                     complex_modes_to_compare(damped)},
-                    run);
+    const auto component = component_modes_to_compare(frictionless), coupled = coupled_modes_to_compare(frictionless);
+    if (band == paper_band && undamped.labels.size() == damped.labels.size())
+      write_statements({component, coupled, stated_modes(undamped, waves), stated_modes(damped, waves_damped),
+                        followed_modes(frictionless, undamped, damped), scene.n_pins()},
+                       run);
+    write_table_one({component, coupled, complex_modes_to_compare(undamped), complex_modes_to_compare(damped)}, run);
     run.finish();
   }
 

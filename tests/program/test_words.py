@@ -164,6 +164,13 @@ class Words(ProgramTest):
         for label in ("F1 neutral", "F1 damped", "T1"):
             for quantity in ("with C_b [Hz]", "divergence with C_b [%]"):
                 self.assertLess(float(rows[f"{label} lowest"][quantity]), float(rows[f"{label} highest"][quantity]))
+        # Statements speak of 5 kHz
+        statements = {row["statement"]: row for row in read_table(results / "statements.csv")}
+        self.assertEqual(statements["unstable disc modes without C_b"]["here"], "2")
+        self.assertLessEqual({row["verdict"] for row in statements.values()}, {"holds", "holds less", "does not hold"})
+        self.assertTrue(all(row["rule"] for row in statements.values()))
+        short = self.run_scene("short", *COARSE, "Study=paper", "Band/Maximum frequency=3000", file="default.prm")
+        self.assertFalse((short / "statements.csv").exists())
 
         for table, dissipation in (("complex_modes", "none"), ("complex_modes_damped", "consistent")):
             single = self.run_scene("single", *COARSE, steady, f"Operation/Radial dissipation={dissipation}", file="default.prm")
