@@ -195,7 +195,7 @@ namespace Squeal
     }
 
     constexpr double split_of_A02 = change(489, 697), split_of_R01 = change(643, 647), spread_of_F1 = change(3551, 3562),
-                     coupling_of_R01 = change(643, 649), friction_of_F1 = change(3516, 3551), damped_friction_of_F1 = change(3521, 3551),
+                     coupling_of_R01 = -change(649, 643), friction_of_F1 = -change(3551, 3516), damped_friction_of_F1 = -change(3551, 3521),
                      friction_of_C00 = change(644, 645);
 
     void add_component_modes(const SectionFour &results, Statements &statements)
