@@ -198,17 +198,18 @@ class ComplexPlane(PlotTest):
         columns = ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]")
         self.write("complex_modes", columns, [("F1", 50, 0.1, 1), ("F1", 51, -0.1, 0)])
         self.write("real_eigenvalues", ("growth rate [1/s]", "kind"), [(12.5, "static divergence"), (-3, "decay")])
-        axes, = complex_plane.run_figure(Results(self.folder)).axes
+        axes, = complex_plane.figures(Results(self.folder))["complex_plane"].axes
         self.assertTrue(any("1 real" in text.get_text() and "12.5" in text.get_text() for text in axes.texts))
 
     def test_both_solutions_of_the_paper(self):
         columns = ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]")
         self.write("complex_modes", columns, [("F1", 50, 0.1, 1), ("F1", 60, -0.1, 0)])
         self.write("complex_modes_damped", columns, [("F1", 40, -0.05, 0)])
-        axes, = complex_plane.run_figure(Results(self.folder)).axes
-        self.assertEqual(line_of(axes, charts.WITHOUT), [(0.050, 0.1), (0.060, -0.1)])
-        self.assertEqual(line_of(axes, charts.WITH), [(0.040, -0.05)])
-        self.assertEqual(line_of(axes, "growing"), [(0.050, 0.1)])
+        without, damped = complex_plane.figures(Results(self.folder))["complex_plane"].axes
+        self.assertEqual(line_of(without, charts.WITHOUT), [(0.050, 0.1), (0.060, -0.1)])
+        self.assertEqual(line_of(damped, charts.WITH), [(0.040, -0.05)])
+        self.assertEqual(line_of(without, "growing"), [(0.050, 0.1)])
+        self.assertEqual((without.get_xlim(), without.get_ylim()), (damped.get_xlim(), damped.get_ylim()))
 
     def test_names_do_not_overlap(self):
         room = complex_plane.NameRoom(100)
