@@ -1,7 +1,9 @@
-#include <squeal/base/assignment.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/paper_statements.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -96,12 +98,6 @@ namespace Squeal
     double rate(const ComparedMode &mode)
     {
       return 100. * mode.quantities.divergence_rate;
-    }
-
-    /// Unstable and not negligibly so.
-    bool grows(const StatedMode &mode)
-    {
-      return mode.unstable && mode.quantities.divergence_rate >= weak_divergence;
     }
 
     std::string describe(const ComparedMode &mode)
@@ -357,20 +353,33 @@ namespace Squeal
         }
     }
 
+    /// Of the growing modes all but @p n_kept, those of which the least lies in the other span.
+    std::vector<const StatedMode *> not_kept(const std::vector<StatedMode> &modes,
+                                             const std::vector<double>     &shares,
+                                             const std::size_t              n_kept)
+    {
+      std::vector<std::pair<double, const StatedMode *>> growing;
+      for (std::size_t j = 0; j < modes.size(); ++j)
+        if (grows(modes[j]))
+          growing.emplace_back(shares[j], &modes[j]);
+      std::stable_sort(growing.begin(), growing.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+      std::vector<const StatedMode *> result;
+      for (std::size_t j = 0; j + n_kept < growing.size(); ++j)
+        result.push_back(growing[j].second);
+      return result;
+    }
+
     void add_changes_of_stability(const SectionFour &results, Statements &statements)
     {
+      const GrowthKept        &kept = results.kept;
       std::vector<std::string> removed, added;
       double                   strongest = 0.;
-      for (std::size_t j = 0; j < results.becomes.size(); ++j)
+      for (const StatedMode *mode : not_kept(results.undamped, kept.share_before, kept.n_kept))
+        removed.push_back(describe(*mode));
+      for (const StatedMode *mode : not_kept(results.damped, kept.share_after, kept.n_kept))
         {
-          const StatedMode &before = results.undamped[j], &after = results.damped[results.becomes[j]];
-          if (grows(before) && !grows(after))
-            removed.push_back(describe(before));
-          if (!grows(before) && grows(after))
-            {
-              added.push_back(describe(after));
-              strongest = std::max(strongest, rate(after));
-            }
+          added.push_back(describe(*mode));
+          strongest = std::max(strongest, rate(*mode));
         }
       const double n_removed = static_cast<double>(removed.size()), n_added = static_cast<double>(added.size());
       statements.push_back(
@@ -393,15 +402,52 @@ namespace Squeal
     return modes;
   }
 
-  std::vector<int> followed_modes(const FrictionlessModes &frictionless, const FrictionModes &from, const FrictionModes &to)
+  bool grows(const StatedMode &mode)
   {
-    const SparseMatrix &M    = *frictionless.linearisation.coupled.mass;
-    const MultiVector   M_re = M * *to.modes.real_part, M_im = M * *to.modes.imaginary_part;
-    const MultiVector  &re = *from.modes.real_part, &im = *from.modes.imaginary_part;
-    // φᴴ M φ̂; both have the norm 1
-    const DenseMatrix real = gram(re, M_re) + gram(im, M_im), imaginary = gram(re, M_im) - gram(im, M_re);
-    const DenseMatrix mac = real.cwiseAbs2() + imaginary.cwiseAbs2();
-    return best_assignment(static_cast<int>(mac.rows()), static_cast<int>(mac.cols()), [&](const int j, const int k) { return mac(j, k); });
+    return mode.unstable && mode.quantities.divergence_rate >= weak_divergence;
+  }
+
+  GrowthKept growth_kept(const FrictionlessModes       &frictionless,
+                         const FrictionModes           &before,
+                         const std::vector<StatedMode> &stated_before,
+                         const FrictionModes           &after,
+                         const std::vector<StatedMode> &stated_after)
+  {
+    using Matrix          = Eigen::MatrixXcd;
+    const SparseMatrix &M = *frictionless.linearisation.coupled.mass;
+    // XᴴMY of complex modes
+    const auto products = [&M](const ComplexModes &X, const ComplexModes &Y) {
+      const MultiVector M_re = M * *Y.real_part, M_im = M * *Y.imaginary_part;
+      const DenseMatrix re = gram(*X.real_part, M_re) + gram(*X.imaginary_part, M_im),
+                        im = gram(*X.real_part, M_im) - gram(*X.imaginary_part, M_re);
+      return Matrix(re.cast<std::complex<double>>() + std::complex<double>(0., 1.) * im);
+    };
+    const auto growing = [](const std::vector<StatedMode> &modes) {
+      std::vector<Eigen::Index> places;
+      for (std::size_t j = 0; j < modes.size(); ++j)
+        if (grows(modes[j]))
+          places.push_back(static_cast<Eigen::Index>(j));
+      return places;
+    };
+    const auto   u = growing(stated_before), d = growing(stated_after);
+    const Matrix G_uu = products(before.modes, before.modes), G_dd = products(after.modes, after.modes),
+                 G_ud = products(before.modes, after.modes);
+
+    GrowthKept result;
+    result.share_before.assign(stated_before.size(), 0.);
+    result.share_after.assign(stated_after.size(), 0.);
+    if (u.empty() || d.empty())
+      return result;
+    // G = L Lᴴ: L⁻¹ C holds the coefficients in an orthonormal basis of the span
+    const Eigen::LLT<Matrix> U(Matrix(G_uu(u, u))), D(Matrix(G_dd(d, d)));
+    const Matrix in_u = U.matrixL().solve(Matrix(G_ud(u, Eigen::all))), in_d = D.matrixL().solve(Matrix(G_ud(Eigen::all, d).adjoint()));
+    for (std::size_t j = 0; j < stated_after.size(); ++j)
+      result.share_after[j] = in_u.col(j).squaredNorm();
+    for (std::size_t j = 0; j < stated_before.size(); ++j)
+      result.share_before[j] = in_d.col(j).squaredNorm();
+    const Matrix both = D.matrixL().solve(Matrix(in_u(Eigen::all, d).adjoint()));
+    result.n_kept     = (Eigen::BDCSVD<Matrix>(both).singularValues().array() > M_SQRT1_2).count();
+    return result;
   }
 
   Table statements(const SectionFour &results, const bool with_rules)

@@ -104,10 +104,12 @@ namespace Squeal
     const double omega_max = circular_frequency(band);
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     const auto component = component_modes_to_compare(frictionless), coupled = coupled_modes_to_compare(frictionless);
-    if (band == paper_band && undamped.labels.size() == damped.labels.size())
-      write_statements({component, coupled, stated_modes(undamped, waves), stated_modes(damped, waves_damped),
-                        followed_modes(frictionless, undamped, damped), scene.n_pins()},
-                       run);
+    if (band == paper_band)
+      {
+        const auto before = stated_modes(undamped, waves), after = stated_modes(damped, waves_damped);
+        write_statements({component, coupled, before, after, growth_kept(frictionless, undamped, before, damped, after), scene.n_pins()},
+                         run);
+      }
     write_table_one({component, coupled, complex_modes_to_compare(undamped), complex_modes_to_compare(damped)}, run);
     run.finish();
   }

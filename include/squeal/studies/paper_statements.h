@@ -17,23 +17,35 @@ namespace Squeal
 
   std::vector<StatedMode> stated_modes(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves);
 
+  /**
+   * What growing modes have in common that belong to the same system but for its damping: principal angles of the two spans
+   * in the M-inner product, and how much of each mode lies in the other span, ‖Pφ‖² / ‖φ‖². Spans do not depend on how modes of
+   * nearly the same eigenvalue are told apart, which one-to-one matches by MAC-M do.
+   */
+  struct GrowthKept
+  {
+    std::size_t         n_kept = 0;                ///< principal angles of at most 45°
+    std::vector<double> share_before, share_after; ///< of each mode, growing or not, in the span of the other growing ones [-]
+  };
+
   /// What a run knows of the subjects of section 4; modes in the order of their frequencies, below 5 kHz.
   struct SectionFour
   {
     std::vector<ComparedMode> component, coupled;
     std::vector<StatedMode>   undamped, damped; ///< complex modes without and with C_b
-    std::vector<int>          becomes;          ///< which mode with C_b each one without becomes; see followed_modes()
+    GrowthKept                kept;             ///< what the growing ones of both have in common
     unsigned int              n_pins = 0;
   };
 
-  /**
-   * Which mode of @p to each of @p from becomes: one of its own for each, so that the sum of
-   *
-   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂),      eq. (18) of the paper,
-   *
-   * is largest. Both sets belong to the system of @p frictionless but for its damping and have equally many modes.
-   */
-  std::vector<int> followed_modes(const FrictionlessModes &frictionless, const FrictionModes &from, const FrictionModes &to);
+  /// Whether a mode is unstable and not negligibly so: its divergence rate is at least 0.01 %.
+  bool grows(const StatedMode &mode);
+
+  /// Both sets belong to the system of @p frictionless but for its damping. All processes must call.
+  GrowthKept growth_kept(const FrictionlessModes       &frictionless,
+                         const FrictionModes           &before,
+                         const std::vector<StatedMode> &stated_before,
+                         const FrictionModes           &after,
+                         const std::vector<StatedMode> &stated_after);
 
   /**
    * Section 4 of the paper statement by statement: its words, shortened, its number, the number here, and whether the
