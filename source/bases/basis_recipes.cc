@@ -27,7 +27,8 @@ namespace Squeal
     const BasisPart pins_free = uncoupled_set("Phi_f^P", Source::pins_free), pins_sliding = uncoupled_set("Phi_s^P", Source::pins_sliding);
 
     const BasisPart real      = {"Phi_R", {Source::real, Source::coupled_factor}, Source::real};
-    const BasisPart snapshots = {"complex modes at several mu", {Source::snapshots, Source::coupled_factor}, Source::snapshots};
+    const BasisPart snapshots = {"complex modes at several mu", {Source::snapshots, Source::coupled_factor, Source::coupled_attachment},
+                             Source::snapshots};
     const BasisPart residuals = {"Phi_R and residuals K_c^-1 R_F, K_c^-1 L_F",
                                  {Source::real, Source::residuals, Source::coupled_factor},
                                  Source::residuals};
@@ -59,17 +60,22 @@ namespace Squeal
 
     // ------------------------------------------- responses of the coupled system
 
-    BasisPart coupled_response(const char *symbol, const std::optional<Source> set, const Compute compute)
+    BasisPart coupled_response(const char                  *symbol,
+                               const std::vector<Source>   &rests_on,
+                               const std::optional<Source> &set,
+                               const Compute                compute)
     {
-      return {symbol, {Source::coupled_factor}, set, false, compute};
+      return {symbol, rests_on, set, false, compute};
     }
 
+    const std::vector<Source> factor = {Source::coupled_factor}, attachment = {Source::coupled_factor, Source::coupled_attachment};
+
     const BasisPart coupled_tangential_attachment =
-      coupled_response("(Psi_cat^D - Psi_cat^P)", {}, [](const In &in) -> MultiVector { return in.inverse->attachment_modes(); });
-    const BasisPart friction_right = coupled_response("Psi_Rmu", Source::real, [](const In &in) { return response(in, Side::right); });
+      coupled_response("(Psi_cat^D - Psi_cat^P)", attachment, {}, [](const In &in) -> MultiVector { return in.inverse->attachment_modes(); });
+    const BasisPart friction_right = coupled_response("Psi_Rmu", attachment, Source::real, [](const In &in) { return response(in, Side::right); });
     const BasisPart friction_left =
-      coupled_response("K_c^-1 V_K^T A^T Phi_R", Source::real, [](const In &in) { return response(in, Side::left); });
-    const BasisPart damping = coupled_response("K_c^-1 C_c Phi_R", Source::real, [](const In &in) {
+      coupled_response("K_c^-1 V_K^T A^T Phi_R", factor, Source::real, [](const In &in) { return response(in, Side::left); });
+    const BasisPart damping = coupled_response("K_c^-1 C_c Phi_R", factor, Source::real, [](const In &in) {
       return damping_response(*in.coupled, *in.inverse, *in.set(Source::real), in.friction_coefficient);
     });
   } // namespace
@@ -109,6 +115,11 @@ namespace Squeal
     for (const BasisPart *part : parts)
       text += (text.empty() ? "" : " ") + std::string(part->symbol);
     return text;
+  }
+
+  bool BasisRecipe::has_real_modes() const
+  {
+    return std::any_of(parts.begin(), parts.end(), [](const BasisPart *part) { return part->set == Source::real; });
   }
 
   bool BasisRecipe::rests_on(const BasisSource source) const

@@ -8,6 +8,7 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <cmath>
+#include <set>
 
 namespace Squeal
 {
@@ -69,8 +70,8 @@ namespace Squeal
         for (const ListEntry &entry : parse_list(text, truncation_list))
           truncations.push_back(parse_truncation(entry));
       });
-    declarations.add("Coupled frequency", coupled_frequency,
-                     "Real coupled modes below this frequency go into the bases `real ...`; 0: those of the band. Units: Hz.", {0.});
+    declarations.add("Coupled frequency", coupled_frequencies,
+                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band. Units: Hz.", {0.});
     declarations.add("Rank tolerance", rank_tolerance,
                      "Directions of a basis whose M-norm is below this part of the largest are dropped. Units: none.", {1e-14, 1e-2});
     declarations.add(
@@ -89,6 +90,12 @@ namespace Squeal
       if (!(truncation.frequency > 0.) && (truncation.disc < 1 || (truncation.pins_free < 1 && truncation.pins_sliding < 1)))
         throw ParameterError("the truncation `" + truncation.text() + "` leaves no modes", "parameter Reduction/Component modes",
                              "give a positive frequency, or at least one mode of the disc and one of the pins");
+    if (coupled_frequencies.empty())
+      throw ParameterError("no frequency up to which real coupled modes make bases", "parameter Reduction/Coupled frequency",
+                           "give at least one; 0 means the end of the band");
+    if (std::set<double>(coupled_frequencies.begin(), coupled_frequencies.end()).size() < coupled_frequencies.size())
+      throw ParameterError("a frequency is given twice: " + exact_text(coupled_frequencies), "parameter Reduction/Coupled frequency",
+                           "give each once");
     for (const double tolerance : grown_tolerances)
       if (!(tolerance >= 1e-11 && tolerance <= 1e-1))
         throw ParameterError("the tolerance " + exact_text(tolerance) + " is out of reach or no accuracy at all",

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
+#include <functional>
 
 namespace Squeal
 {
@@ -56,11 +57,6 @@ namespace Squeal
       return measures(p, [source](const BasisRecipe &recipe) { return recipe.rests_on(source); });
     }
 
-    bool has_real_modes(const BasisRecipe &recipe)
-    {
-      return std::any_of(recipe.parts.begin(), recipe.parts.end(), [](const BasisPart *part) { return part->set == BasisSource::real; });
-    }
-
     Reason no_snapshots(const Parameters &p)
     {
       return unless(measures(p, BasisSource::snapshots), "the basis POD is not measured");
@@ -107,7 +103,7 @@ namespace Squeal
                return unless(measures(p, is_connected), "no basis of component modes is measured");
              }},
             {"Reduction/Coupled frequency",
-             [](const Parameters &p) { return unless(measures(p, has_real_modes), "no basis of real modes is measured"); }},
+             [](const Parameters &p) { return unless(measures(p, std::mem_fn(&BasisRecipe::has_real_modes)), "no basis of real modes is measured"); }},
             {"Reduction/Grown tolerances",
              [](const Parameters &p) { return unless(measures(p, BasisSource::residuals), "no residual-grown basis is measured"); }},
             {"Reduction/Snapshots", no_snapshots},

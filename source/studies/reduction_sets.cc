@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/modes/krylov_modes.h>
 #include <squeal/studies/reduction_sets.h>
@@ -9,6 +10,12 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// Numbers of component modes are searched for up to this multiple of the end of the band [-].
+    constexpr double furthest_band = 16.;
+  } // namespace
+
   ReductionSets::ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run)
     : plan(plan)
     , frictionless(frictionless)
@@ -16,17 +23,15 @@ namespace Squeal
     , run(run)
     , scene(*frictionless.linearisation.scene)
     , linearisation(frictionless.linearisation)
+    , disc_shift(stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency))
   {
-    seconds[BasisSource::coupled_factor] = frictionless.factorisation.cpu_seconds;
-    seconds[BasisSource::real]           = frictionless.solution.cpu_seconds;
-    available.uncoupled                  = &scene.system;
-    available.contact                    = &linearisation.contact;
-    available.coupled                    = &system;
-    available.inverse                    = frictionless.inverse.get();
-    available.friction_coefficient       = plan.friction_coefficient;
-    available.sets[BasisSource::real]    = frictionless.real.vectors.get();
-    if (run.parameters.reduction.coupled_frequency > 0.)
-      compute_real_modes();
+    available.uncoupled            = &scene.system;
+    available.contact              = &linearisation.contact;
+    available.coupled              = &system;
+    available.inverse              = frictionless.inverse.get();
+    available.friction_coefficient = plan.friction_coefficient;
+    charge_coupled_factor();
+    take_real_modes(0.);
     compute_static_modes();
     if (plan.rests_on(BasisSource::snapshots))
       compute_snapshots();
@@ -41,40 +46,68 @@ namespace Squeal
     return sum;
   }
 
-  template <typename Function>
-  auto ReductionSets::timed(const BasisSource source, Function &&function)
+  void ReductionSets::book(const Charge &charge)
   {
-    const Stopwatch watch;
-    auto            result = function();
-    seconds[source]        = watch.cost().cpu_seconds;
-    return result;
+    seconds[charge.source] = charge.seconds;
+    const auto is_same     = [&](const Charge &other) { return other.source == charge.source && other.variant == charge.variant; };
+    if (plan.rests_on(charge.source) && std::none_of(charged.begin(), charged.end(), is_same))
+      charged.push_back(charge);
   }
 
   template <typename Function>
-  int ReductionSets::compute(const BasisSource source, Function &&function)
+  auto ReductionSets::timed(const BasisSource source, const std::string &variant, Function &&function)
   {
-    vectors[source].reset();
-    vectors[source]        = std::make_unique<MultiVector>(timed(source, function));
+    const Stopwatch watch;
+    auto            result = function();
+    Charge          charge{source, variant, {}, {}, {}, watch.cost().cpu_seconds};
+    if constexpr (std::is_same_v<decltype(result), MultiVector>)
+      charge.n_vectors = result.n_columns();
+    book(charge);
+    return result;
+  }
+
+  int ReductionSets::keep(const BasisSource source, std::unique_ptr<MultiVector> set)
+  {
+    vectors[source]        = std::move(set);
     available.sets[source] = vectors[source].get();
     return vectors[source]->n_columns();
   }
 
   // ------------------------------------------------------------- for all bases
 
-  void ReductionSets::compute_real_modes()
+  void ReductionSets::charge_coupled_factor()
   {
+    // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: that part is measured once more
+    const Stopwatch   watch;
+    const MultiVector attachment = frictionless.inverse->solve_frictionless(system.friction_forces->columns(0, system.n_contact()));
+    const double      share      = std::min(watch.cost().cpu_seconds, frictionless.factorisation.cpu_seconds);
+    book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds - share});
+    book({BasisSource::coupled_attachment, "", attachment.n_columns(), {}, {}, share});
+  }
+
+  void ReductionSets::take_real_modes(const double frequency)
+  {
+    if (frequency == 0.)
+      {
+        const SymmetricModes &real = frictionless.real;
+        const int             n    = real.vectors->n_columns();
+        book({BasisSource::real, "", n, run.parameters.discretization.maximum_frequency, n, frictionless.solution.cpu_seconds});
+        available.sets[BasisSource::real] = real.vectors.get();
+        return;
+      }
     run.progress.begin("Real modes for bases");
-    const double                frequency = run.parameters.reduction.coupled_frequency, omega = circular_frequency(frequency);
+    const double                omega   = circular_frequency(frequency);
     const CoupledSystem        &coupled = linearisation.coupled;
     const SymmetricModesOptions options =
       real_modes_options(run.parameters.solvers, "real modes of the coupled system for reduced bases", frictionless.shift);
-    const int n = compute(BasisSource::real, [&] {
-      const SymmetricModes modes = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
-      if (modes.eigenvalues.empty())
-        throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
-                          "raise it, or give 0 for the modes of the band");
-      return *modes.vectors;
-    });
+    const Stopwatch      watch;
+    const SymmetricModes modes   = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
+    const double         seconds = watch.cost().cpu_seconds;
+    if (modes.eigenvalues.empty())
+      throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
+                        "raise it, or give 0 for the modes of the band");
+    const int n = keep(BasisSource::real, std::make_unique<MultiVector>(*modes.vectors));
+    book({BasisSource::real, exact_text(frequency) + " Hz", n, frequency, n, seconds});
     run.progress.finish(text(n, " below ", frequency, " Hz"));
   }
 
@@ -82,20 +115,26 @@ namespace Squeal
   {
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
-    response                           = timed(BasisSource::uncoupled_factor, [&] {
+    response                           = timed(BasisSource::uncoupled_factor, "", [&] {
       return std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
     });
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
                                                  plan.largest_circular_frequency, library);
-    const StaticModes                                 &modes  = *static_modes;
-    const std::pair<BasisSource, std::function<int()>> sets[] = {
-      {BasisSource::normal_attachment, [&] { return modes.normal_attachment().n_columns(); }},
-      {BasisSource::tangential_attachment, [&] { return modes.tangential_attachment().n_columns(); }},
-      {BasisSource::constraint_disc, [&] { return modes.constraint(Component::disc).n_columns(); }},
-      {BasisSource::constraint_pins, [&] { return modes.constraint(Component::pins).n_columns(); }}};
+    const StaticModes &modes = *static_modes;
+
+    using Set = std::function<const MultiVector &()>;
+    const std::pair<BasisSource, Set> sets[] = {
+      {BasisSource::normal_attachment, [&]() -> const MultiVector & { return modes.normal_attachment(); }},
+      {BasisSource::tangential_attachment, [&]() -> const MultiVector & { return modes.tangential_attachment(); }},
+      {BasisSource::constraint_disc, [&]() -> const MultiVector & { return modes.constraint(Component::disc); }},
+      {BasisSource::constraint_pins, [&]() -> const MultiVector & { return modes.constraint(Component::pins); }}};
     for (const auto &[source, set] : sets)
       if (plan.rests_on(source))
-        timed(source, set);
+        {
+          const Stopwatch watch;
+          const int       n = set().n_columns();
+          book({source, "", n, {}, {}, watch.cost().cpu_seconds});
+        }
     available.static_modes = static_modes.get();
     run.progress.finish(text(modes.n_contact(), " contact nodes"));
   }
@@ -104,34 +143,40 @@ namespace Squeal
   {
     run.progress.begin("Snapshots");
     const std::vector<double> &values = run.parameters.reduction.snapshots;
-    const int                  n      = compute(BasisSource::snapshots, [&] {
-      std::vector<ComplexModes>        sets;
+    MultiVector                set    = timed(BasisSource::snapshots, "", [&] {
+      std::vector<ComplexModes>        modes;
       std::vector<const MultiVector *> parts;
       for (const double value : values)
         {
           run.progress.update(text("mu = ", value));
-          sets.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
-                                                            plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
-                                                            run.progress));
-          for (const auto &part : {sets.back().real_part, sets.back().imaginary_part})
+          modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
+                                                         plan.largest_circular_frequency, frictionless.real.eigenvalues.size(),
+                                                         run.parameters.solvers, run.progress));
+          for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
             parts.push_back(part.get());
         }
       return join(parts);
     });
+    const int                  n      = keep(BasisSource::snapshots, std::make_unique<MultiVector>(std::move(set)));
     run.progress.finish(text(n, " vectors from ", values.size(), " friction coefficients"));
   }
 
   // ------------------------------------------------------------- for some bases
 
-  void ReductionSets::truncate(const ModeTruncation &truncation)
+  std::map<BasisSource, int> ReductionSets::truncate(const ModeTruncation &truncation)
   {
     run.progress.begin("Component modes for bases");
     const double frequency = truncation.frequency > 0. ? truncation.frequency : run.parameters.discretization.maximum_frequency;
     std::map<BasisSource, int> n;
     const auto compute_if = [&](const bool is_used, const BasisSource source, const Component component, const ContactBoundary boundary,
                                 const int count) {
-      if (is_used)
-        n[source] = compute(source, [&] { return lowest_modes(component, boundary, frequency, count); });
+      if (!is_used)
+        return;
+      ChargedModes modes   = lowest_modes(component, boundary, frequency, count);
+      modes.charge.source  = source;
+      modes.charge.variant = truncation.text();
+      book(modes.charge);
+      n[source] = keep(source, std::move(modes.vectors));
     };
     // The disc has as many sliding as free modes in a basis (Table 3)
     using Source      = BasisSource;
@@ -144,6 +189,7 @@ namespace Squeal
     const auto number = [&](const Source source) { return n[source] > 0 ? std::to_string(n[source]) : "-"; };
     run.progress.finish(truncation.text() + ": disc " + number(Source::disc_free) + ", pins free " + number(Source::pins_free) +
                         ", pins sliding " + number(Source::pins_sliding));
+    return n;
   }
 
   void ReductionSets::grow(const double tolerance)
@@ -153,45 +199,39 @@ namespace Squeal
     iteration.largest_circular_frequency = plan.largest_circular_frequency;
     iteration.tolerance                  = tolerance;
     iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
-    const int n                          = compute(BasisSource::residuals, [&] {
-      return grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration,
-                                                          run.progress)
-        .model.basis();
+    MultiVector basis                    = timed(BasisSource::residuals, exact_text(tolerance), [&] {
+      return MultiVector(grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient},
+                                                                iteration, run.progress)
+                           .model.basis());
     });
+    const int   n                        = keep(BasisSource::residuals, std::make_unique<MultiVector>(std::move(basis)));
     run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));
   }
 
-  MultiVector ReductionSets::lowest_modes(const Component       component,
-                                          const ContactBoundary boundary,
-                                          const double          frequency,
-                                          const int             count) const
+  ReductionSets::ChargedModes ReductionSets::lowest_modes(const Component       component,
+                                                          const ContactBoundary boundary,
+                                                          const double          frequency,
+                                                          const int             count) const
   {
     const bool            is_disc = component == Component::disc;
     const std::string     what    = std::string("modes of the ") + (is_disc ? "disc" : "pins") + " for reduced bases";
-    SymmetricModesOptions options = real_modes_options(run.parameters.solvers, what, is_disc ? frictionless.shift : 0.);
-    if (!is_disc)
-      options.block_size = std::max<int>(8, 2 * scene.n_pins());
+    SymmetricModesOptions options = real_modes_options(run.parameters.solvers, what, is_disc ? disc_shift : 0.);
+    options.by_parts              = !is_disc; // pins are alike: one by one there are no multiple modes
 
-    // Numbers of modes are met by a band that grows
-    constexpr double growth   = 1.25;
-    constexpr int    attempts = 12;
-    double           band     = frequency;
-    for (int attempt = 0; attempt < attempts; ++attempt, band *= growth)
-      {
-        const double         omega = circular_frequency(band);
-        const ComponentModes modes = component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component,
-                                                     boundary, omega * omega, options);
-        const int            found = modes.eigenvalues.size();
-        if (count == 0 && found == 0)
-          throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
-                            "raise the truncation frequency");
-        if (count == 0 || found >= count)
-          {
-            const MultiVector lowest = view(*modes.vectors, 0, count == 0 ? found : count);
-            return MultiVector(lowest); // a copy: the modes go
-          }
-      }
-    throw SolverError(what + ": fewer than " + std::to_string(count) + " lie below " + text(band) + " Hz",
-                      "parameter Reduction/Component modes", "lower the number of modes");
+    const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
+    const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);
+    const double omega = circular_frequency(frequency);
+    const double end   = count > 0 ? end_of_lowest(*K, *M, count, omega * omega, std::pow(furthest_band * omega, 2), what) : omega * omega;
+
+    const Stopwatch      watch;
+    const SymmetricModes modes    = symmetric_modes(*K, *M, end, options);
+    const int            n_solved = modes.eigenvalues.size();
+    if (n_solved == 0)
+      throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
+                        "raise the truncation frequency");
+    const int    n       = count > 0 ? count : n_solved;
+    auto         vectors = std::make_unique<MultiVector>(*T * view(*modes.vectors, 0, n));
+    const double seconds = watch.cost().cpu_seconds;
+    return {std::move(vectors), {BasisSource::disc_free, "", n, hertz(std::sqrt(end)), n_solved, seconds}};
   }
 } // namespace Squeal

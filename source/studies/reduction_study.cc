@@ -75,7 +75,7 @@ namespace Squeal
     /**
      * Columns, sizes, decisions on rank, gains and times.
      *
-     * @param n            dofs of the coupled system
+     * @param n            dofs of the whole structure before it is coupled, as in the paper
      * @param full_seconds of the solution at full order
      */
     Table reduction_basis_table(const std::vector<Candidate> &candidates, const int n, const double full_seconds)
@@ -281,6 +281,16 @@ namespace Squeal
               if (recipe->is_connected())
                 result.push_back(measured(sets, reference, *recipe, recipe->name, truncation.text()));
           }
+      if (std::any_of(sets.plan.recipes.begin(), sets.plan.recipes.end(), std::mem_fn(&BasisRecipe::has_real_modes)))
+        for (const double frequency : reduction.coupled_frequencies)
+          {
+            sets.take_real_modes(frequency);
+            const std::string variant = frequency > 0. ? " (" + exact_text(frequency) + " Hz)" : "";
+            for (const BasisRecipe *recipe : sets.plan.recipes)
+              if (recipe->has_real_modes())
+                result.push_back(measured(sets, reference, *recipe, recipe->name + variant));
+          }
+      sets.take_real_modes(0.); // with which bases grow
       for (const BasisRecipe *recipe : sets.plan.recipes)
         if (recipe->rests_on(BasisSource::residuals))
           for (const double tolerance : reduction.grown_tolerances)
@@ -288,7 +298,7 @@ namespace Squeal
               sets.grow(tolerance);
               result.push_back(measured(sets, reference, *recipe, text(recipe->name, " ", tolerance)));
             }
-        else if (!recipe->is_connected())
+        else if (!recipe->is_connected() && !recipe->has_real_modes())
           result.push_back(measured(sets, reference, *recipe, recipe->name));
       return result;
     }
@@ -313,7 +323,7 @@ namespace Squeal
     const std::vector<Candidate> candidates = candidates_of(sets, reference);
 
     // ----------------------------------------------------------------- results
-    run.write_table("reduction_bases", reduction_basis_table(candidates, coupled.map().n(), reference.seconds));
+    run.write_table("reduction_bases", reduction_basis_table(candidates, scene.model->free_map().n(), reference.seconds));
     run.write_table("reduction_errors", reduction_error_table(candidates, reference.groups));
     run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference.unstable));
     run.store_table("reduction_modes", reduction_mode_table(candidates, reference.labels, reference.groups));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/enum_table.h>
 #include <squeal/bases/static_modes.h>
 
 #include <map>
@@ -23,9 +24,27 @@ namespace Squeal
     tangential_attachment,
     constraint_disc,
     constraint_pins,
-    uncoupled_factor, ///< of K
-    coupled_factor    ///< of K_c
+    coupled_attachment, ///< K_c⁻¹ A
+    uncoupled_factor,   ///< of K
+    coupled_factor      ///< of K_c
   };
+
+  template <>
+  inline constexpr EnumName<BasisSource> enum_table<BasisSource>[] = {
+    {BasisSource::disc_free, "modes of the disc, free"},
+    {BasisSource::disc_sliding, "modes of the disc, sliding"},
+    {BasisSource::pins_free, "modes of the pins, free"},
+    {BasisSource::pins_sliding, "modes of the pins, sliding"},
+    {BasisSource::real, "real coupled modes"},
+    {BasisSource::snapshots, "complex modes of the snapshots"},
+    {BasisSource::residuals, "growth by residuals"},
+    {BasisSource::normal_attachment, "normal attachment modes"},
+    {BasisSource::tangential_attachment, "tangential attachment modes"},
+    {BasisSource::constraint_disc, "constraint modes of the disc"},
+    {BasisSource::constraint_pins, "constraint modes of the pins"},
+    {BasisSource::coupled_attachment, "coupled tangential attachment modes"},
+    {BasisSource::uncoupled_factor, "factor of K"},
+    {BasisSource::coupled_factor, "factor of K_c"}};
 
   /// Numbers of vectors that a basis is made of.
   struct BasisCounts
@@ -86,6 +105,9 @@ namespace Squeal
     {
       return parts.front()->is_uncoupled;
     }
+
+    /// Whether real coupled modes are among its columns.
+    bool has_real_modes() const;
 
     bool rests_on(BasisSource source) const;
   };

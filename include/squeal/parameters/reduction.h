@@ -35,13 +35,13 @@ namespace Squeal
   struct ReductionParameters
   {
     std::vector<std::string>    bases; ///< names; empty: all that fit the problem
-    ReductionProblem            problem           = ReductionProblem::friction;
-    std::vector<ModeTruncation> truncations       = {{10000., 0, 0, 0}};
-    double                      coupled_frequency = 0.;                 ///< of the real coupled modes [Hz]; 0: the end of the band
-    double                      rank_tolerance    = 1e-10;              ///< [-]
-    std::vector<double>         grown_tolerances  = {1e-4, 1e-6};       ///< of residual-grown bases, on the estimated |δλ|/|λ| [-]
-    std::vector<double>         snapshots         = {0.05, 0.25, 0.45}; ///< friction coefficients whose complex modes make the POD basis
-    double                      pod_tolerance     = 1e-4;               ///< [-]
+    ReductionProblem            problem             = ReductionProblem::friction;
+    std::vector<ModeTruncation> truncations         = {{10000., 0, 0, 0}};
+    std::vector<double>         coupled_frequencies = {0.};         ///< ends of the sets of real coupled modes [Hz]; 0: that of the band
+    double                      rank_tolerance      = 1e-10;        ///< [-]
+    std::vector<double>         grown_tolerances    = {1e-4, 1e-6}; ///< of residual-grown bases, on the estimated |δλ|/|λ| [-]
+    std::vector<double>         snapshots           = {0.05, 0.25, 0.45}; ///< friction coefficients whose complex modes make the POD basis
+    double                      pod_tolerance       = 1e-4;               ///< [-]
 
     void declare(Declarations &declarations);
 
