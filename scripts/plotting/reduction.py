@@ -7,6 +7,7 @@ from plotting import style
 CRITERIA = {"res [-]": "\u03b5_res", "mac [-]": "\u03b5_mac", "frq [-]": "\u03b5_frq", "div [-]": "\u03b5_div"}
 FLOOR = 1e-16  # errors below it are rounding; zero has no place on a logarithmic axis
 WIDE = 1e3  # ratio of the ends of an axis of costs from which on only powers of ten are named
+MOST_COLUMNS = 3
 AT_FLOOR = "on this line: 1e-16 or less"
 
 
@@ -75,7 +76,9 @@ def error_figure(candidates):
     # Where nothing grows there is no error of growth
     criteria = [column for column in CRITERIA if any(candidate.largest(column) > 0 for candidate in candidates)]
     title = "Errors of reduced bases: largest of each group of modes"
-    picture = style.Picture(title, len(truncations) * len(groups), len(groups), (4.9, 3.6))
+    # A row for each truncation; the groups of a single one are wrapped
+    n_columns = len(groups) if len(truncations) > 1 else min(len(groups), MOST_COLUMNS)
+    picture = style.Picture(title, len(truncations) * len(groups), n_columns, (4.9, 3.6))
     panels = iter(picture.panels)
     for truncation in truncations:
         for group in groups:

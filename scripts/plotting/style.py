@@ -40,7 +40,7 @@ class Picture:
         grid = self.figure.subplots(n_rows, n_columns, squeeze=False)
         self.panels = list(grid.flat)[:n_panels]
         for unused in list(grid.flat)[n_panels:]:
-            unused.set_axis_off()
+            unused.remove()
         self.figure.suptitle(title, fontsize=FONT_SIZE + 2)
 
     def add_key(self):

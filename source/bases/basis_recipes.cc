@@ -27,8 +27,9 @@ namespace Squeal
     const BasisPart pins_free = uncoupled_set("Phi_f^P", Source::pins_free), pins_sliding = uncoupled_set("Phi_s^P", Source::pins_sliding);
 
     const BasisPart real      = {"Phi_R", {Source::real, Source::coupled_factor}, Source::real};
-    const BasisPart snapshots = {"complex modes at several mu", {Source::snapshots, Source::coupled_factor, Source::coupled_attachment},
-                             Source::snapshots};
+    const BasisPart snapshots = {"complex modes at several mu",
+                                 {Source::snapshots, Source::coupled_factor, Source::coupled_attachment},
+                                 Source::snapshots};
     const BasisPart residuals = {"Phi_R and residuals K_c^-1 R_F, K_c^-1 L_F",
                                  {Source::real, Source::residuals, Source::coupled_factor},
                                  Source::residuals};
@@ -71,8 +72,11 @@ namespace Squeal
     const std::vector<Source> factor = {Source::coupled_factor}, attachment = {Source::coupled_factor, Source::coupled_attachment};
 
     const BasisPart coupled_tangential_attachment =
-      coupled_response("(Psi_cat^D - Psi_cat^P)", attachment, {}, [](const In &in) -> MultiVector { return in.inverse->attachment_modes(); });
-    const BasisPart friction_right = coupled_response("Psi_Rmu", attachment, Source::real, [](const In &in) { return response(in, Side::right); });
+      coupled_response("(Psi_cat^D - Psi_cat^P)", attachment, {}, [](const In &in) -> MultiVector {
+        return in.inverse->attachment_modes();
+      });
+    const BasisPart friction_right =
+      coupled_response("Psi_Rmu", attachment, Source::real, [](const In &in) { return response(in, Side::right); });
     const BasisPart friction_left =
       coupled_response("K_c^-1 V_K^T A^T Phi_R", factor, Source::real, [](const In &in) { return response(in, Side::left); });
     const BasisPart damping = coupled_response("K_c^-1 C_c Phi_R", factor, Source::real, [](const In &in) {

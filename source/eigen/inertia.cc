@@ -36,12 +36,12 @@ namespace Squeal
     return count_below(K, M, largest_eigenvalue, what).n_modes;
   }
 
-  double end_of_lowest(const SparseMatrix      &K,
-                       const SparseMatrix      &M,
-                       const int                n_modes,
-                       const double             first,
-                       const double             highest,
-                       const std::string       &what)
+  double end_of_lowest(const SparseMatrix &K,
+                       const SparseMatrix &M,
+                       const int           n_modes,
+                       const double        first,
+                       const double        highest,
+                       const std::string  &what)
   {
     // A bracket: fewer modes lie below its lower end, enough below its upper one
     ModeCount lower = {0, 0.}, upper = count_below(K, M, std::min(first, highest), what);
@@ -58,9 +58,9 @@ namespace Squeal
     // Modes are spread about evenly, so that a straight line leads into the gap; half a mode off either end at least
     while (upper.n_modes > n_modes && upper.limit - lower.limit > cluster_width * upper.limit)
       {
-        const double    share  = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);
-        const double    trial  = lower.limit + std::min(std::max(share, 0.1), 0.9) * (upper.limit - lower.limit);
-        const ModeCount middle = count_below(K, M, trial, what);
+        const double    share                      = (n_modes + 0.5 - lower.n_modes) / (upper.n_modes - lower.n_modes);
+        const double    trial                      = lower.limit + std::min(std::max(share, 0.1), 0.9) * (upper.limit - lower.limit);
+        const ModeCount middle                     = count_below(K, M, trial, what);
         (middle.n_modes < n_modes ? lower : upper) = middle;
       }
     return upper.limit;

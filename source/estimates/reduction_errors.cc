@@ -8,6 +8,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -59,16 +61,28 @@ namespace Squeal
       return (whitening(A).adjoint() * C).colwise().squaredNorm().cwiseQuotient(B.diagonal().real().transpose());
     }
 
+    /// |ω̂ − ω| / ω
+    double frequency_difference(const Complex &found, const Complex &exact)
+    {
+      return std::abs(found.imag() - exact.imag()) / exact.imag();
+    }
+
     /// |ξ_1 − ξ_2|
     double divergence_difference(const Complex &lambda_1, const Complex &lambda_2)
     {
       return std::abs(modal_quantities(lambda_1).divergence_rate - modal_quantities(lambda_2).divergence_rate);
     }
 
-    /// Group of a mode: the @p pins have one of their own.
-    std::string group(const ModeLabel &label, const std::string &pins)
+    /// Takes a mode into the maxima of a group.
+    void add(const ModeError &error, GroupError &group)
     {
-      return label.is_of_pins() ? pins : label.family == ModeFamily::unnamed ? to_string(label.family) : "disc";
+      using E = ErrorMeasures;
+      for (const auto measure :
+           {&E::residual, &E::shape, &E::frequency, &E::divergence, &E::closest_shape, &E::closest_frequency, &E::closest_divergence,
+            &E::eigenvalue, &E::subspace, &E::corrected_error, &E::estimated_divergence, &E::corrected_divergence})
+        group.*measure = std::max(group.*measure, error.*measure);
+      ++group.n_modes;
+      group.n_other += error.closest != error.match;
     }
   } // namespace
 
@@ -126,7 +140,16 @@ namespace Squeal
       return distance < far ? shares[cluster[i]][j] + member_weight * mac(i, j) : -1.;
     };
     std::vector<int> match = best_assignment(k, n_reduced, gain);
-    agree(X.communicator(), match.data(), k); // ties may go either way
+    std::vector<int> closest;
+    for (int i = 0; i < k; ++i)
+      {
+        closest.push_back(0);
+        for (int j = 1; j < n_reduced; ++j)
+          if (mac(i, j) > mac(i, closest[i]))
+            closest[i] = j;
+      }
+    for (std::vector<int> *choice : {&match, &closest})
+      agree(X.communicator(), choice->data(), k); // ties may go either way
     const ReducedModes        chosen    = selected(modes, match);
     const EigenvalueEstimates estimates = estimate_eigenvalues(chosen, residual_vectors(system, inverse, model, chosen).products());
 
@@ -153,8 +176,12 @@ namespace Squeal
         error.match                = match[i];
         error.residual             = estimates.energy_residuals[i];
         error.shape                = std::max(0., 1. - mac(i, match[i]));
-        error.frequency            = std::abs(found.imag() - exact.imag()) / exact.imag();
+        error.frequency            = frequency_difference(found, exact);
         error.divergence           = divergence_difference(found, exact);
+        error.closest              = closest[i];
+        error.closest_shape        = std::max(0., 1. - mac(i, closest[i]));
+        error.closest_frequency    = frequency_difference(modes.lambda[closest[i]], exact);
+        error.closest_divergence   = divergence_difference(modes.lambda[closest[i]], exact);
         error.estimated_divergence = divergence_difference(corrected, found);
         error.corrected_divergence = divergence_difference(corrected, exact);
         error.eigenvalue           = std::abs(found - exact) / std::abs(exact);
@@ -170,36 +197,29 @@ namespace Squeal
     return errors;
   }
 
-  std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels)
+  std::vector<GroupError> largest_errors(const std::vector<ModeError>                &errors,
+                                         const std::vector<std::string>              &groups,
+                                         const std::vector<std::vector<std::string>> &joined)
   {
-    std::vector<std::string> groups;
-    for (const ModeLabel &label : labels)
-      groups.push_back(group(label, shape_text(label)));
-    return groups;
-  }
-
-  std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable)
-  {
-    std::vector<std::string> groups;
-    for (std::size_t j = 0; j < labels.size(); ++j)
-      groups.push_back(group(labels[j], unstable[j] ? "unstable pins" : "other pins"));
-    return groups;
-  }
-
-  std::vector<GroupError> largest_errors(const std::vector<ModeError> &errors, const std::vector<std::string> &groups)
-  {
-    std::vector<GroupError> result;
+    const auto errors_of = [&](const std::string &name, const std::vector<std::string> &members) {
+      GroupError group{{}, name};
+      for (std::size_t j = 0; j < errors.size(); ++j)
+        if (std::find(members.begin(), members.end(), groups[j]) != members.end())
+          add(errors[j], group);
+      return group;
+    };
+    std::vector<std::string> present;
     for (std::size_t j = 0; j < errors.size(); ++j)
-      {
-        auto it = std::find_if(result.begin(), result.end(), [&](const GroupError &group) { return group.group == groups[j]; });
-        if (it == result.end())
-          it = result.insert(it, GroupError{{}, groups[j]});
-        ++it->n_modes;
-        using E = ErrorMeasures;
-        for (const auto measure : {&E::residual, &E::shape, &E::frequency, &E::divergence, &E::eigenvalue, &E::subspace,
-                                   &E::corrected_error, &E::estimated_divergence, &E::corrected_divergence})
-          (*it).*measure = std::max((*it).*measure, errors[j].*measure);
-      }
+      if (std::find(present.begin(), present.end(), groups[j]) == present.end())
+        present.push_back(groups[j]);
+
+    std::vector<GroupError> result;
+    for (const std::string &group : present)
+      result.push_back(errors_of(group, {group}));
+    for (const std::vector<std::string> &members : joined)
+      if (std::all_of(members.begin(), members.end(),
+                      [&](const std::string &member) { return std::find(present.begin(), present.end(), member) != present.end(); }))
+        result.push_back(errors_of(boost::algorithm::join(members, " and "), members));
     return result;
   }
 } // namespace Squeal

@@ -71,7 +71,8 @@ namespace Squeal
           truncations.push_back(parse_truncation(entry));
       });
     declarations.add("Coupled frequency", coupled_frequencies,
-                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band. Units: Hz.", {0.});
+                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band. Units: Hz.",
+                     {0.});
     declarations.add("Rank tolerance", rank_tolerance,
                      "Directions of a basis whose M-norm is below this part of the largest are dropped. Units: none.", {1e-14, 1e-2});
     declarations.add(

@@ -103,7 +103,9 @@ namespace Squeal
                return unless(measures(p, is_connected), "no basis of component modes is measured");
              }},
             {"Reduction/Coupled frequency",
-             [](const Parameters &p) { return unless(measures(p, std::mem_fn(&BasisRecipe::has_real_modes)), "no basis of real modes is measured"); }},
+             [](const Parameters &p) {
+               return unless(measures(p, std::mem_fn(&BasisRecipe::has_real_modes)), "no basis of real modes is measured");
+             }},
             {"Reduction/Grown tolerances",
              [](const Parameters &p) { return unless(measures(p, BasisSource::residuals), "no residual-grown basis is measured"); }},
             {"Reduction/Snapshots", no_snapshots},

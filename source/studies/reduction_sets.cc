@@ -46,6 +46,11 @@ namespace Squeal
     return sum;
   }
 
+  double ReductionSets::full_order_factorisation() const
+  {
+    return seconds.at(BasisSource::coupled_factor) + (plan.has_friction ? seconds.at(BasisSource::coupled_attachment) : 0.);
+  }
+
   void ReductionSets::book(const Charge &charge)
   {
     seconds[charge.source] = charge.seconds;
@@ -122,7 +127,7 @@ namespace Squeal
                                                  plan.largest_circular_frequency, library);
     const StaticModes &modes = *static_modes;
 
-    using Set = std::function<const MultiVector &()>;
+    using Set                                = std::function<const MultiVector &()>;
     const std::pair<BasisSource, Set> sets[] = {
       {BasisSource::normal_attachment, [&]() -> const MultiVector & { return modes.normal_attachment(); }},
       {BasisSource::tangential_attachment, [&]() -> const MultiVector & { return modes.tangential_attachment(); }},
@@ -150,8 +155,8 @@ namespace Squeal
         {
           run.progress.update(text("mu = ", value));
           modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
-                                                         plan.largest_circular_frequency, frictionless.real.eigenvalues.size(),
-                                                         run.parameters.solvers, run.progress));
+                                                         plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
+                                                         run.progress));
           for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
             parts.push_back(part.get());
         }
@@ -200,9 +205,9 @@ namespace Squeal
     iteration.tolerance                  = tolerance;
     iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
     MultiVector basis                    = timed(BasisSource::residuals, exact_text(tolerance), [&] {
-      return MultiVector(grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient},
-                                                                iteration, run.progress)
-                           .model.basis());
+      return MultiVector(
+                           grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)
+                             .model.basis());
     });
     const int   n                        = keep(BasisSource::residuals, std::make_unique<MultiVector>(std::move(basis)));
     run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));

@@ -1,14 +1,12 @@
 #include <squeal/base/conventions.h>
-#include <squeal/bases/reduced_basis.h>
-#include <squeal/estimates/reduction_errors.h>
-#include <squeal/output/table.h>
+#include <squeal/estimates/mode_groups.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/paper_scene.h>
 #include <squeal/studies/reduction_plan.h>
-#include <squeal/studies/reduction_sets.h>
+#include <squeal/studies/reduction_tables.h>
 
 #include <algorithm>
 #include <functional>
-#include <cmath>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -17,209 +15,47 @@ namespace Squeal
 {
   namespace
   {
-    // ------------------------------------------------------------------ tables
-
-    /// Estimates count as good within this factor of the true error.
-    constexpr double good_factor = 3.;
-
-    /// Relative differences of λ below this are rounding errors of the reference and say nothing about an estimate.
-    constexpr double reference_accuracy = 1e-11;
-
-    /// A condition number; nothing where the matrix is singular to rounding.
-    Cell condition_cell(const double condition)
-    {
-      return std::isfinite(condition) ? Cell(condition) : Cell();
-    }
-
-    /// A basis of a study with what was measured of it.
-    struct Candidate
-    {
-      const BasisRecipe     *recipe;
-      std::string            name;       ///< with the variant where there are several
-      std::string            truncation; ///< of the component modes
-      ReducedBasis           basis;      ///< its vectors go when it has been measured
-      int                    n_r           = 0;
-      double                 build_seconds = 0., solve_seconds = 0.;
-      std::vector<ModeError> errors = {};
-    };
-
-    /// Largest errors in each group of modes, and times.
-    Table reduction_error_table(const std::vector<Candidate> &candidates, const std::vector<std::string> &groups)
-    {
-      struct Row : GroupError
-      {
-        const Candidate &candidate;
-      };
-      std::vector<Row> rows;
-      for (const Candidate &candidate : candidates)
-        for (const GroupError &largest : largest_errors(candidate.errors, groups))
-          rows.push_back({largest, candidate});
-      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
-                                {"n_r0", "-", [](const Row &row) { return row.candidate.basis.n_r0; }},
-                                {"n_r", "-", [](const Row &row) { return row.candidate.n_r; }},
-                                {"group", "", &Row::group},
-                                {"res", "-", &Row::residual, 1, true},
-                                {"mac", "-", &Row::shape, 1, true},
-                                {"frq", "-", &Row::frequency, 1, true},
-                                {"div", "-", &Row::divergence, 1, true},
-                                {"div estimated", "-", &Row::estimated_divergence, 1, true},
-                                {"div corrected", "-", &Row::corrected_divergence, 1, true},
-                                {"build time", "s", [](const Row &row) { return row.candidate.build_seconds; }, 2},
-                                {"solve time", "s", [](const Row &row) { return row.candidate.solve_seconds; }, 3},
-                                {"subspace", "-", &Row::subspace, 1, true},
-                                {"lambda", "-", &Row::eigenvalue, 1, true},
-                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }}},
-                   rows);
-    }
-
-    /**
-     * Columns, sizes, decisions on rank, gains and times.
-     *
-     * @param n            dofs of the whole structure before it is coupled, as in the paper
-     * @param full_seconds of the solution at full order
-     */
-    Table reduction_basis_table(const std::vector<Candidate> &candidates, const int n, const double full_seconds)
-    {
-      using Row = Candidate;
-      return Table(
-        Columns<Row>{{"basis", "", &Row::name},
-                     {"columns", "", [](const Row &row) { return row.recipe->columns(); }},
-                     {"component modes", "", &Row::truncation},
-                     {"n_r0", "-", [](const Row &row) { return row.basis.n_r0; }},
-                     {"n_r by formula", "-", [](const Row &row) { return row.basis.n_nominal; }},
-                     {"n_r", "-", &Row::n_r},
-                     {"dropped", "-", [](const Row &row) { return row.basis.n_dropped; }},
-                     {"rank tolerance", "-", [](const Row &row) { return row.basis.tolerance; }, 0, true},
-                     {"condition", "-", [](const Row &row) { return condition_cell(row.basis.condition); }, 1, true},
-                     {"orthonormality", "-", [](const Row &row) { return row.basis.orthonormality; }, 1, true},
-                     {"rank of P_n T_r0", "-", [](const Row &row) { return row.basis.connection.rank; }},
-                     {"smallest kept", "-", [](const Row &row) { return row.basis.connection.smallest_kept; }, 1, true},
-                     {"largest dropped", "-", [](const Row &row) { return row.basis.connection.largest_dropped; }, 1, true},
-                     {"G_n", "-", [n](const Row &row) { return static_cast<double>(n) / row.n_r; }, 1},
-                     {"build time", "s", &Row::build_seconds, 2},
-                     {"solve time", "s", &Row::solve_seconds, 3},
-                     {"G_t", "-", [full_seconds](const Row &row) { return full_seconds / (row.build_seconds + row.solve_seconds); }, 2}},
-        candidates);
-    }
-
-    /// Every mode of every basis beside the reference.
-    Table reduction_mode_table(const std::vector<Candidate>   &candidates,
-                               const std::vector<ModeLabel>   &labels,
-                               const std::vector<std::string> &groups)
-    {
-      struct Row : ModeError
-      {
-        const Candidate &candidate;
-        ModeLabel        label;
-        std::string      group;
-        ModalQuantities  mode, exact, better;
-      };
-      std::vector<Row> rows;
-      for (const Candidate &candidate : candidates)
-        for (std::size_t j = 0; j < labels.size(); ++j)
-          {
-            const ModeError &e = candidate.errors[j];
-            rows.push_back({e, candidate, labels[j], groups[j], modal_quantities(e.reduced), modal_quantities(e.reference),
-                            modal_quantities(e.corrected)});
-          }
-      const auto frequency_bar  = [](const Row &row) { return std::abs(row.better.frequency - row.mode.frequency); };
-      const auto divergence_bar = [](const Row &row) { return 100. * std::abs(row.better.divergence_rate - row.mode.divergence_rate); };
-      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
-                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
-                                {"label", "", &Row::label},
-                                {"group", "", &Row::group},
-                                {"frequency", "Hz", [](const Row &row) { return row.mode.frequency; }, 3},
-                                {"divergence rate", "%", [](const Row &row) { return 100. * row.mode.divergence_rate; }, 4},
-                                {"error bar of frequency", "Hz", frequency_bar, 1, true},
-                                {"error bar of divergence rate", "%", divergence_bar, 1, true},
-                                {"verdict", "", &Row::verdict},
-                                {"reference frequency", "Hz", [](const Row &row) { return row.exact.frequency; }, 3},
-                                {"reference divergence rate", "%", [](const Row &row) { return 100. * row.exact.divergence_rate; }, 4},
-                                {"eps_res", "-", &Row::residual, 1, true},
-                                {"eps_mac", "-", &Row::shape, 1, true},
-                                {"eps_frq", "-", &Row::frequency, 1, true},
-                                {"eps_div", "-", &Row::divergence, 1, true},
-                                {"error of lambda", "-", &Row::eigenvalue, 1, true},
-                                {"estimated error of lambda", "-", &Row::estimated_error, 1, true},
-                                {"error of corrected lambda", "-", &Row::corrected_error, 1, true},
-                                {"condition", "-", [](const Row &row) { return condition_cell(row.condition); }, 1, true},
-                                {"estimate claimed", "", [](const Row &row) { return row.claimed ? "yes" : "no"; }},
-                                {"cluster", "-", &Row::cluster_size},
-                                {"subspace", "-", &Row::subspace, 1, true}},
-                   rows);
-    }
-
-    /// How far the estimates are to be trusted: they know nothing of the reference, by which modes are @p unstable.
-    Table reduction_estimate_table(const std::vector<Candidate> &candidates, const std::vector<bool> &unstable)
-    {
-      struct Row
-      {
-        const Candidate    &candidate;
-        int                 n_claimed = 0, n_good = 0, n_undecided = 0, n_wrong = 0;
-        std::vector<double> ratios = {}, gains = {};
-      };
-      std::vector<Row> rows;
-      for (const Candidate &candidate : candidates)
-        {
-          rows.push_back({candidate});
-          Row &row = rows.back();
-          for (std::size_t j = 0; j < candidate.errors.size(); ++j)
-            {
-              const ModeError &e = candidate.errors[j];
-              row.n_undecided += e.verdict == Verdict::undecided;
-              row.n_wrong += e.verdict != Verdict::undecided && (e.verdict == Verdict::unstable) != unstable[j];
-              row.n_claimed += e.claimed;
-              if (!e.claimed || !(e.eigenvalue > reference_accuracy))
-                continue;
-              row.ratios.push_back(e.estimate_ratio);
-              row.n_good += e.estimate_ratio > 1. / good_factor && e.estimate_ratio < good_factor;
-              if (e.corrected_error > 0.)
-                row.gains.push_back(e.eigenvalue / e.corrected_error);
-            }
-        }
-      const auto median = [](std::vector<double> values) {
-        std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-        return values.empty() ? Cell() : Cell(values[values.size() / 2]);
-      };
-      const auto good_share = [](const Row &row) { return row.ratios.empty() ? Cell() : Cell(100. * row.n_good / row.ratios.size()); };
-      return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
-                                {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
-                                {"modes", "-", [](const Row &row) { return row.candidate.errors.size(); }},
-                                {"claimed", "-", &Row::n_claimed},
-                                {"judged", "-", [](const Row &row) { return row.ratios.size(); }},
-                                {"median ratio to the true error", "-", [&](const Row &row) { return median(row.ratios); }, 2},
-                                {"within a factor of 3", "%", good_share, 0},
-                                {"median gain of the correction", "-", [&](const Row &row) { return median(row.gains); }, 1},
-                                {"undecided", "-", &Row::n_undecided},
-                                {"wrong verdicts", "-", &Row::n_wrong}},
-                   rows);
-    }
-
     /// Solutions of a reduced problem of which the fastest is reported.
     constexpr int n_timed_solutions = 3;
 
-    /// What bases are measured against.
-    struct Reference
+    std::vector<double> disc_shares_of(const FrictionlessModes &frictionless, const ComplexModes &modes)
     {
-      ComplexModes             modes;
-      std::vector<ModeLabel>   labels; ///< of the modes
-      std::vector<std::string> groups;
-      std::vector<bool>        unstable;
-      double                   seconds; ///< of the processor for the solution, its factorisation included
-    };
+      const Scene &scene = *frictionless.linearisation.scene;
+      return disc_shares(*scene.model, scene.system, *frictionless.linearisation.coupled.kernel, modes);
+    }
 
-    Reference reference_modes(const ReductionPlan &plan, const FrictionlessModes &frictionless, Run &run)
+    /// What each of some real coupled modes is called among the modes of the pins, whether the disc moves more or not.
+    std::vector<ModeLabel> pin_labels(const FrictionlessModes &frictionless, const ComplexModes &modes)
     {
-      const double factorisation = frictionless.factorisation.cpu_seconds;
-      if (plan.has_friction)
-        {
-          const FrictionModes full = friction_modes(frictionless, plan.friction_coefficient, run);
-          return {full.modes, full.labels, friction_groups(full.labels, full.unstable), full.unstable,
-                  factorisation + full.cost.cpu_seconds};
-        }
+      const SparseMatrix    &mass = *frictionless.linearisation.scene->system.mass;
+      const MultiVector      u    = *frictionless.linearisation.coupled.kernel * *modes.real_part;
+      std::vector<ModeLabel> labels;
+      for (int j = 0; j < u.n_columns(); ++j)
+        labels.push_back(identify({&frictionless.pins_sliding}, mass, view(u, j, 1), nullptr).front());
+      return labels;
+    }
+
+    Reference complex_reference(const ReductionPlan &plan, const FrictionlessModes &frictionless, Run &run)
+    {
+      const FrictionModes full   = friction_modes(frictionless, plan.friction_coefficient, run);
+      const auto          shares = disc_shares_of(frictionless, full.modes);
+      return {
+        full.modes,    full.labels,          shares, friction_groups(shares, full.modes.lambda, full.unstable), {{"disc", "unstable pins"}},
+        full.unstable, full.cost.cpu_seconds};
+    }
+
+    Reference real_reference(const FrictionlessModes &frictionless)
+    {
+      const ComplexModes           modes = undamped_modes(frictionless.real);
       const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
-      return {undamped_modes(frictionless.real), labels, frictionless_groups(labels), std::vector<bool>(labels.size(), false),
-              factorisation + frictionless.solution.cpu_seconds};
+      const auto                   shares = disc_shares_of(frictionless, modes);
+      return {modes,
+              labels,
+              shares,
+              frictionless_groups(shares, pin_labels(frictionless, modes)),
+              {{"disc", "F1"}},
+              std::vector<bool>(labels.size(), false),
+              frictionless.solution.cpu_seconds};
     }
 
     /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
@@ -268,39 +104,52 @@ namespace Squeal
       return candidate;
     }
 
-    /// Bases of component modes of every truncation, then the others.
-    std::vector<Candidate> candidates_of(ReductionSets &sets, const Reference &reference)
+    bool any_of(const ReductionPlan &plan, bool (BasisRecipe::*const property)() const)
     {
-      const ReductionParameters &reduction = sets.run.parameters.reduction;
-      std::vector<Candidate>     result;
-      if (std::any_of(sets.plan.recipes.begin(), sets.plan.recipes.end(), std::mem_fn(&BasisRecipe::is_connected)))
-        for (const ModeTruncation &truncation : reduction.truncations)
-          {
-            sets.truncate(truncation);
-            for (const BasisRecipe *recipe : sets.plan.recipes)
-              if (recipe->is_connected())
-                result.push_back(measured(sets, reference, *recipe, recipe->name, truncation.text()));
-          }
-      if (std::any_of(sets.plan.recipes.begin(), sets.plan.recipes.end(), std::mem_fn(&BasisRecipe::has_real_modes)))
-        for (const double frequency : reduction.coupled_frequencies)
-          {
-            sets.take_real_modes(frequency);
-            const std::string variant = frequency > 0. ? " (" + exact_text(frequency) + " Hz)" : "";
-            for (const BasisRecipe *recipe : sets.plan.recipes)
-              if (recipe->has_real_modes())
-                result.push_back(measured(sets, reference, *recipe, recipe->name + variant));
-          }
-      sets.take_real_modes(0.); // with which bases grow
+      return std::any_of(plan.recipes.begin(), plan.recipes.end(), std::mem_fn(property));
+    }
+
+    /// Bases of component modes with every truncation.
+    void measure_connected(ReductionSets               &sets,
+                           const Reference             &reference,
+                           std::vector<Candidate>      &candidates,
+                           std::vector<TruncatedModes> &truncations)
+    {
+      for (const ModeTruncation &truncation : sets.run.parameters.reduction.truncations)
+        {
+          truncations.push_back({truncation, sets.truncate(truncation)});
+          for (const BasisRecipe *recipe : sets.plan.recipes)
+            if (recipe->is_connected())
+              candidates.push_back(measured(sets, reference, *recipe, recipe->name, truncation.text()));
+        }
+    }
+
+    /// Bases of real coupled modes up to every frequency.
+    void measure_real(ReductionSets &sets, const Reference &reference, std::vector<Candidate> &candidates)
+    {
+      for (const double frequency : sets.run.parameters.reduction.coupled_frequencies)
+        {
+          sets.take_real_modes(frequency);
+          const std::string variant = frequency > 0. ? " (" + exact_text(frequency) + " Hz)" : "";
+          for (const BasisRecipe *recipe : sets.plan.recipes)
+            if (recipe->has_real_modes())
+              candidates.push_back(measured(sets, reference, *recipe, recipe->name + variant));
+        }
+    }
+
+    /// Bases that grow from the real modes of the band, and those of snapshots.
+    void measure_others(ReductionSets &sets, const Reference &reference, std::vector<Candidate> &candidates)
+    {
+      sets.take_real_modes(0.);
       for (const BasisRecipe *recipe : sets.plan.recipes)
         if (recipe->rests_on(BasisSource::residuals))
-          for (const double tolerance : reduction.grown_tolerances)
+          for (const double tolerance : sets.run.parameters.reduction.grown_tolerances)
             {
               sets.grow(tolerance);
-              result.push_back(measured(sets, reference, *recipe, text(recipe->name, " ", tolerance)));
+              candidates.push_back(measured(sets, reference, *recipe, text(recipe->name, " ", tolerance)));
             }
         else if (!recipe->is_connected() && !recipe->has_real_modes())
-          result.push_back(measured(sets, reference, *recipe, recipe->name));
-      return result;
+          candidates.push_back(measured(sets, reference, *recipe, recipe->name));
     }
   } // namespace
 
@@ -318,15 +167,25 @@ namespace Squeal
     const CoupledSystem &coupled = frictionless.linearisation.coupled;
     const CoupledSystem  system  = plan.has_friction ? coupled : undamped(coupled);
 
-    const Reference              reference = reference_modes(plan, frictionless, run);
-    ReductionSets                sets(plan, frictionless, system, run);
-    const std::vector<Candidate> candidates = candidates_of(sets, reference);
+    Reference                   reference = plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless);
+    ReductionSets               sets(plan, frictionless, system, run);
+    std::vector<Candidate>      candidates;
+    std::vector<TruncatedModes> truncations;
+    reference.seconds += sets.full_order_factorisation();
+    if (any_of(plan, &BasisRecipe::is_connected))
+      measure_connected(sets, reference, candidates, truncations);
+    if (any_of(plan, &BasisRecipe::has_real_modes))
+      measure_real(sets, reference, candidates);
+    measure_others(sets, reference, candidates);
 
     // ----------------------------------------------------------------- results
     run.write_table("reduction_bases", reduction_basis_table(candidates, scene.model->free_map().n(), reference.seconds));
-    run.write_table("reduction_errors", reduction_error_table(candidates, reference.groups));
-    run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference.unstable));
-    run.store_table("reduction_modes", reduction_mode_table(candidates, reference.labels, reference.groups));
+    if (!truncations.empty())
+      run.write_table("reduction_truncations", reduction_truncation_table(truncations, is_paper_scene(run.parameters)));
+    run.write_table("reduction_costs", reduction_cost_table(sets.charges()));
+    run.write_table("reduction_errors", reduction_error_table(candidates, reference));
+    run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
+    run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
     run.screen << '\n';
     run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
     run.finish();

@@ -214,6 +214,38 @@ TEST(SymmetricModes, CountAgreesWithDenseEigenvalues)
   EXPECT_GT(n_counted, 5);
 }
 
+TEST(SymmetricModes, EndOfTheLowestIsFoundByCounting)
+{
+  const RowMap              map    = rows(9);
+  const std::vector<double> values = {1., 2., 3., 50., 50., 50.02, 70., 400., 1e4};
+  const auto                K      = Testing::diagonal(map, [&values](const int i) { return values[i]; });
+  const auto                M      = Testing::diagonal(map, [](int) { return 1.; });
+  const auto                end    = [&](const int n, const double first, const double highest = 1e5) {
+    return end_of_lowest(*K, *M, n, first, highest, "test");
+  };
+  for (const double first : {0.5, 10., 5e4})
+    {
+      for (const int n : {1, 2, 3, 6, 7, 8, 9})
+        EXPECT_EQ(count_modes(*K, *M, end(n, first), "test"), n) << "from " << first;
+      // Half of a multiple eigenvalue cannot be had; of a cluster one more may come along
+      for (const int n : {4, 5})
+        {
+          const int n_below = count_modes(*K, *M, end(n, first), "test");
+          EXPECT_GE(n_below, 5) << "from " << first;
+          EXPECT_LE(n_below, 6) << "from " << first;
+        }
+    }
+  try
+    {
+      end(9, 10., 5e3);
+      FAIL();
+    }
+  catch (const SolverError &error)
+    {
+      EXPECT_NE(error.reason.find("fewer than 9 lie below 11 Hz"), std::string::npos) << error.reason;
+    }
+}
+
 TEST_P(SymmetricModesBy, UncoupledPartsAloneGiveTheSame)
 {
   // Seven equal chains of 60 masses, whose entries alternate: every eigenvalue comes seven times.

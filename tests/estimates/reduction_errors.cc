@@ -241,15 +241,60 @@ TEST(ReductionErrors, FewerModesThanTheReferenceAreRefused)
   EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError);
 }
 
-TEST(ReductionErrors, Groups)
+TEST(ReductionErrors, ByEquation17OneReducedModeMayServeTwice)
 {
-  const ModeLabel              F1 = {ModeFamily::flexural, 0, 0, 1}, T12 = {ModeFamily::torsional, 0, 0, 12, DoubletSign::plus};
-  const std::vector<ModeLabel> labels = {
-    {ModeFamily::axial, 0, 2, 0, DoubletSign::minus}, F1, F1, T12, {}, {ModeFamily::circumferential, 0, 1}, {ModeFamily::rigid_body}};
-  EXPECT_EQ(frictionless_groups(labels), (std::vector<std::string>{"disc", "F1", "F1", "T12", "unnamed", "disc", "disc"}));
-  EXPECT_EQ(friction_groups(labels, {true, true, false, false, false, false, false}),
-            (std::vector<std::string>{"disc", "unstable pins", "other pins", "other pins", "unnamed", "disc", "disc"}));
+  // Modes 0 and 2 are far apart. The reduced mode near e_0 holds most of what the reduced space has of e_2, too: by eq. (17)
+  // it is the counterpart of both, one-to-one mode 2 gets the other one.
+  const RowMap              map = rows(4), contact = rows(1);
+  const std::vector<double> k       = {1., 4., 1.2, 9.};
+  const auto                nothing = sparse(contact, map, [](int) { return Row{}; });
+  const CoupledSystem       system  = system_of(
+           {Testing::diagonal(map, [](int) { return 1.; }), nullptr, Testing::diagonal(map, [k](const int i) { return k[i]; })}, nothing, nothing);
+  const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
+  const MultiVector    I = unit_vectors(map);
 
+  // Two reduced modes: 0.8 e_0 + 0.6 e_2 and 0.28 e_2 + 0.96 e_3, not orthogonal on purpose; the pencil tells them apart
+  SymmetricModes exact;
+  exact.eigenvalues     = {k[0], k[2]};
+  exact.residuals       = {0., 0.};
+  exact.vectors         = std::make_shared<MultiVector>(map, 2);
+  exact.vectors->col(0) = I.col(0);
+  exact.vectors->col(1) = I.col(2);
+
+  MultiVector T(map, 2);
+  T.col(0) = 0.8 * I.col(0) + 0.6 * I.col(2);
+  T.col(1) = 0.28 * (0.6 * I.col(0) - 0.8 * I.col(2)) + 0.96 * I.col(3);
+  ReducedModel model(system);
+  model.extend(T);
+  ReducedModes modes = reduced_real_modes(model, 10., BandEnd::open);
+  // Frequencies within reach of the matching: it is about shapes here
+  modes.lambda = {{0., std::sqrt(k[0])}, {0., std::sqrt(k[2])}};
+
+  const auto errors = reduction_errors(system, inverse, model, modes, undamped_modes(exact));
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0].match, 0);
+  EXPECT_EQ(errors[1].match, 1);
+  EXPECT_EQ(errors[0].closest, 0);
+  EXPECT_EQ(errors[1].closest, 0);
+  EXPECT_EQ(errors[0].closest_shape, errors[0].shape);
+  EXPECT_NEAR(errors[1].closest_shape, 1. - 0.36, 0.05);
+  EXPECT_GT(errors[1].shape, errors[1].closest_shape + 0.2);
+  EXPECT_EQ(errors[1].closest_frequency, std::abs(std::sqrt(k[0]) - std::sqrt(k[2])) / std::sqrt(k[2]));
+  EXPECT_EQ(errors[1].frequency, 0.);
+
+  const auto groups = largest_errors(errors, {"disc", "F1"}, {{"disc", "F1"}, {"disc", "T1"}});
+  ASSERT_EQ(groups.size(), 3u);
+  EXPECT_EQ(groups[0].n_other, 0);
+  EXPECT_EQ(groups[1].n_other, 1);
+  EXPECT_EQ(groups[2].group, "disc and F1");
+  EXPECT_EQ(groups[2].n_modes, 2);
+  EXPECT_EQ(groups[2].n_other, 1);
+  EXPECT_EQ(groups[2].shape, errors[1].shape);
+  EXPECT_EQ(groups[2].closest_shape, errors[1].closest_shape);
+}
+
+TEST(ReductionErrors, LargestOfGroups)
+{
   std::vector<ModeError> errors(3);
   errors[0].residual = 1.;
   errors[1].residual = 3.;

@@ -31,10 +31,10 @@ namespace Squeal
 
   template <>
   inline constexpr EnumName<BasisSource> enum_table<BasisSource>[] = {
-    {BasisSource::disc_free, "modes of the disc, free"},
-    {BasisSource::disc_sliding, "modes of the disc, sliding"},
-    {BasisSource::pins_free, "modes of the pins, free"},
-    {BasisSource::pins_sliding, "modes of the pins, sliding"},
+    {BasisSource::disc_free, "free modes of the disc"},
+    {BasisSource::disc_sliding, "sliding modes of the disc"},
+    {BasisSource::pins_free, "free modes of the pins"},
+    {BasisSource::pins_sliding, "sliding modes of the pins"},
     {BasisSource::real, "real coupled modes"},
     {BasisSource::snapshots, "complex modes of the snapshots"},
     {BasisSource::residuals, "growth by residuals"},

@@ -91,8 +91,8 @@ namespace Squeal
   int count_modes(const SparseMatrix &K, const SparseMatrix &M, double largest_eigenvalue, const std::string &what);
 
   /**
-   * An end of the band [rad²/s²] below which the @p n_modes lowest modes lie and no other, found by inertia alone. Where others are
-   * closer to the last of them than 10⁻³ of its ω², as members of a multiple eigenvalue are, they lie below it, too.
+   * An end of the band [rad²/s²] below which the @p n_modes lowest modes lie and no other, found by inertia alone. Others that are
+   * closer to the last of them than 10⁻³ of its ω², as members of a multiple eigenvalue are, may lie below it, too.
    *
    * @param first   where the search begins [rad²/s²]
    * @param highest where it is given up [rad²/s²]

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <squeal/bases/mode_label.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/estimates/eigenvalue_estimates.h>
 
@@ -17,6 +16,9 @@ namespace Squeal
     double shape                = 0.; ///< ε_mac, eq. (19) [-]
     double frequency            = 0.; ///< ε_frq, eq. (20) [-]
     double divergence           = 0.; ///< ε_div, eq. (21) [-]
+    double closest_shape        = 0.; ///< ε_mac with the reduced mode that eq. (17) picks, one-to-one or not [-]
+    double closest_frequency    = 0.; ///< ε_frq of that mode [-]
+    double closest_divergence   = 0.; ///< ε_div of that mode [-]
     double eigenvalue           = 0.; ///< |λ̂ − λ| / |λ| [-]
     double subspace             = 0.; ///< sin² of the largest angle between a cluster and its reduced modes; ε_mac for a single mode [-]
     double corrected_error      = 0.; ///< |λ̂ + δλ − λ| / |λ| [-]
@@ -29,6 +31,7 @@ namespace Squeal
   {
     std::complex<double> reference, reduced, corrected; ///< λ, λ̂ and λ̂ + δλ [rad/s]
     int                  match;                         ///< number of the reduced mode
+    int                  closest;                       ///< number of the reduced mode that eq. (17) picks
     int                  cluster_size;                  ///< reference modes with nearly the same λ, itself included
     double               estimated_error;               ///< |δλ| / |λ̂| [-]
     double               estimate_ratio;                ///< |δλ| / |λ̂ − λ| [-]; infinite where λ̂ is exact
@@ -44,9 +47,11 @@ namespace Squeal
    * Errors of reduced modes, one entry for each of the @p reference modes. Their
    * counterparts are found by the mass-weighted criterion
    *
-   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eqs (17), (18),
+   *   MAC-M = |φᴴ M φ̂|² / (φᴴ M φ  φ̂ᴴ M φ̂)      eq. (18),
    *
-   * each reduced mode serving once, so that the sum of MAC-M is largest. Where
+   * each reduced mode serving once, so that the sum of MAC-M is largest. (Eq. (17) of the paper takes the mode of the largest
+   * MAC-M for each reference mode by itself, so that one may serve twice and another never; errors that follow from this
+   * choice are the `closest_` ones.) Where
    * λ of several reference modes lie within |λ_i − λ_j| ≤ @p cluster_tolerance |λ_i|, in
    * chains, MAC-M of single modes says little. There a reduced mode counts by its
    * share in the span of the cluster first, and the angles between the
@@ -67,19 +72,21 @@ namespace Squeal
                                           const ComplexModes   &reference,
                                           double                cluster_tolerance = 1e-3);
 
-  /// Groups of the frictionless problem: `disc`, or family and rank of the pin mode (`F1`, `T1`); `unnamed`.
-  std::vector<std::string> frictionless_groups(const std::vector<ModeLabel> &labels);
-
-  /// Groups with friction: `disc`, `unstable pins`, `other pins`; `unnamed`.
-  std::vector<std::string> friction_groups(const std::vector<ModeLabel> &labels, const std::vector<bool> &unstable);
-
   /// Largest errors of a group of modes.
   struct GroupError : ErrorMeasures
   {
     std::string group;
     int         n_modes = 0;
+    int         n_other = 0; ///< modes for which eq. (17) picks another counterpart
   };
 
-  /// Maxima of each group, in the order in which the groups first appear.
-  std::vector<GroupError> largest_errors(const std::vector<ModeError> &errors, const std::vector<std::string> &groups);
+  /**
+   * Maxima of each group, in the order in which the groups first appear, then those of groups @p joined, "disc and F1", where
+   * there are modes of all of them.
+   *
+   * @param groups of each mode
+   */
+  std::vector<GroupError> largest_errors(const std::vector<ModeError>                &errors,
+                                         const std::vector<std::string>              &groups,
+                                         const std::vector<std::vector<std::string>> &joined = {});
 } // namespace Squeal

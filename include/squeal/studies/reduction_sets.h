@@ -14,11 +14,11 @@ namespace Squeal
   struct Charge
   {
     BasisSource           source;
-    std::string           variant;       ///< truncation, frequency or tolerance; empty where there is one only
-    std::optional<int>    n_vectors;     ///< that a basis gets; none of a factor
-    std::optional<double> end_of_band;   ///< of modes: all below it were solved for [Hz]
-    std::optional<int>    n_solved;      ///< of modes: how many these are; more than a basis gets where the last one is multiple
-    double                seconds = 0.;  ///< of the processor
+    std::string           variant;      ///< truncation, frequency or tolerance; empty where there is one only
+    std::optional<int>    n_vectors;    ///< that a basis gets; none of a factor
+    std::optional<double> end_of_band;  ///< of modes: all below it were solved for [Hz]
+    std::optional<int>    n_solved;     ///< of modes: how many these are; more than a basis gets where the last one is multiple
+    double                seconds = 0.; ///< of the processor
   };
 
   /**
@@ -61,6 +61,9 @@ namespace Squeal
 
     /// Processor seconds of all that a basis rests on, each set counted once.
     double cost(const BasisRecipe &recipe) const;
+
+    /// Processor seconds that the modes of full order need before they are solved for: the factor of K_c, with friction K_c⁻¹ A.
+    double full_order_factorisation() const;
 
     /// Of all sets, those replaced by others included.
     const std::vector<Charge> &charges() const

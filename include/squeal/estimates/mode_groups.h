@@ -1,0 +1,56 @@
+#pragma once
+
+#include <squeal/bases/mode_label.h>
+#include <squeal/linear_algebra/multivector.h>
+#include <squeal/model/model.h>
+#include <squeal/modes/complex_modes.h>
+#include <squeal/system/terms.h>
+
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Share [-] of some dofs in the energy of each mode u e^(λt), kinetic and strain energy together,
+   *
+   *   Σ_i ū_i (|λ|² M u + K u)_i / uᴴ (|λ|² M + K) u,   i over those dofs.
+   *
+   * M and K do not couple these dofs with the others, as those of different bodies.
+   *
+   * @param selection n × 1, one at these dofs, zero at the others
+   * @param lambda    of the modes [rad/s]
+   * @param real_part, imaginary_part of u, n × k, on the dofs of the uncoupled bodies
+   */
+  std::vector<double> energy_shares(const SecondOrderSystem                 &bodies,
+                                    const MultiVector                       &selection,
+                                    const std::vector<std::complex<double>> &lambda,
+                                    const MultiVector                       &real_part,
+                                    const MultiVector                       &imaginary_part);
+
+  /// Share of the disc, with the foundation that holds it, in the energy of coupled modes; the remainder is that of the pins [-].
+  std::vector<double> disc_shares(const Model             &model,
+                                  const SecondOrderSystem &bodies,
+                                  const SparseMatrix      &kernel,
+                                  const ComplexModes      &modes);
+
+  /**
+   * Groups of the frictionless problem (figures 10 to 13 of the paper): `disc` where the disc has at least half of the energy, else
+   * family and rank of the pin modes (`F1`, `T1`).
+   *
+   * @param disc_shares see disc_shares()
+   * @param pin_labels  of each mode among the modes of the pins alone; of no matter where the disc has the energy
+   */
+  std::vector<std::string> frictionless_groups(const std::vector<double> &disc_shares, const std::vector<ModeLabel> &pin_labels);
+
+  /**
+   * Groups with friction (figures 14 to 18): `disc` where the disc has at least half of the energy; of the others `unstable pins`,
+   * which grow with a divergence rate above weak_divergence, `weakly unstable pins`, which grow more slowly, and `other pins`.
+   *
+   * @param unstable whether each mode grows beyond its uncertainty
+   */
+  std::vector<std::string> friction_groups(const std::vector<double>               &disc_shares,
+                                           const std::vector<std::complex<double>> &lambda,
+                                           const std::vector<bool>                 &unstable);
+} // namespace Squeal

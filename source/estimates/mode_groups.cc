@@ -1,0 +1,90 @@
+#include <squeal/base/conventions.h>
+#include <squeal/contact/contact_operators.h>
+#include <squeal/estimates/mode_groups.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Share of the energy from which on a mode is the disc's [-].
+    constexpr double half = 0.5;
+
+    /// uᴴ A u and its part from the selected rows, for each column of a complex u.
+    struct QuadraticForms
+    {
+      QuadraticForms(const SparseMatrix &A, const MultiVector &selection, const MultiVector &real_part, const MultiVector &imaginary_part)
+        : whole(real_part.n_columns(), 0.)
+        , part(whole)
+      {
+        for (const MultiVector *u : {&real_part, &imaginary_part})
+          {
+            MultiVector               Au    = A * *u;
+            const std::vector<double> sum   = column_products(*u, Au);
+            Au.local()                      = selection.col(0).asDiagonal() * Au.local();
+            const std::vector<double> share = column_products(*u, Au);
+            for (std::size_t j = 0; j < whole.size(); ++j)
+              {
+                whole[j] += sum[j];
+                part[j] += share[j];
+              }
+          }
+      }
+
+      std::vector<double> whole, part;
+    };
+  } // namespace
+
+  std::vector<double> energy_shares(const SecondOrderSystem                 &bodies,
+                                    const MultiVector                       &selection,
+                                    const std::vector<std::complex<double>> &lambda,
+                                    const MultiVector                       &real_part,
+                                    const MultiVector                       &imaginary_part)
+  {
+    const QuadraticForms mass(*bodies.mass, selection, real_part, imaginary_part),
+      stiffness(*bodies.stiffness, selection, real_part, imaginary_part);
+    std::vector<double> shares;
+    for (std::size_t j = 0; j < lambda.size(); ++j)
+      shares.push_back((std::norm(lambda[j]) * mass.part[j] + stiffness.part[j]) /
+                       (std::norm(lambda[j]) * mass.whole[j] + stiffness.whole[j]));
+    return shares;
+  }
+
+  std::vector<double> disc_shares(const Model             &model,
+                                  const SecondOrderSystem &bodies,
+                                  const SparseMatrix      &kernel,
+                                  const ComplexModes      &modes)
+  {
+    MultiVector selection(model.free_map(), 1);
+    for (const Node &node : model.nodes())
+      if (belongs_to(node, Component::disc))
+        for (const int dof : node.dofs)
+          if (const int i = selection.map().place(dof); i >= 0)
+            selection(i, 0) = 1.;
+    return energy_shares(bodies, selection, modes.lambda, kernel * *modes.real_part, kernel * *modes.imaginary_part);
+  }
+
+  std::vector<std::string> frictionless_groups(const std::vector<double> &disc_shares, const std::vector<ModeLabel> &pin_labels)
+  {
+    std::vector<std::string> groups;
+    for (std::size_t j = 0; j < disc_shares.size(); ++j)
+      groups.push_back(disc_shares[j] >= half ? "disc" : shape_text(pin_labels[j]));
+    return groups;
+  }
+
+  std::vector<std::string> friction_groups(const std::vector<double>               &disc_shares,
+                                           const std::vector<std::complex<double>> &lambda,
+                                           const std::vector<bool>                 &unstable)
+  {
+    std::vector<std::string> groups;
+    for (std::size_t j = 0; j < disc_shares.size(); ++j)
+      {
+        const bool is_strong = modal_quantities(lambda[j]).divergence_rate > weak_divergence;
+        groups.push_back(disc_shares[j] >= half ? "disc" :
+                         !unstable[j]           ? "other pins" :
+                         is_strong              ? "unstable pins" :
+                                                  "weakly unstable pins");
+      }
+    return groups;
+  }
+} // namespace Squeal
