@@ -9,7 +9,7 @@ NO_SHAPES = "Output/Mode shapes=none"
 def truncations(runs):
     results = runs("frictionless_frequency", "studies/frictionless_frequency.prm")
     rows = {row["component modes"]: row for row in results.table("reduction_truncations.csv")}
-    for name, *quoted in (("6000 Hz", "30", "36", "36"), ("7500 Hz", "38", "48", "36"), ("10000 Hz", "53", "96", "60")):
+    for name, *quoted in (("6000 Hz", "30", "36", "36"), ("7500 Hz", "38", "72", "36"), ("10000 Hz", "53", "120", "60")):
         for column, number in zip(("disc [-]", "pins free [-]", "pins sliding [-]"), quoted):
             yield Number(f"{name}, {column}", number, rows[name][column])
 
