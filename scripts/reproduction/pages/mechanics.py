@@ -17,5 +17,5 @@ def locking(runs):
     def excess(ratio):
         return 100 * (bending(runs, ratio) / bending(runs, ratio, *QUADRATIC, suffix="_quadratic") - 1)
 
-    for ratio, quoted in ((0.47, "1.1"), (0.49, "1.8"), (0.499, "2.7")):
+    for ratio, quoted in ((0.47, "1.4"), (0.49, "2.3"), (0.499, "3.6")):
         yield Number(f"at {ratio} [%]", quoted, excess(ratio) - excess(0.25))
