@@ -1,12 +1,10 @@
 #include <squeal/base/assignment.h>
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/estimates/reduction_errors.h>
+#include <squeal/estimates/subspaces.h>
 #include <squeal/linear_algebra/communication.h>
-
-#include <Eigen/Eigenvalues>
 
 #include <boost/algorithm/string/join.hpp>
 
@@ -20,46 +18,10 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    const Decision independent("squared norm of a direction of a cluster / largest", 1e-12);
     /// Weight of MAC-M of single modes beside the share in the span of their cluster.
     constexpr double member_weight = 0.1;
     /// |λ̂ − λ| / |λ| beyond which a reduced mode is a counterpart only if there is no other.
     constexpr double far = 0.3;
-
-    /// Xᴴ M Y from the Gram matrix of [Re X, Im X] and [Re Y, Im Y].
-    ComplexDenseMatrix hermitian_products(const DenseMatrix &G)
-    {
-      const Eigen::Index m = G.rows() / 2, n = G.cols() / 2;
-      ComplexDenseMatrix result(m, n);
-      result.real() = G.topLeftCorner(m, n) + G.bottomRightCorner(m, n);
-      result.imag() = G.topRightCorner(m, n) - G.bottomLeftCorner(m, n);
-      return result;
-    }
-
-    /// W with Wᴴ G W = 1 for a Hermitian positive semidefinite G, without the directions that are rounding errors.
-    ComplexDenseMatrix whitening(const ComplexDenseMatrix &G)
-    {
-      const Eigen::SelfAdjointEigenSolver<ComplexDenseMatrix> pairs(G);
-      const Eigen::VectorXd                                  &values = pairs.eigenvalues(); // ascending
-      const Eigen::Index                                      n_kept = std::count_if(
-                                             values.begin(), values.end(), [&values](const double value) { return independent.exceeded_by(value / values[values.size() - 1]); });
-      return pairs.eigenvectors().rightCols(n_kept) * values.tail(n_kept).cwiseSqrt().cwiseInverse().asDiagonal();
-    }
-
-    /// sin² of the largest principal angle between two sets of vectors with Gram matrices A and B and products C.
-    double largest_angle(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, const ComplexDenseMatrix &C)
-    {
-      const ComplexDenseMatrix products = whitening(A).adjoint() * C * whitening(B);
-      const ComplexDenseMatrix squares =
-        products.cols() <= products.rows() ? ComplexDenseMatrix(products.adjoint() * products) : products * products.adjoint();
-      return std::max(0., 1. - squares.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff());
-    }
-
-    /// Parts of ψᴴMψ that lie in the span of vectors with Gram matrix A, of which C are the products with all ψ; B those of ψ.
-    Eigen::RowVectorXd shares_in_span(const ComplexDenseMatrix &A, const ComplexDenseMatrix &C, const ComplexDenseMatrix &B)
-    {
-      return (whitening(A).adjoint() * C).colwise().squaredNorm().cwiseQuotient(B.diagonal().real().transpose());
-    }
 
     /// |ω̂ − ω| / ω
     double frequency_difference(const Complex &found, const Complex &exact)
@@ -159,7 +121,8 @@ namespace Squeal
         std::vector<int> counterparts;
         for (const int i : all)
           counterparts.push_back(match[i]);
-        const double angle = largest_angle(A(all, all), B(counterparts, counterparts), C(all, counterparts));
+        const double angle =
+          std::max(0., 1. - squared_cosines(A(all, all), B(counterparts, counterparts), C(all, counterparts)).minCoeff());
         for (const int i : all)
           {
             errors[i].cluster_size = all.size();

@@ -1,9 +1,7 @@
 #include <squeal/base/text.h>
+#include <squeal/estimates/subspaces.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/paper_statements.h>
-
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -413,40 +411,32 @@ namespace Squeal
                          const FrictionModes           &after,
                          const std::vector<StatedMode> &stated_after)
   {
-    using Matrix          = Eigen::MatrixXcd;
-    const SparseMatrix &M = *frictionless.linearisation.coupled.mass;
-    // XᴴMY of complex modes
-    const auto products = [&M](const ComplexModes &X, const ComplexModes &Y) {
-      const MultiVector M_re = M * *Y.real_part, M_im = M * *Y.imaginary_part;
-      const DenseMatrix re = gram(*X.real_part, M_re) + gram(*X.imaginary_part, M_im),
-                        im = gram(*X.real_part, M_im) - gram(*X.imaginary_part, M_re);
-      return Matrix(re.cast<std::complex<double>>() + std::complex<double>(0., 1.) * im);
+    const auto both_parts = [](const FrictionModes &friction) {
+      return join({friction.modes.real_part.get(), friction.modes.imaginary_part.get()});
     };
-    const auto growing = [](const std::vector<StatedMode> &modes) {
+    const SparseMatrix      &M = *frictionless.linearisation.coupled.mass;
+    const MultiVector        X = both_parts(before), Y = both_parts(after), MY = M * Y;
+    const ComplexDenseMatrix G_uu = hermitian_products(gram(X, M * X)), G_dd = hermitian_products(gram(Y, MY)),
+                             G_ud = hermitian_products(gram(X, MY));
+    const auto growing            = [](const std::vector<StatedMode> &modes) {
       std::vector<Eigen::Index> places;
       for (std::size_t j = 0; j < modes.size(); ++j)
         if (grows(modes[j]))
           places.push_back(static_cast<Eigen::Index>(j));
       return places;
     };
-    const auto   u = growing(stated_before), d = growing(stated_after);
-    const Matrix G_uu = products(before.modes, before.modes), G_dd = products(after.modes, after.modes),
-                 G_ud = products(before.modes, after.modes);
+    const auto u = growing(stated_before), d = growing(stated_after);
 
     GrowthKept result;
     result.share_before.assign(stated_before.size(), 0.);
     result.share_after.assign(stated_after.size(), 0.);
     if (u.empty() || d.empty())
       return result;
-    // G = L Lᴴ: L⁻¹ C holds the coefficients in an orthonormal basis of the span
-    const Eigen::LLT<Matrix> U(Matrix(G_uu(u, u))), D(Matrix(G_dd(d, d)));
-    const Matrix in_u = U.matrixL().solve(Matrix(G_ud(u, Eigen::all))), in_d = D.matrixL().solve(Matrix(G_ud(Eigen::all, d).adjoint()));
-    for (std::size_t j = 0; j < stated_after.size(); ++j)
-      result.share_after[j] = in_u.col(j).squaredNorm();
-    for (std::size_t j = 0; j < stated_before.size(); ++j)
-      result.share_before[j] = in_d.col(j).squaredNorm();
-    const Matrix both = D.matrixL().solve(Matrix(in_u(Eigen::all, d).adjoint()));
-    result.n_kept     = (Eigen::BDCSVD<Matrix>(both).singularValues().array() > M_SQRT1_2).count();
+    const Eigen::RowVectorXd in_d = shares_in_span(G_dd(d, d), G_ud(Eigen::all, d).adjoint(), G_uu),
+                             in_u = shares_in_span(G_uu(u, u), G_ud(u, Eigen::all), G_dd);
+    result.share_before.assign(in_d.begin(), in_d.end());
+    result.share_after.assign(in_u.begin(), in_u.end());
+    result.n_kept = (squared_cosines(G_uu(u, u), G_dd(d, d), G_ud(u, d)).array() > 0.5).count();
     return result;
   }
 
