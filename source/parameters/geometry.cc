@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/pin_face.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,24 +37,15 @@ namespace Squeal
         refuse(text("Geometry/", name, " is ", exact_text(value), ", but must be positive"), name, "set a positive value");
     }
 
-    /// Number of intervals k on a third of the circle of a pin whose face has 3 k (k + 1) + 1 nodes, not rounded.
-    double intervals(const double nodes_per_pin_face)
-    {
-      return (std::sqrt(12. * nodes_per_pin_face - 3.) - 3.) / 6.;
-    }
-
-    unsigned int nodes(const unsigned int intervals)
-    {
-      return 3 * intervals * (intervals + 1) + 1;
-    }
-
     void check_nodes_per_pin_face(const unsigned int nodes_per_pin_face)
     {
-      const unsigned int below = nodes_per_pin_face < 7 ? 1 : std::floor(intervals(nodes_per_pin_face) + 1e-9);
-      if (nodes(below) == nodes_per_pin_face)
+      const unsigned int below = nodes_per_pin_face < 7 ? 1 : std::floor(blocks_of_pin_face(nodes_per_pin_face) + 1e-9);
+      if (nodes_of_pin_face(below) == nodes_per_pin_face)
         return;
       const unsigned int above   = nodes_per_pin_face < 7 ? 1 : below + 1;
-      const unsigned int nearest = nodes_per_pin_face - nodes(below) <= nodes(above) - nodes_per_pin_face ? nodes(below) : nodes(above);
+      const unsigned int nearest = nodes_per_pin_face - nodes_of_pin_face(below) <= nodes_of_pin_face(above) - nodes_per_pin_face ?
+                                     nodes_of_pin_face(below) :
+                                     nodes_of_pin_face(above);
       refuse(text("Geometry/Nodes per pin face is ", nodes_per_pin_face,
                   ", but a pin is filled by three blocks of k x k elements, which gives 3 k (k + 1) + 1 nodes: "
                   "7, 19, 37, 61, ..."),

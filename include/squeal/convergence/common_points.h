@@ -1,0 +1,61 @@
+#pragma once
+
+#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/model/model.h>
+#include <squeal/modes/complex_modes.h>
+#include <squeal/parameters/materials.h>
+
+#include <complex>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /**
+   * Points in the bodies of a scene at which displacements on different meshes and with different elements are compared:
+   * x_q with masses m_q [kg], so that Σ_q m_q |u(x_q)|² is the mass integral of |u|² over all bodies.
+   */
+  struct CommonPoints
+  {
+    struct Body
+    {
+      std::string                   name;
+      std::vector<dealii::Point<3>> points; ///< [m]
+      std::vector<double>           masses; ///< [kg]
+    };
+    std::vector<Body> bodies;
+
+    int n() const;
+  };
+
+  /**
+   * The points of Gauss' rule with two points per direction in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest
+   * mesh serve all finer ones. The same on every process.
+   */
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials);
+
+  /**
+   * E, 3 n_q × n: the displacement at common points times √m_q from free dofs of a mesh, so that (E u)ᵀ E v is the mass
+   * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count: incompatible modes
+   * of an element, which vanish with the square of its size, do not.
+   *
+   * Throws MeshError if the mesh lacks a body.
+   */
+  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model);
+
+  /// Modes by their displacements at common points, each component times √m_q: 3 n_q × k.
+  struct ModesAtPoints
+  {
+    std::vector<std::complex<double>> lambda; ///< [rad/s], in the order of the modes
+    MultiVector                       real_part, imaginary_part;
+  };
+
+  /**
+   * Complex modes at common points.
+   *
+   * @param displacements E of the mesh of the modes
+   * @param kernel        T_c: displacements of the bodies from coupled ones
+   */
+  ModesAtPoints at_points(const SparseMatrix &displacements, const SparseMatrix &kernel, const ComplexModes &modes);
+} // namespace Squeal
