@@ -1,0 +1,184 @@
+"""The cases of doc/extremes.md as data: what is set, and what has to come of it."""
+
+import dataclasses
+
+# A pin on each side of a disc of one layer: 1200 dofs, a second
+BASE = """
+subsection Geometry
+  set Top pin radii = 0.2275
+  set Top pin angles = 0
+  set Bottom pin radii = 0.2275
+  set Bottom pin angles = 0
+  set Nodes per pin face = 7
+  set Pin layers = 2
+  set Disc layers = 1
+  set Element size = 0.08
+end
+subsection Output
+  set Mode shapes = none
+end
+"""
+
+DISC_MODULUS, DISC_DENSITY = 2.1e11, 7850.0
+OUTER_RADIUS, PIN_DIAMETER = 0.3155, 0.052
+RIGHT = "right"
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """One scene: the results must be right, or the run refused with a message that contains `expected`."""
+
+    group: str
+    value: str
+    settings: tuple
+    expected: str = RIGHT
+    argument_count: bool = True
+    quick: bool = False  # among those that ctest runs
+
+    @property
+    def name(self):
+        return f"{self.group}, {self.value}"
+
+
+CASES = []
+
+
+def add(group, value, *settings, **options):
+    CASES.append(Case(group, value, settings, **options))
+
+
+def band(frequency):
+    return f"Band/Maximum frequency={frequency!r}"
+
+
+def mount(radial, tangential, axial):
+    return f"Mounts/Elastic mounts=disc_bore: {radial!r}, {tangential!r}, {axial!r}"
+
+
+def pins(radii, angles, sides=("Top", "Bottom")):
+    """Settings of pins; sides that are not named have none."""
+    return tuple(f"Geometry/{side} pin {what}={', '.join(map(str, values)) if side in sides else ''}"
+                 for side in ("Top", "Bottom") for what, values in (("radii", radii), ("angles", angles)))
+
+
+NO_MOUNT = "Mounts/Elastic mounts="
+CONSISTENT = "Operation/Radial dissipation=consistent"
+UNRESOLVED = "the mesh does not resolve"
+
+# ------------------------------------------------------------------ friction
+
+for mu in (0, 1e-6, 0.1, 0.4, 1, 2, 3, 5, 10):
+    add("friction coefficient", f"{mu:g}", f"Operation/Friction coefficient={mu}", quick=mu in (0, 10))
+add("friction coefficient", "10.1", "Operation/Friction coefficient=10.1", expected="Friction coefficient", quick=True)
+
+# ------------------------------------------------------------------ Poisson's ratio
+
+for element, setting in (("trilinear", ()), ("quadratic", ("Discretization/Degree=2",))):
+    for ratio in (-0.9, 0, 0.45, 0.49, 0.499, 0.4999):
+        add(f"Poisson's ratio of the pins, {element}", f"{ratio:g}", f"Pin material/Poisson ratio={ratio}", *setting,
+            quick=ratio == 0.4999 and element == "trilinear")
+    add(f"Poisson's ratio of disc and pins, {element}", "0.4999", "Pin material/Poisson ratio=0.4999", "Disc material/Poisson ratio=0.4999",
+        *setting)
+add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio=0.5", expected="Poisson ratio", quick=True)
+
+# ------------------------------------------------------------------ materials
+
+for exponent in range(-6, 7):
+    ratio = 10.0**exponent
+    # Slow waves are resolved up to a lower frequency
+    end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
+    add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
+        quick=exponent in (-6, 6))
+add("Young's modulus pin to disc", "1e-6, 5 kHz", f"Pin material/Young modulus={1e-6 * DISC_MODULUS!r}", expected=UNRESOLVED)
+for exponent in range(-6, 7):
+    ratio = 10.0**exponent
+    end = 5000 * min(1, (1 / ratio) ** 0.5)
+    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent in (-6, 6))
+add("density pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
+
+# ------------------------------------------------------------------ shapes
+
+for ratio in (1e-3, 3e-3, 1e-2, 0.03, 0.1, 0.3, 1):
+    end = 5000 * min(1, ratio / 0.15)
+    add("thickness / radius of the disc", f"{ratio:g}", f"Geometry/Disc thickness={ratio * OUTER_RADIUS!r}", band(end), quick=ratio == 1e-3)
+for ratio in (0.02, 0.05, 0.1, 0.5, 1, 2, 5, 10, 20):
+    end = 5000 * min(1, 1 / ratio)
+    add("height / diameter of the pins", f"{ratio:g}", f"Geometry/Pin height={ratio * PIN_DIAMETER!r}",
+        f"Geometry/Pin layers={max(2, round(2 * ratio))}", band(end), quick=ratio in (0.02, 20))
+
+# ------------------------------------------------------------------ mounts and rotation
+
+add("mounts", "none", NO_MOUNT)
+for exponent in (0, 3, 6, 8, 9, 10, 12, 15, 18, 20):
+    add("mounts in all directions [N/m^3]", f"1e{exponent}", mount(*3 * (10.0**exponent,)), quick=exponent == 20)
+add("mounts in all directions [N/m^3]", "0", mount(0, 0, 0))
+add("mounts: radial, tangential, axial [N/m^3]", "0, 0, 1e20", mount(0, 0, 1e20))
+add("mounts: radial, tangential, axial [N/m^3]", "1e20, 1, 0", mount(1e20, 1, 0))
+for speed in (0, 1e-9, 1e-6, 1e-3, 1, 1e3, 1e6, 1e9):
+    add("rotation speed, dissipation [rad/s]", f"{speed:g}", CONSISTENT, f"Operation/Rotation speed={speed!r}", quick=speed in (0, 1e-6),
+        **({"expected": "Rotation speed"} if speed == 0 else {}))
+add("rotation speed, dissipation published [rad/s]", "1e-3", "Operation/Radial dissipation=published", "Operation/Rotation speed=1e-3")
+for speed in (1e2, 1e4, 1e9):
+    add("rotation speed, gyroscopic forces [rad/s]", f"{speed:g}", "Operation/Gyroscopic forces=true", f"Operation/Rotation speed={speed!r}")
+for load in (0, 1e-6, 1, 1e3, 1e6, 1e9):
+    add("load, dissipation [N]", f"{load:g}", CONSISTENT, f"Operation/Load per side={load!r}", quick=load == 1e9)
+for load in (0, 1e-6, 1e9):
+    add("load, steady sliding [N]", f"{load:g}", CONSISTENT, "Steady sliding/Contact state=steady sliding", f"Operation/Load per side={load!r}",
+        **({"expected": "Load per side"} if load == 0 else {}))
+
+# ------------------------------------------------------------------ bands
+
+add("end of the band [Hz]", "1", band(1.0), expected="no mode of the coupled system lies in the band", quick=True)
+add("end of the band [Hz]", "200: no mode", band(200.0), expected="no mode of the coupled system lies in the band")
+add("end of the band [Hz]", "280: one mode", band(280.0))
+add("end of the band [Hz]", "12000", band(12000.0))
+add("end of the band [Hz]", "100000", band(1e5), expected=UNRESOLVED, quick=True)
+add("end of the band [Hz]", "0", band(0.0), expected="Maximum frequency")
+add("end of the band [Hz]", "100000, mesh 20 times smaller",
+    *(f"Geometry/{name}={value / 20!r}" for name, value in (
+        ("Disc inner radius", 0.1505), ("Disc outer radius", 0.3155), ("Disc thickness", 0.0463), ("Pin diameter", 0.052),
+        ("Pin height", 0.0318), ("Element size", 0.08), ("Top pin radii", 0.2275), ("Bottom pin radii", 0.2275))), band(1e5))
+
+# ------------------------------------------------------------------ layouts and meshes
+
+add("layout", "one pin", *pins([0.2275], [0], sides=("Top",)))
+add("layout", "three pins, one side only", *pins([0.2275] * 3, [-20, 0, 20], sides=("Top",)))
+add("layout", "60 pins", *pins([0.2275] * 30, [12 * k for k in range(30)]), "Geometry/Pin diameter=0.03", "Geometry/Pin layers=1")
+add("layout", "no pin", *pins([], [], sides=()), expected="pin")
+add("mesh", "one layer everywhere", "Geometry/Pin layers=1", quick=True)
+add("mesh", "coarsest: 0.0825 m", "Geometry/Pin layers=1", "Geometry/Element size=0.0825")
+add("mesh", "too coarse: 0.083 m", "Geometry/Element size=0.083", expected="Element size")
+add("mesh", "fine: 61 nodes per pin, 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02", "Geometry/Disc layers=2",
+    "Geometry/Pin layers=6")
+
+# ------------------------------------------------------------------ damping
+
+for beta in (1e-9, 1e-6, 2.6e-5):
+    add("Rayleigh beta [s]", f"{beta:g}", f"Disc material/Rayleigh beta={beta!r}", f"Pin material/Rayleigh beta={beta!r}", quick=beta == 2.6e-5)
+for beta in (1e-4, 1e9):
+    add("Rayleigh beta [s]", f"{beta:g}", f"Disc material/Rayleigh beta={beta!r}", expected="Rayleigh beta")
+for alpha in (1, 1e3, 1e4, 3e4, 1e5, 1e9):
+    add("Rayleigh alpha [1/s]", f"{alpha:g}", f"Disc material/Rayleigh alpha={alpha!r}", f"Pin material/Rayleigh alpha={alpha!r}",
+        quick=alpha == 1e4)
+for slope in (-10, 10):
+    add("friction slope [s/m]", f"{slope:g}", f"Operation/Friction slope={slope}")
+
+# ------------------------------------------------------------------ contact nodes that nearly coincide
+
+for diameter in (1e-3, 1e-4, 1e-5):
+    add("pins of diameter [m]", f"{diameter:g}", f"Geometry/Pin diameter={diameter!r}", f"Geometry/Pin height={diameter!r}")
+add("pins of diameter [m]", "1e-6", "Geometry/Pin diameter=1e-6", "Geometry/Pin height=1e-6", expected="Pairing tolerance")
+# The chord 2 r sin(angle / 2) is the diameter 0.052 m at 13.1273 degrees
+for angle, gap in ((13.2, "3e-4"), (13.13, "1e-5")):
+    add("gap of two pins [m]", gap, *pins([0.2275] * 2, [0, angle]))
+add("gap of two pins [m]", "overlap", *pins([0.2275] * 2, [0, 13.0]), expected="pins")
+
+# ------------------------------------------------------------------ a free body
+
+add("free disc", "friction", NO_MOUNT)
+add("free disc", "soft pins", NO_MOUNT, "Pin material/Young modulus=1.9e7", band(500.0))
+add("free disc", "dissipation", NO_MOUNT, CONSISTENT)
+add("free disc", "Rayleigh damping", NO_MOUNT, "Disc material/Rayleigh beta=1e-6", "Pin material/Rayleigh alpha=10")
+add("free disc", "one pin", NO_MOUNT, *pins([0.2275], [0], sides=("Top",)))
+add("free disc", "friction coefficient 10", NO_MOUNT, "Operation/Friction coefficient=10")
+add("free disc", "gyroscopic forces", NO_MOUNT, "Operation/Gyroscopic forces=true", expected="Gyroscopic forces")

@@ -1,0 +1,204 @@
+"""Runs a case and says whether the program is right, refuses with a reason, or is wrong."""
+
+import csv
+import dataclasses
+import json
+import math
+import os
+import pathlib
+import re
+import subprocess
+
+import numpy as np
+
+import exported_matrices
+import parameter_file
+from extremes import oracle
+from extremes.cases import BASE, RIGHT
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal"))
+
+# Largest relative difference of an eigenvalue from the oracle's
+TOLERANCE = 1e-6
+# Largest residual of a mode in the tables
+LARGEST_RESIDUAL = 1e-8
+# Eigenvalues that near to the end of the band or to its radius may be listed or not
+EDGE = 1e-7
+# |lambda| / end of the band up to which the program takes lambda for zero
+ZERO = 1e-4
+# Time that a run may take [s]
+TIME_LIMIT = 300
+
+
+@dataclasses.dataclass
+class Row:
+    """What came of a case."""
+
+    group: str
+    value: str
+    outcome: str = ""
+    modes: str = "–"
+    residual: str = "–"
+    count: str = "–"
+    oracle: str = "–"
+    deviation: str = "–"
+    remark: str = ""
+
+    @property
+    def is_as_expected(self):
+        return not self.outcome.startswith("WRONG")
+
+
+class Wrong(Exception):
+    """The program did what it must not do."""
+
+
+def call(*arguments, folder):
+    """The finished process; one that does not end, crashes, or exits with other than 0 or 1, is wrong."""
+    try:
+        process = subprocess.run([str(SQUEAL), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
+                                 stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        raise Wrong(f"no end within {TIME_LIMIT} s") from None
+    if process.returncode not in (0, 1):
+        raise Wrong(f"exit status {process.returncode}: {process.stderr[-300:]}")
+    process.stderr = "".join(line for line in process.stderr.splitlines(keepends=True) if not line.startswith("[hwloc"))
+    return process
+
+
+def read_table(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def eigenvalues_of(folder):
+    """lambda of the complex modes and the real eigenvalues in the tables."""
+    modes = [complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"]))
+             for row in read_table(folder / "complex_modes.csv")]
+    path = folder / "real_eigenvalues.csv"
+    real = [float(row["growth rate [1/s]"]) for row in read_table(path)] if path.exists() else []
+    return np.array(modes, dtype=complex), np.array(real, dtype=float)
+
+
+def check_numbers(folder):
+    """No cell of a table may be infinite or not a number."""
+    for path in folder.glob("*.csv"):
+        for row in read_table(path):
+            for column, cell in row.items():
+                if cell and cell.strip().lower().lstrip("+-") in ("nan", "inf", "infinity"):
+                    raise Wrong(f"{path.name} has {cell} in {column}")
+
+
+def judge(case, folder):
+    """The row of a case; runs below the folder."""
+    row = Row(case.group, case.value)
+    (folder / "scene.prm").write_text(BASE, encoding="utf-8")
+    try:
+        settings = [word for setting in case.settings for word in ("--set", setting)]
+        process = call("scene.prm", "--output", "run", "--set", "Output/Write matrices=true", *settings, folder=folder)
+        if process.returncode == 1:
+            judge_refusal(case, process, folder, row)
+        else:
+            judge_results(case, process, folder, row)
+            if case.expected is not RIGHT:
+                raise Wrong(f"{row.outcome}, but should be refused: {case.expected}")
+    except Wrong as wrong:
+        row.outcome = "WRONG"
+        row.remark = str(wrong)
+    return row
+
+
+def judge_refusal(case, process, folder, row):
+    """One error with reason, place and what to change, nothing left behind."""
+    reason = re.match(r"^error: (.*)\n  where:  .*\n  change: .*\n$", process.stderr.lstrip("\n"))
+    if not reason:
+        raise Wrong(f"no clear error: {process.stderr[-400:]!r}")
+    if (folder / "run").exists():
+        raise Wrong("refused, but left results")
+    row.outcome, row.remark = "refused", reason[1]
+    if case.expected is RIGHT or case.expected not in process.stderr:
+        raise Wrong(f"refused: {reason[1]}")
+
+
+def judge_results(case, process, folder, row):
+    run = folder / "run"
+    check_numbers(run)
+    parameters = parameter_file.read_parameters(run / "parameters.prm")
+    band = 2 * math.pi * float(parameters["Band/Maximum frequency"])
+    friction_coefficient = float(parameters["Operation/Friction coefficient"])
+    modes, real = eigenvalues_of(run)
+    row.modes = f"{len(modes)}" + (f" + {len(real)} real" if len(real) else "")
+
+    # ------------------------------------------------ what the program says itself
+    table = read_table(run / "complex_modes.csv")
+    residual = max(float(line["residual [-]"]) for line in table)
+    row.residual = f"{residual:.0e}"
+    found, counted = map(int, re.search(r"Real modes .* (\d+) found, (\d+) counted by inertia", process.stdout).groups())
+    row.count = f"inertia {counted}"
+    if found != counted:
+        raise Wrong(f"{found} real modes found, {counted} counted")
+    if case.argument_count:
+        row.count += argument_count(case, folder)
+
+    # ------------------------------------------------ an independent solution
+    matrices = exported_matrices.read_matrices(run)
+    worst, methods, own_error, dense_error = 0.0, [], 0.0, 0.0
+    for what, mu, actual in (("real modes", 0.0, None), ("complex modes", friction_coefficient, np.concatenate([modes, real]))):
+        if actual is None:
+            matrices_here = {**matrices, "C": 0 * matrices["C"], "C_b": 0 * matrices["C_b"], "G": 0 * matrices["G"]}
+            actual = 2j * math.pi * np.array([float(line["frequency [Hz]"]) for line in read_table(run / "real_modes.csv")])
+            radius = band
+        else:
+            matrices_here, radius = matrices, 1.01**0.5 * band
+        solution = oracle.Oracle(matrices_here, mu, band / (2 * math.pi)).solve(radius)
+        worst = max(worst, compare(what, actual, solution.values, band, radius))
+        methods.append(solution.method)
+        own_error, dense_error = max(own_error, solution.error), max(dense_error, solution.first_error)
+    row.oracle = " / ".join(methods)
+    row.deviation = f"{worst:.0e}"
+    if residual > LARGEST_RESIDUAL:
+        raise Wrong(f"residual {residual:.1e}")
+    if worst > TOLERANCE:
+        raise Wrong(f"eigenvalues differ by {worst:.1e} (oracle's own error {own_error:.0e})")
+    row.outcome = "right"
+    if own_error > TOLERANCE / 10:
+        row.outcome, row.remark = "not judged", f"the oracle's own error is {own_error:.0e}"
+    elif dense_error > TOLERANCE:
+        row.remark = f"LAPACK alone is off by {dense_error:.0e}"
+    digits = json.loads((run / "run.json").read_text(encoding="utf-8"))["quantities"].get("digits of the eigenvalues [-]")
+    if digits is not None and digits < 6:
+        row.remark = (row.remark + "; " if row.remark else "") + f"{digits:.0f} digits left"
+
+
+def compare(what, actual, expected, band, radius):
+    """Largest relative difference; counts that differ are wrong."""
+    def certain(values):
+        return [value for value in values
+                if abs(value) > ZERO * band and abs(abs(value) - radius) > EDGE * radius and abs(value.imag - band) > EDGE * band]
+
+    inside = [value for value in expected if value.imag <= band * (1 + EDGE) and abs(value) <= radius * (1 + EDGE)]
+    inside = [complex(value.real, 0) if value.imag <= 1e-7 * abs(value) else value for value in inside]
+    actual, inside = certain(actual), certain(inside)
+    for kind, of_kind in (("oscillating", lambda value: value.imag > 0), ("real", lambda value: value.imag == 0)):
+        n_actual, n_inside = sum(map(of_kind, actual)), sum(map(of_kind, inside))
+        if n_actual != n_inside:
+            raise Wrong(f"{what}: {n_actual} {kind} eigenvalues in the tables, {n_inside} exist")
+    return oracle.match(actual, inside)
+
+
+def argument_count(case, folder):
+    """Number of complex modes by the argument principle, which a sweep of one friction coefficient can ask for."""
+    parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
+    mu = parameters["Operation/Friction coefficient"]
+    settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",
+                "Sweep/Number of friction coefficients=1", f"Sweep/Count modes at={mu}", "Sweep/Compare dissipation=false"]
+    process = call("scene.prm", "--output", "count", *(word for setting in settings for word in ("--set", setting)), folder=folder)
+    if process.returncode != 0:
+        return f", argument refused ({process.stderr.strip().splitlines()[0][7:]})"
+    check_numbers(folder / "count")
+    counts = read_table(folder / "count" / "argument_counts.csv")[0]
+    counted, tracked = int(counts["modes counted [-]"]), int(counts["modes of the sweep [-]"])
+    if counted != tracked:
+        raise Wrong(f"argument principle: {counted} modes counted, {tracked} in the sweep")
+    return f", argument {counted}"

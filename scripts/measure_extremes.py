@@ -1,0 +1,49 @@
+#!/usr/bin/env python3
+"""Runs the cases of doc/extremes.md, holds each against an independent solution, and prints the table of that page.
+
+    scripts/measure_extremes.py                    # all cases, about ten minutes
+    scripts/measure_extremes.py --only mounts      # those whose name contains a word
+    scripts/measure_extremes.py --write            # all, and writes the table into doc/extremes.md
+
+Exits with 1 where a case is neither right nor refused as it should be. The environment variable SQUEAL names the program.
+"""
+
+import argparse
+import collections
+import os
+import pathlib
+import sys
+import tempfile
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from extremes import page
+from extremes.cases import CASES
+from extremes.judge import judge
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
+    parser.add_argument("--quick", action="store_true", help="only those that the tests run")
+    parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keeps the runs there")
+    parser.add_argument("--write", action="store_true", help="writes the table into doc/extremes.md")
+    arguments = parser.parse_args()
+    chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)]
+    rows = []
+    print(page.HEAD)
+    for number, case in enumerate(chosen):
+        with tempfile.TemporaryDirectory() as temporary:
+            folder = arguments.keep / f"{number:03d}" if arguments.keep else pathlib.Path(temporary)
+            folder.mkdir(parents=True, exist_ok=True)
+            rows.append(judge(case, folder))
+        print(page.line(rows[-1]), flush=True)
+    outcomes = collections.Counter(row.outcome for row in rows)
+    print(f"\n{len(rows)} cases: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()))
+    if arguments.write:
+        page.write(rows)
+    return 0 if all(row.is_as_expected for row in rows) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
