@@ -167,6 +167,7 @@ namespace Squeal
     damping.declare(declarations);
     reduction.declare(declarations);
     sweep.declare(declarations);
+    ingredients.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -287,6 +288,7 @@ namespace Squeal
     damping.check();
     reduction.check();
     sweep.check();
+    ingredients.check();
     if (study->check != nullptr)
       study->check(*this);
     check_damping_in_band();

@@ -52,6 +52,18 @@ namespace Squeal
     return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
   }
 
+  FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes)
+  {
+    FrictionModes result;
+    result.modes = std::move(modes);
+    // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
+    result.modes.n_rigid_body = frictionless.real.n_rigid_body;
+    result.unstable           = unstable_modes(result.modes);
+    result.labels             = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
+    mark_doublets(result.labels, growth_rates(result));
+    return result;
+  }
+
   FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run, const std::string &step)
   {
     const Parameters     &parameters = run.parameters;
@@ -60,8 +72,7 @@ namespace Squeal
     const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
     run.progress.begin(step);
-    FrictionModes result;
-    ComplexModes &modes = result.modes;
+    ComplexModes modes;
     if (parameters.solvers.complex_solver == ComplexSolver::krylov)
       modes = krylov_modes(coupled, *frictionless.inverse, frictionless.shift, mu, omega_max, real.eigenvalues.size(), parameters.solvers,
                            run.progress);
@@ -75,16 +86,12 @@ namespace Squeal
       }
     if (modes.lambda.empty())
       throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
-    // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
-    modes.n_rigid_body = real.n_rigid_body;
-
-    result.unstable = unstable_modes(modes);
-    result.labels   = frictionless.identify(*modes.real_part, modes.imaginary_part.get());
-    mark_doublets(result.labels, growth_rates(result));
-    result.cost = run.progress.finish(text(modes.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
-                                           modes.n_rigid_body > 0 ? text(", ", modes.n_rigid_body, " of a rigid body") : "",
-                                           modes.real_values.empty() ? "" : text(", ", modes.real_values.size(), " real eigenvalues"), "; ",
-                                           modes.summary));
+    FrictionModes       result = named_modes(frictionless, std::move(modes));
+    const ComplexModes &found  = result.modes;
+    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
+                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
+                                           found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
+                                           found.summary));
     return result;
   }
 

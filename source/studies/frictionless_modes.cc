@@ -125,7 +125,7 @@ namespace Squeal
 
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");
-    result.inverse = std::make_unique<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
+    result.inverse = std::make_shared<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
     result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
                                                     result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));

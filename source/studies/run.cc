@@ -34,6 +34,15 @@ namespace Squeal
       results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);
   }
 
+  Run::Run(const Parameters &parameters, const Run &whole, Progress &progress)
+    : parameters(parameters)
+    , communicator(whole.communicator)
+    , progress(progress)
+    , screen(whole.screen)
+    , is_dry(true)
+    , is_root(whole.is_root)
+  {}
+
   void Run::keep_geometry()
   {
     for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)

@@ -77,6 +77,10 @@ namespace
                                                               {"Sweep/Last map value", "2000"},
                                                               {"Sweep/Number of map values", "3"},
                                                               {"Sweep/Map friction coefficients", "3"},
+                                                              {"Ingredients/Frequency tolerance", "2"},
+                                                              {"Ingredients/Divergence tolerance", "0.1"},
+                                                              {"Ingredients/Trial friction slope", "-0.01"},
+                                                              {"Ingredients/Trial damping ratio", "0.01"},
                                                               {"Complex modes/Solver", "residual iteration"},
                                                               {"Complex modes/Shift inverse", "sparse LU"},
                                                               {"Complex modes/Tolerance", "1e-8"},
@@ -172,12 +176,12 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "paper", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "ingredients", "paper", "reduction", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
-  const std::vector<std::string> others = {"Reduction/", "Sweep/", "Complex modes/Iteration", "Complex modes/Maximum"};
+  const std::vector<std::string> others = {"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Iteration", "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -187,7 +191,8 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}, steady)));
+            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"},
+                            steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
                             {"Output/Animation periods", "Output/Animation growth"})));
@@ -195,22 +200,30 @@ TEST(ParameterUsage, OfStability)
 
 TEST(ParameterUsage, OfDissipation)
 {
-  EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=dissipation"}), those_of({"Reduction/", "Sweep/", "Ingredients/", "Steady sliding/Contact",
+                                                           "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
-  const std::vector<std::string> always = {"Reduction/", "Sweep/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
+  const std::vector<std::string> always = {"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Iteration", "Complex modes/Maximum",
+                                           "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
   EXPECT_EQ(unused_alone({"Study=paper", "Steady sliding/Contact state=steady sliding"}), those_of(always));
 }
 
+TEST(ParameterUsage, OfIngredients)
+{
+  // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
+  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Output/"}));
+}
+
 TEST(ParameterUsage, OfReduction)
 {
   const std::vector<std::string> always = {"Sweep/",
+                                           "Ingredients/",
                                            "Output/",
                                            "Steady sliding/Control",
                                            "Steady sliding/Displacement",
@@ -229,7 +242,7 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {"Reduction/",   "Complex modes/",   "Operation/Friction coefficient",
+  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Complex modes/", "Operation/Friction coefficient",
                                            "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};

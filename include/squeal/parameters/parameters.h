@@ -3,6 +3,7 @@
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/damping.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/ingredients.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
@@ -28,6 +29,7 @@ namespace Squeal
     DampingParameters        damping;
     ReductionParameters      reduction;
     SweepParameters          sweep;
+    IngredientsParameters    ingredients;
     SolverParameters         solvers;
     OutputParameters         output;
 

@@ -24,6 +24,9 @@ namespace Squeal
     std::size_t n_growing_real() const;
   };
 
+  /// Names @p modes, however they were found, and decides which of them grow. Their cost is left zero.
+  FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes);
+
   /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
 

@@ -17,7 +17,7 @@ namespace Squeal
     Linearisation                   linearisation;
     ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
     double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
-    std::unique_ptr<UpdatedInverse> inverse;
+    std::shared_ptr<UpdatedInverse> inverse;
     SymmetricModes                  real;                    ///< coupled, in the band and its margin
     Cost                            factorisation, solution; ///< of the inverse, and of the real modes
     std::vector<ModeLabel>          labels;                  ///< of the coupled modes

@@ -41,6 +41,9 @@ namespace Squeal
         std::ostream     &screen,
         Interruption     &interruption);
 
+    /// Part of @p whole that computes with other parameters, reports to a channel of its own, and writes nothing.
+    Run(const Parameters &parameters, const Run &whole, Progress &progress);
+
     const Parameters &parameters;
     const MPI_Comm    communicator;
     Progress         &progress;

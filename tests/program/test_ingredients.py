@@ -1,0 +1,87 @@
+"""`Study = ingredients`: rows of all parts of the model, their effects beside runs of their own, and the cheapest model."""
+
+import math
+import unittest
+
+from program import ProgramTest, distance, eigenvalues, read_table
+
+RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-1e-4", "Damping/Modal damping ratio=0: 1e-5",
+        "Steady sliding/Contact state=steady sliding"]
+
+
+def tried_eigenvalues(folder, ingredient, tried=None):
+    """lambda [rad/s] of a variant, from the table of its modes."""
+    result = []
+    for row in read_table(folder / "ingredients_modes.csv"):
+        if row["ingredient"] == ingredient and tried in (None, row["tried"]) and row["frequency tried [Hz]"]:
+            omega = 2 * math.pi * float(row["frequency tried [Hz]"])
+            result.append(complex(float(row["divergence rate tried [%]"]) / 100 * omega, omega))
+    return result
+
+
+class Ingredients(ProgramTest):
+    def rows(self, folder):
+        return {(row["ingredient"], row["tried"]): row for row in read_table(folder / "ingredients.csv")}
+
+    def test_effects_are_those_of_single_runs(self):
+        """What a variant shares with the reference leaves it as it is when run by itself."""
+        study = self.run_scene("study", "Study=ingredients", *RICH)
+        here = eigenvalues(self.run_scene("here", *RICH))
+        for (ingredient, tried), override in {("radial dissipation", "none"): "Operation/Radial dissipation=none",
+                                              ("friction slope", "none"): "Operation/Friction slope=0",
+                                              ("contact state", "equal load"): "Steady sliding/Contact state=equal load",
+                                              ("rotation of the disc", "on"): "Operation/Gyroscopic forces=true",
+                                              ("band", "to 2500 Hz"): "Band/Maximum frequency=2500"}.items():
+            with self.subTest(ingredient):
+                alone = self.run_scene("alone", *RICH, override)
+                self.assert_same_eigenvalues(tried_eigenvalues(study, ingredient, tried), eigenvalues(alone), 1e-7)
+                row = self.rows(study)[ingredient, tried]
+                unstable = [sum(table_row["unstable [-]"] == "1" for table_row in read_table(folder / "complex_modes.csv"))
+                            for folder in (self.folder / "here", alone)]
+                self.assertEqual([int(row["unstable modes here [-]"]), int(row["unstable modes tried [-]"])], unstable)
+        # All modes of the scene are in every variant's list
+        for (ingredient, tried), row in self.rows(study).items():
+            modes = [mode for mode in read_table(study / "ingredients_modes.csv") if (mode["ingredient"], mode["tried"]) == (ingredient, tried)]
+            self.assertEqual(sum(mode["frequency here [Hz]"] != "" for mode in modes), 0 if row["not tried because"] else len(here), ingredient)
+
+    def test_the_cheapest_model_runs_and_keeps_its_promise(self):
+        study = self.run_scene("study", "Study=ingredients", *RICH)
+        text = (study / "cheapest.prm").read_text(encoding="utf-8")
+        self.assertIn("# cheapest model within 1 % and 0.05 percentage points: friction slope = none, modal damping = none", text)
+        self.assertNotIn("Friction slope", text.split("subsection", 1)[1])
+        process = self.call(str(study / "cheapest.prm"), "--output", "cheapest")
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+        self.assertNotIn("not used here", process.stdout)
+        promise = next(line for line in text.splitlines() if line.startswith("# squeal: "))
+        self.assertIn(promise[1:], process.stdout)
+        found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
+        self.assert_same_eigenvalues(promised, found, 1e-7)
+        # Within the accuracy asked for, mode by mode
+        reference = eigenvalues(self.run_scene("here", *RICH))
+        self.assertEqual(len(found), len(reference))
+        self.assertLess(distance(found, reference), 0.01)
+        together = next(row for (ingredient, _), row in self.rows(study).items() if ingredient == "together")
+        self.assertLess(float(together["change of frequency [%]"]), 1)
+        self.assertLess(float(together["change of divergence rate [percentage points]"]), 0.05)
+        self.assertEqual(together["verdict changed [-]"], "0")
+
+    def test_what_a_scene_cannot_have(self):
+        study = self.run_scene("plain", "Study=ingredients")
+        why = {ingredient: row["not tried because"] for (ingredient, _), row in self.rows(study).items()}
+        self.assertIn("equal shares of the load", why["lift-off"])
+        self.assertIn("Ingredients/Trial friction slope", why["friction slope"])
+        self.assertEqual(why["radial dissipation"], "")
+        self.assertIn("nothing that it has can be left out", (study / "cheapest.prm").read_text(encoding="utf-8"))
+        # A free disc has no rotation in the fixed frame
+        free = self.run_scene("free", "Study=ingredients", "Mounts/Elastic mounts=", "Band/Maximum frequency=3000")
+        self.assertIn("rigid body", self.rows(free)["rotation of the disc", "on"]["not tried because"])
+
+    def test_refusals(self):
+        process = self.call("scene.prm", "--output", "refused", "--set", "Study=ingredients", "--set", "Ingredients/Frequency tolerance=0")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("parameter Ingredients/Frequency tolerance", process.stderr)
+        self.assertFalse((self.folder / "refused").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
