@@ -21,6 +21,7 @@
 #include <iostream>
 #include <new>
 #include <sstream>
+#include <system_error>
 #include <thread>
 
 namespace
@@ -111,6 +112,11 @@ Decides whether a disc rubbed by friction pins squeals.
       }
   }
 
+  void print_error(const std::string &message)
+  {
+    std::cerr << std::flush << "\nerror: " << message << std::endl;
+  }
+
   /// Prints the one message of a failed run; returns the exit status.
   int report(const std::string &message, const bool is_root)
   {
@@ -118,7 +124,7 @@ Decides whether a disc rubbed by friction pins squeals.
     // rest down with them, in case they failed alone.
     if (!is_root)
       std::this_thread::sleep_for(std::chrono::seconds(3));
-    std::cerr << std::flush << "\nerror: " << message << std::endl;
+    print_error(message);
     if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
       MPI_Abort(MPI_COMM_WORLD, 1);
     return 1;
@@ -133,6 +139,17 @@ int main(int argc, char **argv)
   // A limit on the size of files is an error of the write that meets it.
   std::signal(SIGXFSZ, SIG_IGN);
   Squeal::Interruption interruption;
+
+  // Without a current folder, libraries abort when they start.
+  std::error_code                              no_folder;
+  [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
+  if (no_folder)
+    {
+      print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(), "current folder",
+                                    "change to a folder that exists")
+                    .what());
+      return 1;
+    }
 
   // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
   char   without_handler[]   = "-no_signal_handler";

@@ -193,6 +193,17 @@ namespace Squeal
       return result;
     }
 
+    /// A line of Gmsh, which may quote anything from a file: nothing that a terminal would obey, and not of any length.
+    std::string shown(std::string line)
+    {
+      constexpr std::size_t longest_line = 500;
+      if (line.size() > longest_line)
+        line = line.substr(0, longest_line) + "...";
+      std::replace_if(
+        line.begin(), line.end(), [](const unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+      return line;
+    }
+
     /// What Gmsh printed last, from the first error if there is one.
     std::string quoted(const std::string &log)
     {
@@ -206,7 +217,7 @@ namespace Squeal
       std::size_t first = std::min<std::size_t>(first_error - lines.begin(), lines.size() - std::min(lines.size(), quoted_lines));
       std::string text;
       for (const std::size_t end = std::min(lines.size(), first + quoted_lines); first < end; ++first)
-        text += "\n    | " + lines[first];
+        text += "\n    | " + shown(lines[first]);
       return text.empty() ? "It printed nothing" : "Its log:" + text;
     }
 

@@ -202,14 +202,16 @@ namespace Squeal
   }
 #endif
 
-  void limit_resources(const double bytes, const double seconds)
+  void limit_resources([[maybe_unused]] const double bytes, const double seconds)
   {
     const auto limit = [](const auto resource, const double value) {
       const rlim_t whole = static_cast<rlim_t>(std::ceil(value));
       const rlimit both{whole, whole};
       setrlimit(resource, &both);
     };
+#if !defined(__SANITIZE_ADDRESS__) // which reserves more addresses than any machine has memory
     limit(RLIMIT_AS, bytes);
+#endif
     limit(RLIMIT_CPU, 2. * seconds + 10.); // beyond what the parent, which says what happened, allows
     limit(RLIMIT_CORE, 0.);
   }

@@ -3,6 +3,7 @@
 #include <gmsh.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <new>
@@ -124,7 +125,12 @@ namespace Squeal
 
   void start_gmsh()
   {
+    // One of its libraries would keep preferences in the user's folder
+    const char       *variable = std::getenv("HOME");
+    const std::string home     = variable != nullptr ? variable : "/";
+    setenv("HOME", "/nonexistent", 1);
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
+    setenv("HOME", home.c_str(), 1);
     gmsh::option::setNumber("General.Terminal", 1);
     gmsh::option::setNumber("General.NumThreads", 1);
     // An exception could not leave the parallel region in which Gmsh meshes

@@ -75,8 +75,16 @@ namespace Squeal
     left_behind                = !former.empty();
     const std::string this_run = mark + ("process " + std::to_string(::getpid())) + " on " + dealii::Utilities::System::get_hostname() +
                                  " since " + utc_time() + ", `" + command + "`\n";
-    if (const int problem = write_file(file, O_TRUNC, {this_run}, false); problem != 0)
-      throw fail(std::string("the result folder cannot be locked: ") + std::strerror(problem), "check permissions and free space");
+    // Over what is there: a run that is killed, or fails, in between must leave a lock that tells of the run before it
+    int problem = write_file(file, 0, {this_run}, false);
+    if (problem == 0 && ::ftruncate(descriptor, this_run.size()) != 0)
+      problem = errno;
+    if (problem != 0)
+      {
+        if (!left_behind)
+          ::unlink(file.c_str());
+        throw fail(std::string("the result folder cannot be locked: ") + std::strerror(problem), "check permissions and free space");
+      }
   }
 
   FolderLock::~FolderLock()

@@ -41,6 +41,14 @@ namespace Squeal
       return fs::exists(fs::symlink_status(folder)) && !(fs::is_directory(folder) && fs::is_empty(folder));
     }
 
+    void check_not_removed(const fs::path &unfinished, const std::string &shown)
+    {
+      std::error_code ignored;
+      if (!fs::is_directory(unfinished, ignored))
+        throw FileError("the folder of the unfinished results was removed while the program ran", "folder " + shown + ".unfinished",
+                        "let nothing else write to the folders of a run, and run again");
+    }
+
     /// Waits until the disk has everything; returns the number of the error, or 0.
     int store(const fs::path &folder)
     {
@@ -258,7 +266,8 @@ namespace Squeal
       throw not_written(shown + "/" + name, ENOMEM);
     const std::string text = stream.str();
     // Once a signal has begun to clear away, nothing new may come up.
-    const auto      held = uninterrupted();
+    const auto held = uninterrupted();
+    check_not_removed(unfinished, shown);
     const fs::path  file = unfinished / name;
     std::error_code ignored;
     fs::create_directories(file.parent_path(), ignored);
@@ -269,7 +278,10 @@ namespace Squeal
 
   FileSizes ResultFolder::files() const
   {
-    return is_root ? files_below(unfinished) : FileSizes();
+    if (!is_root)
+      return {};
+    check_not_removed(unfinished, shown);
+    return files_below(unfinished);
   }
 
   void ResultFolder::check_complete(const fs::path &folder, const FileSizes &sizes) const

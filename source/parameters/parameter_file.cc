@@ -20,6 +20,11 @@ namespace Squeal
 
     constexpr const char *blanks = " \t\r\n\v\f";
 
+    // Far more than a run needs; devices have no end, and files that include others twice each multiply.
+    constexpr std::streamsize largest_file       = 1 << 24; // [byte]
+    constexpr unsigned int    most_files         = 1000;
+    constexpr std::size_t     most_open_sections = 100;
+
     std::string place(const std::string &file, const unsigned int line)
     {
       return "file " + legible(file) + ", line " + std::to_string(line);
@@ -34,9 +39,13 @@ namespace Squeal
       std::ifstream stream(file, std::ios::binary);
       if (!stream)
         throw FileError("the parameter file cannot be read", where, "check its name and permissions");
-      std::string text{std::istreambuf_iterator<char>(stream), {}};
+      std::string text(largest_file + 1, '\0');
+      stream.read(text.data(), largest_file + 1);
       if (stream.bad())
         throw FileError("the parameter file cannot be read to its end", where, "check the disk that it is on");
+      if (stream.gcount() > largest_file)
+        throw FileError("the parameter file is larger than " + std::to_string(largest_file) + " bytes", where, "name a parameter file");
+      text.resize(stream.gcount());
 
       if (starts_with(text, "\xFF\xFE") || starts_with(text, "\xFE\xFF"))
         throw ParameterError("the parameter file is encoded as UTF-16", where, "save it as UTF-8");
@@ -58,6 +67,9 @@ namespace Squeal
       void read(const std::string &file, const std::string &where)
       {
         refuse_cycle(file, where);
+        if (++n_files > most_files)
+          throw ParameterError("parameter files include one another more than " + std::to_string(most_files) + " times", where,
+                               "include every file once");
         open_files.push_back(file);
         const std::size_t outer_depth = sections.size();
 
@@ -121,6 +133,9 @@ namespace Squeal
           return;
         if (key == "subsection" || key == "SUBSECTION")
           {
+            if (sections.size() == most_open_sections)
+              throw ParameterError("more than " + std::to_string(most_open_sections) + " sections are open, one in the other", where,
+                                   "close each section by a line `end`");
             sections.push_back({single_spaced(rest), where});
             statements.push_back({path(""), "", where});
           }
@@ -148,6 +163,7 @@ namespace Squeal
                                "write `subsection NAME`, `end`, `set NAME = VALUE`, `include FILE`, or a comment after `#`");
       }
 
+      unsigned int             n_files = 0;
       std::vector<std::string> open_files; ///< from the outermost to the one that is read
       std::vector<Section>     sections;
     };

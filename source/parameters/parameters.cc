@@ -8,6 +8,7 @@
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <numeric>
 #include <sstream>
@@ -19,9 +20,13 @@ namespace Squeal
     /// Distance of -1/β from zero over the radius of the band from which the search for eigenvalues does not meet them [-].
     constexpr double clear_of_accumulation = 1.2;
 
+    /// Characters of an unknown name that are held against the known ones: no known one is as long.
+    constexpr std::size_t longest_name = 200;
+
     /// Levenshtein distance without regard to case.
     unsigned int edit_distance(const std::string &a, const std::string &b)
     {
+      const auto                small = [](const char c) { return std::tolower(static_cast<unsigned char>(c)); };
       std::vector<unsigned int> row(b.size() + 1);
       std::iota(row.begin(), row.end(), 0);
       for (unsigned int i = 0; i < a.size(); ++i)
@@ -30,7 +35,7 @@ namespace Squeal
           row[0]                = i + 1;
           for (unsigned int j = 0; j < b.size(); ++j)
             {
-              const unsigned int substitution = diagonal + (std::tolower(a[i]) != std::tolower(b[j]));
+              const unsigned int substitution = diagonal + (small(a[i]) != small(b[j]));
               diagonal                        = row[j + 1];
               row[j + 1]                      = std::min({row[j] + 1, row[j + 1] + 1, substitution});
             }
@@ -81,12 +86,14 @@ namespace Squeal
     {
       if (std::find(known.begin(), known.end(), statement.path) != known.end())
         return;
-      const bool   is_section = statement.is_section();
+      const bool        is_section = statement.is_section();
+      const std::string written =
+        statement.path.size() <= longest_name ? statement.path : statement.path.substr(0, longest_name) + (is_section ? "/" : "");
       std::string  nearest;
       unsigned int smallest = -1;
       for (const std::string &candidate : known)
         if ((candidate.back() == '/') == is_section)
-          if (const unsigned int distance = path_distance(statement.path, candidate); distance < smallest)
+          if (const unsigned int distance = path_distance(written, candidate); distance < smallest)
             {
               smallest = distance;
               nearest  = candidate;

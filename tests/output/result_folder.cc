@@ -192,6 +192,21 @@ TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)
   EXPECT_EQ(content(results + "/table.csv"), "one");
 }
 
+TEST_F(SafeFolders, AreNotMadeAnewWhereTheyVanish)
+{
+  make_results("one");
+  {
+    ResultFolder folder(results, true);
+    folder.write("table.csv", [](std::ostream &stream) { stream << "two"; });
+    fs::remove_all(results + ".unfinished");
+    for (const std::string &message :
+         {refusal([&] { folder.write("mesh.msh", [](std::ostream &stream) { stream << "2"; }); }), refusal([&] { folder.files(); })})
+      EXPECT_TRUE(contains(message, "was removed while the program ran")) << message;
+    EXPECT_TRUE(contains(refusal([&] { folder.commit(); }), "results/table.csv"));
+  }
+  EXPECT_EQ(files(), (Names{"results/modes/one.vtu", "results/run.json", "results/table.csv"}));
+}
+
 TEST_F(SafeFolders, NameTheFileThatCannotBeWrittenAndLeaveNothing)
 {
   make_results("one");

@@ -110,8 +110,32 @@ TEST_F(ParameterFile, FilesThatIncludeThemselvesAreNamed)
   expect(refusal(a), "c.prm, line 1");
 }
 
+TEST_F(ParameterFile, FilesThatMultiplyEndSoon)
+{
+  // Each includes the next one twice
+  for (int i = 0; i < 40; ++i)
+    {
+      const std::string next = "include " + std::to_string(i + 1) + ".prm\n";
+      write(std::to_string(i) + ".prm", next + next);
+    }
+  expect(refusal(write("40.prm", "include 0.prm\n")), "includes itself");
+  write("40.prm", "");
+  expect(refusal((folder / "0.prm").string()), "more than 1000 times");
+}
+
+TEST_F(ParameterFile, SectionsThatAreNeverClosedEndSoon)
+{
+  std::string text;
+  for (int i = 0; i < 100000; ++i)
+    text += "subsection A\n";
+  const std::string message = refusal(write("a.prm", text));
+  expect(message, "more than 100 sections are open");
+  expect(message, "line 101");
+}
+
 TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)
 {
+  expect(refusal("/dev/zero"), "larger than 16777216 bytes");
   expect(refusal(write("a.prm", std::string("\xFF\xFEs\0e\0t\0", 8))), "encoded as UTF-16");
   expect(refusal(write("a.prm", std::string("\xFE\xFF\0s\0e\0t", 8))), "encoded as UTF-16");
   const std::string zero = refusal(write("a.prm", std::string("set a = 1\nset b\0 = 2\n", 21)));
