@@ -29,7 +29,7 @@ namespace Squeal::Testing
    * An annulus of @p n_rings × @p n_sectors quadrilaterals; sector 0 begins at
    * the x axis, so that sector -1 - j is the mirror image of sector j about it.
    * Boundary curves are called @p bore and @p rim: other names than disc_bore
-   * and disc_rim keep the polygons in degree 2.
+   * and disc_rim keep the polygons with quadratic elements.
    */
   inline Plan polar_plan(const double                 inner,
                          const double                 outer,
@@ -181,11 +181,11 @@ namespace Squeal::Testing
     Scene(const HexMesh             &mesh,
           const MaterialParameters  &materials,
           const OperationParameters &operation,
-          const unsigned int         degree       = 1,
+          const Element              element      = Element::trilinear,
           const MPI_Comm             communicator = MPI_COMM_WORLD)
       : mesh(mesh)
       , operation(operation)
-      , model(mesh, degree, communicator)
+      , model(mesh, element, communicator)
       , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))

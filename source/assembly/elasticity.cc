@@ -1,4 +1,5 @@
 #include <squeal/assembly/cell_integrals.h>
+#include <squeal/assembly/cell_stiffness.h>
 #include <squeal/assembly/elasticity.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
@@ -24,36 +25,7 @@ namespace Squeal
           throw MeshError("the element is inverted: its Jacobian is not positive everywhere",
                           text("component ", component, ", element with centre (", values.get_cell()->center(), ") m"),
                           "make the elements at curved boundaries smaller, e.g. by Geometry/Nodes per pin face or "
-                          "Geometry/Element size, or use Discretization/Degree = 1");
-    }
-
-    /// ∫ 2 G ε:ε + Λ div div over one cell for E = 1.
-    void integrate_stiffness(const FEValues<3> &values, const double poisson_ratio, FullMatrix<double> &K)
-    {
-      const double G      = 1. / (2. * (1. + poisson_ratio));
-      const double Lambda = 2. * G * poisson_ratio / (1. - 2. * poisson_ratio);
-      const auto  &fe     = values.get_fe();
-      K                   = 0.;
-      for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-        for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
-          {
-            const unsigned int a      = fe.system_to_component_index(i).first;
-            const auto        &grad_i = values.shape_grad(i, q);
-            for (unsigned int j = 0; j <= i; ++j)
-              {
-                // For φ_i = N_i e_a, φ_j = N_j e_b:
-                // 2 ε:ε = δ_ab ∇N_i·∇N_j + ∂_b N_i ∂_a N_j and div div = ∂_a N_i ∂_b N_j
-                const unsigned int b      = fe.system_to_component_index(j).first;
-                const auto        &grad_j = values.shape_grad(j, q);
-                double             k      = G * grad_i[b] * grad_j[a] + Lambda * grad_i[a] * grad_j[b];
-                if (a == b)
-                  k += G * (grad_i * grad_j);
-                K(i, j) += k * values.JxW(q);
-              }
-          }
-      for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
-        for (unsigned int j = 0; j < i; ++j)
-          K(j, i) = K(i, j);
+                          "Geometry/Element size, or choose another Discretization/Element than quadratic");
     }
 
     /// ∫ φ·φ over one cell.
@@ -98,12 +70,13 @@ namespace Squeal
     {
       const std::string  &name = model.component_names()[component];
       FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
-                                 update_values | update_gradients | update_JxW_values);
+                                 update_values | CellStiffness::update_flags(model.element()));
+      CellStiffness       cell_stiffness(model.element(), material.poisson_ratio);
       const CellPredicate belongs   = [component](const Cell &cell) { return cell->material_id() == component; };
       const CellIntegral  stiffness = [&](const Cell &cell, FullMatrix<double> &K) {
         values.reinit(cell);
         check_orientation(values, name);
-        integrate_stiffness(values, material.poisson_ratio, K);
+        cell_stiffness.integrate(values, K);
       };
       // The values are those of the cell whose stiffness has been integrated
       const CellIntegral mass     = [&](const Cell &, FullMatrix<double> &M) { integrate_mass(values, M); };

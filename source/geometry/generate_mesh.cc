@@ -5,6 +5,7 @@
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/geometry/mesher.h>
+#include <squeal/geometry/outlines.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
 #include <squeal/geometry/problem_size.h>
@@ -146,6 +147,8 @@ namespace Squeal
                         "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
       Plan plan = make_plan(gmsh, where);
       check_memory(expected_size(plan, parameters), least_degree, no_modes, where);
+      if (parameters.outlines == Outlines::true_area)
+        enlarge_to_true_area(plan);
       smooth(plan);
       return extrude(plan, parameters);
     }

@@ -141,19 +141,20 @@ namespace Squeal
     }
   } // namespace
 
-  Model::Model(const HexMesh &mesh, const unsigned int degree, MPI_Comm communicator)
+  Model::Model(const HexMesh &mesh, const Element element, MPI_Comm communicator)
     : components(mesh.volume_names)
     , surfaces(mesh.surface_names)
+    , element_type(element)
     , tria(communicator,
            Triangulation<3>::none,
            false, // every process knows every cell: pairing and output need no exchange
            parallel::shared::Triangulation<3>::partition_metis)
-    , fe(FE_Q<3>(degree), 3)
-    , geometry_mapping(degree)
+    , fe(FE_Q<3>(degree_of(element)), 3)
+    , geometry_mapping(degree_of(element))
     , dofs(tria)
   {
     create_triangulation(mesh);
-    if (degree > 1)
+    if (element == Element::quadratic)
       attach_cylinders(*this, tria);
     distribute_dofs();
   }
@@ -257,6 +258,11 @@ namespace Squeal
   const Mapping<3> &Model::mapping() const
   {
     return geometry_mapping;
+  }
+
+  Element Model::element() const
+  {
+    return element_type;
   }
 
   unsigned int Model::degree() const

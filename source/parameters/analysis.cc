@@ -8,8 +8,9 @@ namespace Squeal
   void DiscretizationParameters::declare(Declarations &declarations)
   {
     declarations.enter("Discretization");
-    declarations.add("Degree", degree,
-                     "Polynomial degree of the hexahedra: 1 (trilinear) or 2 (triquadratic, on curved boundaries). Units: none.", {1, 2});
+    declarations.add("Element", element,
+                     "Hexahedra. trilinear: 8 nodes; too stiff in bending. incompatible modes: 8 nodes and quadratic displacements inside "
+                     "each element (Wilson, Taylor), which bend: a system of the same size. quadratic: 27 nodes, on curved boundaries.");
 
     declarations.enter("Band");
     declarations.add("Maximum frequency", maximum_frequency,

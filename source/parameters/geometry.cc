@@ -165,12 +165,18 @@ namespace Squeal
     if (is_script(geometry))
       script.emplace(geometry);
     std::set<std::string> used = {"pairing_tolerance"};
-    if (script ? !script->find({"Physical Volume"}) : !has_volumes(geometry))
+    if (is_plan())
       used.insert({"disc_thickness", "pin_height", "disc_layers", "pin_layers"});
     for (const auto &[name, value] : script_variables())
       if (script && script->find({name}))
         used.insert(name);
     return used;
+  }
+
+  bool GeometryParameters::is_plan() const
+  {
+    const std::string geometry = path();
+    return is_script(geometry) ? !GeometryScript(geometry).find({"Physical Volume"}) : !has_volumes(geometry);
   }
 
   std::string GeometryParameters::path() const
@@ -211,6 +217,10 @@ namespace Squeal
                      "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
                      "smaller ones where these do not fit between the pins. Units: m.",
                      {0.});
+    declarations.add(
+      "Outlines", outlines,
+      "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are smaller. true "
+      "area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements follow the circle. Units: none.");
     declarations.add("Pairing tolerance", pairing_tolerance,
                      "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
                      "Units: m.",

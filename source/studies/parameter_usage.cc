@@ -60,6 +60,12 @@ namespace Squeal
     const std::vector<UsageRule> &general_rules()
     {
       static const std::vector<UsageRule> table = {
+        {"Geometry/Outlines",
+         [](const Parameters &p) -> Reason {
+           return p.discretization.element == Element::quadratic ? "quadratic elements follow the circles" :
+                                                                   unless(p.geometry.is_plan(), "the geometry is a solid");
+         }},
+
         {"Disc material/Rayleigh alpha", no_damping},
         {"Disc material/Rayleigh beta", no_damping},
         {"Pin material/Rayleigh alpha", no_damping},

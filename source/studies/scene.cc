@@ -24,11 +24,11 @@ namespace Squeal
     void warn_of_locking(Run &run)
     {
       for (const auto &[section, material] : run.parameters.materials.all())
-        if (run.parameters.discretization.degree == 1 && material.poisson_ratio >= locking_poisson_ratio)
+        if (run.parameters.discretization.element == Element::trilinear && material.poisson_ratio >= locking_poisson_ratio)
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
                                  locking_poisson_ratio,
                                  " on bending frequencies are more than 1 % too high, growth rates less accurate "
-                                 "still; set Discretization/Degree = 2"));
+                                 "still; set Discretization/Element = quadratic"));
     }
 
     bool is_free_disc(const Scene &scene, const SecondOrderSystem &system, const Parameters &parameters)
@@ -43,7 +43,10 @@ namespace Squeal
     Scene             scene;
     warn_of_locking(run);
     run.progress.begin("Mesh");
-    scene.mesh                = generate_mesh(parameters.geometry, parameters.materials.mounted_surfaces(), run.communicator);
+    GeometryParameters geometry = parameters.geometry;
+    if (parameters.discretization.element == Element::quadratic)
+      geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
+    scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator);
     const MeshQuality quality = check_mesh(scene.mesh);
     for (const PinMaterial &single : parameters.materials.single_pins)
       pin_number(scene.mesh.volume_names, single.pin, "Pin material/Single pins");
@@ -53,13 +56,13 @@ namespace Squeal
       text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
     summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
-    check_wave_resolution(scene.mesh, parameters.materials, parameters.discretization.degree,
+    check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));
     if (!run.is_dry)
       run.keep_geometry();
 
     run.progress.begin("Contact");
-    scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.degree, run.communicator);
+    scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.element, run.communicator);
     scene.interface = pair_contact_nodes(*scene.model, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
     scene.contact   = contact_operators(*scene.model, scene.interface);
     if (parameters.needs_steady_sliding())

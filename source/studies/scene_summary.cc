@@ -113,7 +113,7 @@ namespace Squeal
     run.measure("pins mass [kg]", pins);
 
     // Modes and memory
-    const unsigned int degree  = parameters.discretization.degree;
+    const unsigned int degree  = degree_of(parameters.discretization.element);
     const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band));
     const unsigned int allowed = parameters.solvers.maximum_modes;
     const ProblemSize  size    = expected_size(mesh, degree);

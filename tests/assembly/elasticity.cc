@@ -23,9 +23,9 @@ namespace
     });
   }
 
-  class Elasticity : public ::testing::TestWithParam<unsigned int>
+  class Elasticity : public ::testing::TestWithParam<Element>
   {};
-  INSTANTIATE_TEST_SUITE_P(Degrees, Elasticity, ::testing::Values(1u, 2u));
+  INSTANTIATE_TEST_SUITE_P(Elements, Elasticity, ::testing::Values(Element::trilinear, Element::incompatible_modes, Element::quadratic));
 
   double max_entry(const MultiVector &X)
   {
@@ -264,7 +264,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
 
 TEST(Assembly, MountOnAMissingSurfaceNamesTheKnownOnes)
 {
-  const Model model(distorted_mesh(), 1, MPI_COMM_WORLD);
+  const Model model(distorted_mesh(), Element::trilinear, MPI_COMM_WORLD);
   try
     {
       assemble(model, mounted({{"disc_bore", 1., 1., 1.}}));
@@ -283,11 +283,11 @@ namespace
   /// Frequency [rad/s] of the mode of the clamped-free pin, contact at its lower face, that is most like @p shape.
   double pin_frequency(const HexMesh                               &mesh,
                        const MaterialParameters                    &materials,
-                       const unsigned int                           degree,
+                       const Element                                element,
                        const std::function<Point3(const Point3 &)> &shape,
                        const double                                 limit)
   {
-    const Model model(mesh, degree, MPI_COMM_WORLD);
+    const Model model(mesh, element, MPI_COMM_WORLD);
     const auto  interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
     const auto  system    = assemble(model, materials);
     const auto  modes     = component_modes(model, interface, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
@@ -333,7 +333,7 @@ TEST_P(Elasticity, LongitudinalVibrationOfABarConverges)
       const double order = std::log2(errors[i - 1] / errors[i]);
       RecordProperty("order" + std::to_string(i), std::to_string(order));
       EXPECT_GT(errors[i], 0.); // from above: a Rayleigh-Ritz method
-      EXPECT_NEAR(order, 2. * GetParam(), 0.1 + (i == 1 ? 0.3 : 0.)) << "error " << errors[i];
+      EXPECT_NEAR(order, 2. * degree_of(GetParam()), 0.1 + (i == 1 ? 0.3 : 0.)) << "error " << errors[i];
     }
 }
 
@@ -343,18 +343,18 @@ TEST(Assembly, TorsionOfACylinderOnCurvedElements)
   const MaterialParameters materials = mounted({});
   const double             G         = materials.pin.young_modulus / (2. * (1. + materials.pin.poisson_ratio));
   const double             exact     = 0.5 * M_PI / GeometryParameters().pin_height * std::sqrt(G / materials.pin.density);
-  const auto               error     = [&](const unsigned int degree, const int n) {
+  const auto               error     = [&](const Element element, const int n) {
     const auto turning = [](const Point3 &p) { return Point3{{-p[1] * quarter_wave(p[2]), (p[0] - 0.2) * quarter_wave(p[2]), 0.}}; };
-    return pin_frequency(extrude(round_plan(0.2, 0.026, n), layers(1, 2 * n)), materials, degree, turning, 1.2 * exact) / exact - 1.;
+    return pin_frequency(extrude(round_plan(0.2, 0.026, n), layers(1, 2 * n)), materials, element, turning, 1.2 * exact) / exact - 1.;
   };
-  // Degree 2: the order of the element, with geometry of the same order
-  const double coarse = error(2, 1), fine = error(2, 2);
+  // The order of the element, with geometry of the same order
+  const double coarse = error(Element::quadratic, 1), fine = error(Element::quadratic, 2);
   RecordProperty("coarse", std::to_string(1e6 * coarse));
   RecordProperty("fine", std::to_string(1e6 * fine));
   EXPECT_LT(std::abs(fine), 1e-4);
   EXPECT_GT(std::abs(coarse) / std::abs(fine), 12.);
-  // Degree 1: polygons, order 2
-  const double polygon_coarse = error(1, 2), polygon_fine = error(1, 4);
+  // Polygons, order 2
+  const double polygon_coarse = error(Element::trilinear, 2), polygon_fine = error(Element::trilinear, 4);
   RecordProperty("polygon_coarse", std::to_string(1e6 * polygon_coarse));
   RecordProperty("polygon_fine", std::to_string(1e6 * polygon_fine));
   EXPECT_NEAR(std::log2(polygon_coarse / polygon_fine), 2., 0.15);
@@ -367,7 +367,7 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
   for (const int n : {12, 24})
     {
       const auto        mesh = extrude(polar_plan(0.15, 0.3, 2, n, {{Plan::Side::top, 0, 1, 0, 1}}), layers(1, 1));
-      const Model       model(mesh, 2, MPI_COMM_WORLD);
+      const Model       model(mesh, Element::quadratic, MPI_COMM_WORLD);
       const auto        system = assemble(model, materials);
       const MultiVector e      = displacements(model, 0, [](const Point3 &) { return Point3{{1., 0., 0.}}; });
       const double      exact  = materials.disc.density * GeometryParameters().disc_thickness * M_PI * (0.3 * 0.3 - 0.15 * 0.15);

@@ -47,7 +47,7 @@ namespace
     Ring(const double inner, const double outer, const double thickness, const int n_around, const double band)
       : model(extrude(polar_plan(inner, outer, 1, n_around, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}),
                       of_thickness(thickness)),
-              2,
+              Element::quadratic,
               MPI_COMM_WORLD)
       , still(body_terms(model, mounted({})))
       , kernel(component_kernel(model, {}, Component::disc, ContactBoundary::free))
@@ -101,9 +101,9 @@ TEST(Rotation, IsThatOfLinearFields)
   const HexMesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
     return Point3{{p[0] + 0.01 * std::sin(40. * p[1]), p[1] + 0.01 * std::sin(35. * p[0]), p[2] + 0.004 * std::sin(45. * p[0])}};
   });
-  for (const unsigned int degree : {1u, 2u})
+  for (const Element element : {Element::trilinear, Element::quadratic})
     {
-      const Model     model(mesh, degree, MPI_COMM_WORLD);
+      const Model     model(mesh, element, MPI_COMM_WORLD);
       const BodyTerms bodies = rotating(model, mounted({}), 3.);
       const auto     &M = *term_named(bodies, "mass, disc").matrix, &G = *term_named(bodies, "gyroscopic forces of the disc").matrix,
                  &N = *term_named(bodies, "convective stiffness of the disc").matrix;

@@ -31,12 +31,12 @@ namespace
   constexpr double mu        = 0.6;
   const double     omega_max = circular_frequency(6000.);
 
-  /// Contact faces, polynomial degree, mounts.
+  /// Contact faces, element, mounts.
   struct Case
   {
     const char               *name;
     double                    slope; ///< of the contact faces
-    unsigned int              degree;
+    Element                   element;
     std::vector<ElasticMount> mounts;
   };
   void PrintTo(const Case &c, std::ostream *stream)
@@ -62,7 +62,7 @@ namespace
   /// Disc and three pins; in quadratic elements half as many.
   HexMesh mesh_of(const Case &c)
   {
-    const int n = c.degree == 1 ? 2 : 1;
+    const int n = c.element == Element::trilinear ? 2 : 1;
     return mapped(extrude(polar_plan(0.1505, 0.3155, 1 + n, 9 * n,
                                      {{Plan::Side::top, -1, n, 1, 1}, {Plan::Side::top, 3, n, 0, 1}, {Plan::Side::bottom, 0, n, 1, 1}}),
                           layers(1, 2)),
@@ -75,7 +75,7 @@ namespace
   struct Bodies
   {
     explicit Bodies(const Case &c, const double component_band = 2.)
-      : s(mesh_of(c), mounted(c.mounts), operating(RadialDissipation::consistent), c.degree)
+      : s(mesh_of(c), mounted(c.mounts), operating(RadialDissipation::consistent), c.element)
       , shift(stabilizing_shift(s.model, s.coupled, omega_max))
       , response(static_response(s.model, s.system, omega_max, FactorizationLibrary::automatic))
       , static_modes(s.model, s.interface, s.contact, s.system, response, omega_max, FactorizationLibrary::automatic)
@@ -163,10 +163,10 @@ namespace
   INSTANTIATE_TEST_SUITE_P(Scenes,
                            ReducedBases,
                            ::testing::Values(flat,
-                                             Case{"flat, degree 2", 0., 2, held},
-                                             Case{"cone", 0.3, 1, held},
-                                             Case{"free disc, flat", 0., 1, {}},
-                                             Case{"free disc, cone", 0.3, 1, {}}));
+                                             Case{"flat, quadratic", 0., Element::quadratic, held},
+                                             Case{"cone", 0.3, Element::trilinear, held},
+                                             Case{"free disc, flat", 0., Element::trilinear, {}},
+                                             Case{"free disc, cone", 0.3, Element::trilinear, {}}));
 } // namespace
 
 TEST(BasisTables, SizesOfThePaper)

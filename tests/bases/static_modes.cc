@@ -15,12 +15,12 @@ namespace
 {
   constexpr double band = 2. * M_PI * 5000.;
 
-  /// Contact faces, polynomial degree, mounts.
+  /// Contact faces, element, mounts.
   struct Case
   {
     const char               *name;
     double                    slope; ///< of the contact faces
-    unsigned int              degree;
+    Element                   element;
     std::vector<ElasticMount> mounts;
   };
   void PrintTo(const Case &c, std::ostream *stream)
@@ -37,7 +37,7 @@ namespace
                         [c](const Point3 &p) {
                           return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
                         }),
-                 materials, operating(dissipation), c.degree);
+                 materials, operating(dissipation), c.element);
   }
 
   struct Modes
@@ -85,14 +85,14 @@ namespace
   {};
   INSTANTIATE_TEST_SUITE_P(Scenes,
                            StaticModesOf,
-                           ::testing::Values(Case{"flat, degree 1", 0., 1, held},
-                                             Case{"flat, degree 2", 0., 2, held},
-                                             Case{"cone, degree 1", 0.3, 1, held},
-                                             Case{"cone, degree 2", 0.3, 2, held},
-                                             Case{"steep cone, degree 1", 1.5, 1, held},
-                                             Case{"free disc, flat", 0., 1, {}},
-                                             Case{"free disc, cone", 0.3, 1, {}},
-                                             Case{"held against turning only", 0., 1, {{"disc_bore", 0., 7.80e10, 0.}}}));
+                           ::testing::Values(Case{"flat, trilinear", 0., Element::trilinear, held},
+                                             Case{"flat, quadratic", 0., Element::quadratic, held},
+                                             Case{"cone, trilinear", 0.3, Element::trilinear, held},
+                                             Case{"cone, quadratic", 0.3, Element::quadratic, held},
+                                             Case{"steep cone, trilinear", 1.5, Element::trilinear, held},
+                                             Case{"free disc, flat", 0., Element::trilinear, {}},
+                                             Case{"free disc, cone", 0.3, Element::trilinear, {}},
+                                             Case{"held against turning only", 0., Element::trilinear, {{"disc_bore", 0., 7.80e10, 0.}}}));
 } // namespace
 
 TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
@@ -177,7 +177,7 @@ TEST_P(StaticModesOf, CoordinatesUndoTheKernels)
 TEST(StaticModes, FacesAtFortyFiveDegreesAreNoTrap)
 {
   // A slave row then holds a single one, like the row of the dof it follows.
-  const Case       c         = {"45 degrees", 0., 1, held};
+  const Case       c         = {"45 degrees", 0., Element::trilinear, held};
   Scene            s         = scene(c, mounted(held));
   ContactInterface interface = s.interface;
   const double     h         = std::sqrt(0.5);

@@ -23,9 +23,9 @@ namespace
     return extrude(polar_plan(0.15, 0.3, 4, 16, three_pins), layers(2, 2));
   }
 
-  ContactInterface pairs(const HexMesh &mesh, const unsigned int degree = 1, const Rotation rotation = Rotation::positive)
+  ContactInterface pairs(const HexMesh &mesh, const Element element = Element::trilinear, const Rotation rotation = Rotation::positive)
   {
-    return pair_contact_nodes(Model(mesh, degree, MPI_COMM_WORLD), rotation, 1e-6);
+    return pair_contact_nodes(Model(mesh, element, MPI_COMM_WORLD), rotation, 1e-6);
   }
 
   /// The message of the MeshError that pairing throws.
@@ -70,14 +70,14 @@ namespace
 TEST(ContactInterface, EveryNodeOnceWithItsFrame)
 {
   const HexMesh mesh = flat_mesh();
-  for (const unsigned int degree : {1u, 2u})
+  for (const Element element : {Element::trilinear, Element::quadratic})
     {
-      const Model model(mesh, degree, MPI_COMM_WORLD);
+      const Model model(mesh, element, MPI_COMM_WORLD);
       const auto  positive = pair_contact_nodes(model, Rotation::positive, 1e-6);
       const auto  negative = pair_contact_nodes(model, Rotation::negative, 1e-6);
 
       // (d a + 1) (d b + 1) nodes over a × b faces
-      EXPECT_EQ(positive.size(), degree == 1 ? 9u + 6u + 6u : 25u + 15u + 15u);
+      EXPECT_EQ(positive.size(), element == Element::trilinear ? 9u + 6u + 6u : 25u + 15u + 15u);
       ASSERT_EQ(negative.size(), positive.size());
 
       double             area = 0.;
@@ -123,8 +123,8 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
            [slope](const Point3 &p) {
              return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2)}};
            });
-  for (const unsigned int degree : {1u, 2u})
-    for (const ContactNode &node : pairs(mesh, degree))
+  for (const Element element : {Element::trilinear, Element::quadratic})
+    for (const ContactNode &node : pairs(mesh, element))
       {
         const double          r = node.axis_distance(), scale = 1. / std::sqrt(1. + slope * slope);
         const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
@@ -151,7 +151,7 @@ TEST(ContactInterface, PadsThatEndAtTheRimPairInDegree2)
   // The disc's rim and bore are curved; the pads' edges there must follow, whatever the shape of the rest of their outline.
   const HexMesh mesh =
     extrude(polar_plan(0.15, 0.3, 3, 16, {{Plan::Side::top, -1, 2, 1, 2}, {Plan::Side::bottom, 3, 3, 0, 1}}), layers(1, 1));
-  const auto interface = pairs(mesh, 2);
+  const auto interface = pairs(mesh, Element::quadratic);
   EXPECT_EQ(interface.size(), 25u + 21u);
   int n_rim = 0, n_bore = 0;
   for (const ContactNode &node : interface)

@@ -13,12 +13,12 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  /// Contact faces and polynomial degree.
+  /// Contact faces and element.
   struct Case
   {
-    const char  *name;
-    double       slope; ///< of the contact faces
-    unsigned int degree;
+    const char *name;
+    double      slope; ///< of the contact faces
+    Element     element;
   };
   void PrintTo(const Case &c, std::ostream *stream)
   {
@@ -36,25 +36,25 @@ namespace
   {
     const MaterialParameters materials = mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}});
     // Fewer elements where they are quadratic
-    const int                   n    = c.degree == 1 ? 2 : 1;
+    const int                   n    = c.element == Element::trilinear ? 2 : 1;
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, n, 1, 1}, {Plan::Side::bottom, -1, n, 0, 1}};
     return Scene(mapped(extrude(polar_plan(0.15, 0.3, 1 + n, 4 + 4 * n, pins), layers(1, 2)),
                         [c](const Point3 &p) {
                           // A cone, and some tilt about y so that no face is like another
                           return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
                         }),
-                 bodies == Bodies::damped ? damped(materials) : materials, operating(dissipation), c.degree);
+                 bodies == Bodies::damped ? damped(materials) : materials, operating(dissipation), c.element);
   }
 
   class Contact : public ::testing::TestWithParam<Case>
   {};
   INSTANTIATE_TEST_SUITE_P(Faces,
                            Contact,
-                           ::testing::Values(Case{"flat, degree 1", 0., 1},
-                                             Case{"flat, degree 2", 0., 2},
-                                             Case{"cone, degree 1", 0.3, 1},
-                                             Case{"cone, degree 2", 0.3, 2},
-                                             Case{"steep cone, degree 1", 1.5, 1}));
+                           ::testing::Values(Case{"flat, trilinear", 0., Element::trilinear},
+                                             Case{"flat, quadratic", 0., Element::quadratic},
+                                             Case{"cone, trilinear", 0.3, Element::trilinear},
+                                             Case{"cone, quadratic", 0.3, Element::quadratic},
+                                             Case{"steep cone, trilinear", 1.5, Element::trilinear}));
 
   double difference(const SparseMatrix &A, const SparseMatrix &B)
   {

@@ -47,7 +47,7 @@ namespace
 TEST(CommonPoints, HaveTheMassOfEveryBody)
 {
   const HexMesh            coarse = mesh(1, 2);
-  const Model              model(coarse, 1, MPI_COMM_WORLD);
+  const Model              model(coarse, Element::trilinear, MPI_COMM_WORLD);
   const MaterialParameters materials = mounted();
   const CommonPoints       points    = common_points(model, materials);
   ASSERT_EQ(points.bodies.size(), 3u);
@@ -67,11 +67,11 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
   // Faces of disc and pin coincide, but each body has a field of its own
   const MaterialParameters materials = mounted();
   const HexMesh            coarse    = mesh(1, 2);
-  const CommonPoints       points    = common_points(Model(coarse, 1, MPI_COMM_WORLD), materials);
+  const CommonPoints       points    = common_points(Model(coarse, Element::trilinear, MPI_COMM_WORLD), materials);
   const auto               expected  = exact(points, [](const unsigned int body, const Point3 &x) {
     return body == 1 ? multilinear(x) : Point3{{0., 0., 0.}};
   });
-  for (const unsigned int degree : {1u, 2u})
+  for (const Element element : {Element::trilinear, Element::incompatible_modes, Element::quadratic})
     {
       // The same outline, cells that do not match
       HexMesh fine =
@@ -80,7 +80,7 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
       for (HexMesh::Hexahedron &cell : fine.hexahedra) // names that are in another order
         cell.volume = cell.volume == 0 ? 0 : 3 - cell.volume;
       std::swap(fine.volume_names[1], fine.volume_names[2]);
-      const Model       model(fine, degree, MPI_COMM_WORLD);
+      const Model       model(fine, element, MPI_COMM_WORLD);
       MultiVector       u     = displacements(model, 2, multilinear);
       const DenseMatrix found = replicate(*displacements_at(points, model) * u);
       for (std::size_t row = 0; row < expected.size(); ++row)
@@ -107,7 +107,7 @@ TEST(CommonPoints, PairModesOfMeshesOfOneScene)
   // Twice as fine, other layers, and quadratic: numbers of modes differ in the band, shapes do not
   const MaterialParameters materials = mounted();
   const Testing::Scene     coarse(mesh(1, 2), materials, operating()), fine(mesh(2, 3), materials, operating()),
-    quadratic(mesh(1, 2), materials, operating(), 2);
+    quadratic(mesh(1, 2), materials, operating(), Element::quadratic);
   const CommonPoints points = common_points(coarse.model, materials);
   const auto         solve  = [&](const Testing::Scene &scene) {
     return at_points(*displacements_at(points, scene.model), *scene.contact.kernel, undamped_modes(real_modes(scene.coupled)));
@@ -137,8 +137,8 @@ TEST(CommonPoints, RefuseAMeshOfOtherBodies)
 {
   const MaterialParameters materials = mounted();
   const HexMesh            two       = mesh(1, 1);
-  const CommonPoints       points    = common_points(Model(two, 1, MPI_COMM_WORLD), materials);
+  const CommonPoints       points    = common_points(Model(two, Element::trilinear, MPI_COMM_WORLD), materials);
   HexMesh                  other     = two;
   other.volume_names[1]              = "pin_elsewhere";
-  EXPECT_THROW(displacements_at(points, Model(other, 1, MPI_COMM_WORLD)), MeshError);
+  EXPECT_THROW(displacements_at(points, Model(other, Element::trilinear, MPI_COMM_WORLD)), MeshError);
 }

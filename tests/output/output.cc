@@ -62,8 +62,8 @@ namespace
   /// A disc of 24 cells with one pin.
   struct DiscWithPin : Scene
   {
-    explicit DiscWithPin(const unsigned int degree)
-      : Scene(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), degree)
+    explicit DiscWithPin(const Element element)
+      : Scene(extrude(polar_plan(0.15, 0.3, 2, 12, {{Plan::Side::top, 0, 2, 0, 1}}), layers(1, 1)), mounted(), operating(), element)
     {}
     ModeField mode(const std::complex<double> &lambda) const
     {
@@ -257,9 +257,9 @@ TEST(RunRecords, AreJson)
 
 TEST_F(ResultFolders, ModeShapesAndAnimations)
 {
-  for (const unsigned int degree : {1u, 2u})
+  for (const Element element : {Element::trilinear, Element::quadratic})
     {
-      const DiscWithPin s(degree);
+      const DiscWithPin s(element);
       ResultFolder      folder(results, true);
       const FieldWriter writer(s.model, s.interface, {}, folder);
       const ModeField   mode = s.mode({1., 1000.});
@@ -291,7 +291,7 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
 
 TEST_F(ResultFolders, AnimationsWithGrowthAreLargestWhereTheModeIs)
 {
-  const DiscWithPin                  s(1);
+  const DiscWithPin                  s(Element::trilinear);
   const double                       period = 2. * M_PI / 1000.;
   std::map<std::string, std::string> first, last;
   for (const auto &[name, lambda] : {std::make_pair("grows", std::complex<double>(50., 1000.)), {"decays", {-50., 1000.}}})
@@ -321,7 +321,7 @@ TEST_F(ResultFolders, AnimationsWithGrowthAreLargestWhereTheModeIs)
 
 TEST_F(ResultFolders, RealModesOfAllBodiesAndOfOne)
 {
-  const DiscWithPin         s(1);
+  const DiscWithPin         s(Element::trilinear);
   ResultFolder              folder(results, true);
   const FieldWriter         writer(s.model, s.interface, {}, folder);
   const std::vector<double> displacement(s.model.free_map().n(), -3.);
@@ -344,7 +344,7 @@ TEST_F(ResultFolders, RealModesOfAllBodiesAndOfOne)
 
 TEST_F(ResultFolders, ListsOfModesHaveATimeForEach)
 {
-  const DiscWithPin s(1);
+  const DiscWithPin s(Element::trilinear);
   ResultFolder      folder(results, true);
   const FieldWriter writer(s.model, s.interface, {}, folder);
   // Rigid-body modes, doublets equal to rounding, and one that is farther away

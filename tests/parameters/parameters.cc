@@ -169,8 +169,9 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
         {"Geometry/Pin height", "-1", "Geometry/Pin height must be >= 0 m, not -1\n"},
         {"Geometry/Pin height", "30 mm", "must be a number >= 0 m, not `30 mm`\n"},
         {"Disc material/Density", "-2", "must be >= 0 kg/m^3, not -2\n"},
-        {"Discretization/Degree", "3", "must lie in 1 ... 2, not 3\n"},
-        {"Discretization/Degree", "1.5", "must be an integer in 1 ... 2, not 1.5\n"},
+        {"Linear algebra/BLAS threads", "257", "must lie in 1 ... 256, not 257\n"},
+        {"Linear algebra/BLAS threads", "1.5", "must be an integer in 1 ... 256, not 1.5\n"},
+        {"Discretization/Element", "2", "must be one of trilinear, incompatible modes, quadratic, not 2\n"},
         {"Geometry/Pin layers", "0", "must be >= 1, not 0\n"},
         {"Geometry/Pin layers", "3000000000", "must be at most 2147483647, not 3000000000\n"},
         {"Output/Write matrices", "maybe", "must be true or false, not `maybe`\n"},
@@ -215,7 +216,7 @@ TEST(ParameterFiles, EveryNumberSaysWhatItAcceptsWhenPrinted)
     words += word == "#" ? "" : word + " ";
   EXPECT_NE(words.find("Coulomb's coefficient mu. Units: none. Accepts a number in 0 ... 10. set Friction coefficient"), std::string::npos);
   EXPECT_NE(words.find("Accepts one of positive, negative. set Rotation ="), std::string::npos);
-  EXPECT_NE(words.find("Accepts an integer in 1 ... 2. set Degree"), std::string::npos);
+  EXPECT_NE(words.find("Accepts an integer in 1 ... 256. set BLAS threads"), std::string::npos);
   EXPECT_NE(words.find("Accepts true or false. set Write matrices"), std::string::npos);
   EXPECT_NE(words.find("Accepts numbers >= 0 m, separated by commas. set Top pin radii"), std::string::npos);
 }

@@ -65,7 +65,7 @@ CASES = [
     Case("gaps with equal load", [*S4, *NO_SHAPES, "Steady sliding/Gaps=pin_top_1: 1e-5"], says=["Steady sliding/Gaps"]),
     Case("thickness with a mesh", ["Geometry/File=plain.msh", "Geometry/Disc thickness=0.05"], says=["Geometry/Disc thickness"],
          options=["--dry-run"], files={"plain.msh": ("scaled", 1.0)}),
-    Case("locking", [*S, *NO_SHAPES, "Pin material/Poisson ratio=0.499"], says=["Pin material/Poisson ratio", "Degree"]),
+    Case("locking", [*S, *NO_SHAPES, "Pin material/Poisson ratio=0.499"], says=["Pin material/Poisson ratio", "Element"]),
     # ------------------------------------------ crashes, hangs, refusals
     Case("a file that includes itself", status=1, says=ERROR, file="loop.prm", files={"loop.prm": "include loop.prm\n"}),
     Case("a geometry with many errors", ["Geometry/File=errors.geo"], 1, ERROR,

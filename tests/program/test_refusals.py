@@ -99,7 +99,7 @@ class Refusals(ProgramTest):
 
     def test_values(self):
         self.scene_refused(["Operation/Friction coefficient must lie in 0 ... 10, not -0.1"], "Operation/Friction coefficient=-0.1")
-        self.scene_refused(["must lie in 1 ... 2, not 3"], "Discretization/Degree=3")
+        self.scene_refused(["must be one of trilinear, incompatible modes, quadratic"], "Discretization/Element=cubic")
         self.scene_refused(["sideways"], "Operation/Rotation=sideways")
         self.scene_refused(["Band/Maximum frequency"], "Band/Maximum frequency=0")
         self.scene_refused(["Poisson"], "Disc material/Poisson ratio=0.5")

@@ -125,7 +125,7 @@ class Shapes(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Degree 1 on a coarse mesh; of the complex modes the unstable ones
+        # Trilinear, on a coarse mesh; of the complex modes the unstable ones
         cls.results = cls.run_scene("results", "Output/Mode shapes=unstable", "Output/Component mode shapes=true",
                                     "Output/Real mode shapes=true", "Output/Animation periods=2", "Output/Animation growth=true")
 

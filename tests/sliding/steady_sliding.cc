@@ -33,9 +33,9 @@ namespace
   {
     explicit SlidingScene(const HexMesh                   &mesh     = four_pins(),
                           const std::vector<ElasticMount> &mounts   = held,
-                          const unsigned int               degree   = 1,
+                          const Element                    element  = Element::trilinear,
                           const Rotation                   rotation = Rotation::positive)
-      : Scene(mesh, mounted(mounts), operating(RadialDissipation::none, rotation), degree)
+      : Scene(mesh, mounted(mounts), operating(RadialDissipation::none, rotation), element)
       , sliding(model, interface, contact, system, band, FactorizationLibrary::automatic)
     {}
 
@@ -294,11 +294,11 @@ TEST(SteadySliding, ConesAndQuadraticElements)
       return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * slope * p[1]}};
     });
   };
-  for (const unsigned int degree : {1u, 2u})
+  for (const Element element : {Element::trilinear, Element::quadratic})
     for (const double slope : {0., 0.3})
       {
         SCOPED_TRACE(slope);
-        const SlidingScene s(cone(slope), {{"disc_bore", 1e9, 7.80e10, 1.88e10}}, degree);
+        const SlidingScene s(cone(slope), {{"disc_bore", 1e9, 7.80e10, 1.88e10}}, element);
         check(s, s.solve());
       }
 }

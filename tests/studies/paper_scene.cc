@@ -10,7 +10,7 @@ TEST(PaperScene, IsThatOfTheDefaultsOnAnyMesh)
   Parameters coarse;
   coarse.geometry.element_size       = 0.04;
   coarse.geometry.nodes_per_pin_face = 7;
-  coarse.discretization.degree       = 2;
+  coarse.discretization.element      = Element::quadratic;
   coarse.operation                   = {0.1, Rotation::negative, 3., 200., RadialDissipation::consistent, 0.01};
   coarse.sliding.state               = ContactState::steady_sliding;
   EXPECT_TRUE(is_paper_scene(coarse));

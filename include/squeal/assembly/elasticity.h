@@ -22,7 +22,7 @@ namespace Squeal
    *   λ β E K_b + λ α ρ M_b
    *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * Mounts have no damping. Full Gauss quadrature, degree + 1 points per direction.
+   * Elements with incompatible modes: K_b of CellStiffness. Mounts have no damping. Full Gauss quadrature, degree + 1 points per direction.
    *
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */

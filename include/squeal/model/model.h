@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/element.h>
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/linear_algebra/row_map.h>
 #include <squeal/parameters/materials.h>
@@ -36,19 +37,22 @@ namespace Squeal
   public:
     /**
      * @param mesh      hexahedra with named parts
-     * @param degree    polynomial degree of the displacement, 1 or 2; for 2 named
-     *                  cylindrical surfaces about axes parallel to z are followed
+     * @param element   quadratic ones follow named cylindrical surfaces about axes parallel to z
      * @param communicator processes that share the work
      *
      * Throws MeshError if deal.II refuses the mesh.
      */
-    Model(const HexMesh &mesh, unsigned int degree, MPI_Comm communicator);
+    Model(const HexMesh &mesh, Element element, MPI_Comm communicator);
 
     const dealii::Triangulation<3> &triangulation() const;
     const dealii::DoFHandler<3>    &dof_handler() const;
     const dealii::Mapping<3>       &mapping() const;
-    unsigned int                    degree() const;
-    MPI_Comm                        communicator() const;
+    Element                         element() const;
+
+    /// Polynomial degree of the nodal displacements.
+    unsigned int degree() const;
+
+    MPI_Comm communicator() const;
 
     /// Names of the components, in the order of the cells' material ids.
     const std::vector<std::string> &component_names() const;
@@ -78,6 +82,7 @@ namespace Squeal
     void distribute_dofs();
 
     std::vector<std::string>                   components, surfaces;
+    Element                                    element_type;
     dealii::parallel::shared::Triangulation<3> tria;
     dealii::FESystem<3>                        fe;
     dealii::MappingQ<3>                        geometry_mapping;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/element.h>
 #include <squeal/base/enum_table.h>
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
@@ -12,8 +13,8 @@ namespace Squeal
   /// Elements and band (sections `Discretization` and `Band`).
   struct DiscretizationParameters
   {
-    unsigned int degree            = 1;     ///< polynomial degree of the hexahedra, 1 or 2
-    double       maximum_frequency = 5000.; ///< upper end of the band [Hz]
+    Element element           = Element::trilinear;
+    double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
 
     void declare(Declarations &declarations);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/enum_table.h>
 #include <squeal/parameters/declarations.h>
 #include <squeal/parameters/geometry_file.h>
 
@@ -11,6 +12,16 @@
 
 namespace Squeal
 {
+  /// Polygons of straight edges that stand for circles.
+  enum class Outlines
+  {
+    inscribed, ///< nodes on the circle
+    true_area  ///< nodes moved outwards until area and moments of area are the circle's
+  };
+
+  template <>
+  inline constexpr EnumName<Outlines> enum_table<Outlines>[] = {{Outlines::inscribed, "inscribed"}, {Outlines::true_area, "true area"}};
+
   /// Where the pins of one side of the disc are.
   struct PinLayout
   {
@@ -33,10 +44,11 @@ namespace Squeal
     unsigned int pin_layers           = 4;
     unsigned int disc_layers          = 3;
     double       element_size         = 0.0115; ///< in the plane of the disc [m]
-    double       pairing_tolerance    = 1e-6;   ///< distance of the two nodes of a contact pair [m]
-    bool         allow_shell_commands = false;  ///< whether a geometry may run programs and write files
-    double       meshing_time_limit   = 600.;   ///< [s]
-    double       meshing_memory_limit = 8.;     ///< [GB]
+    Outlines     outlines             = Outlines::inscribed;
+    double       pairing_tolerance    = 1e-6;  ///< distance of the two nodes of a contact pair [m]
+    bool         allow_shell_commands = false; ///< whether a geometry may run programs and write files
+    double       meshing_time_limit   = 600.;  ///< [s]
+    double       meshing_memory_limit = 8.;    ///< [GB]
 
     /// A number of the user's own script, and the value it is given, if any.
     struct Variable
@@ -60,6 +72,9 @@ namespace Squeal
      * it. Throws MeshError if there is none.
      */
     std::set<std::string> used_variables() const;
+
+    /// Whether the file is a plan that is extruded, not a solid. Reads the file. Throws MeshError if there is none.
+    bool is_plan() const;
 
     /// Path of the file. Throws MeshError if there is none.
     std::string path() const;

@@ -2,7 +2,7 @@
 
 from reproduction.numbers import Number, entry
 
-QUADRATIC = ("Discretization/Degree=2", "Geometry/Nodes per pin face=19", "Geometry/Element size=0.04", "Geometry/Disc layers=2")
+QUADRATIC = ("Discretization/Element=quadratic", "Geometry/Nodes per pin face=19", "Geometry/Element size=0.04", "Geometry/Disc layers=2")
 
 
 def bending(runs, ratio, *settings, suffix=""):
