@@ -54,6 +54,7 @@ class PlotTest(ProgramTest):
 
     OVERRIDES = []
     FILE = "scene.prm"
+    WITH_NAMES_ABOVE = ()  # pictures whose names stand above each other
 
     @classmethod
     def setUpClass(cls):
@@ -79,10 +80,11 @@ class PlotTest(ProgramTest):
         for name, figure in self.figures.items():
             self.assertTrue(any(text.get_text() for text in figure.texts), name)
             for axes in figure.axes:
-                self.assertRegex(axes.get_ylabel(), r" \[(%|Hz|N|-)\]$", name)
-                # Of names beside each other there is no unit
-                if axes.get_xlabel() not in ("", "criterion"):
-                    self.assertRegex(axes.get_xlabel(), r" \[(kHz|s of CPU|-)\]$", name)
+                # Of names beside or above each other there is no unit
+                if name not in self.WITH_NAMES_ABOVE:
+                    self.assertRegex(axes.get_ylabel(), r" \[(%|Hz|N|-)\]$", name)
+                if name in self.WITH_NAMES_ABOVE or axes.get_xlabel() not in ("", "criterion"):
+                    self.assertRegex(axes.get_xlabel(), r" \[(kHz|s of CPU|%|points|-)\]$", name)
             key = {text.get_text() for legend in figure.legends for text in legend.get_texts()}
             labels = {label for axes in figure.axes for label in axes.get_legend_handles_labels()[1]}
             self.assertEqual(key, labels, name)
@@ -244,6 +246,25 @@ class Dissipation(PlotTest):
             for column in readings:
                 expected = [float(row[column]) for row in rows if row[column]]
                 self.assertEqual([y for _, y in line_of(axes, column.removesuffix(" [%]"))], expected)
+
+
+class Ingredients(PlotTest):
+    OVERRIDES = ["Study=ingredients", "Ingredients/Divergence tolerance=0.2"]
+    WITH_NAMES_ABOVE = ("ingredients",)
+
+    def test_bars(self):
+        self.assert_drawn({"ingredients"})
+        rows = read_table(self.results / "ingredients.csv")
+        panels = self.figures["ingredients"].axes
+        for axes, column in zip(panels, ("change of frequency [%]", "change of divergence rate [percentage points]",
+                                         "cost beside the reference [-]"), strict=True):
+            expected = {place: float(row[column]) for place, row in enumerate(rows) if row[column] and float(row[column]) > 1e-6}
+            bars = {round(bar.get_y() + bar.get_height() / 2): bar.get_width() for bar in axes.patches}
+            self.assertEqual(set(bars), set(expected))
+            for place, value in expected.items():
+                self.assertAlmostEqual(bars[place], value, places=9)
+        self.assertEqual(len(panels[0].get_yticklabels()), len(rows))
+        self.assertEqual([x for x, _ in line_of(panels[1], "accuracy asked for")], [0.2, 0.2])
 
 
 @unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")

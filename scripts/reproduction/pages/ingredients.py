@@ -1,0 +1,49 @@
+"""doc/ingredients.md"""
+
+from reproduction.numbers import Number, entry
+
+TRIALS = ("Study=ingredients", "Ingredients/Trial friction slope=-0.01", "Ingredients/Trial damping ratio=0.001")
+FREQUENCY, DIVERGENCE = "change of frequency [%]", "change of divergence rate [percentage points]"
+
+# Frequency, divergence rate, unstable modes
+QUOTED = {"consistent": ("0.49", "2.07", "12"),
+          "steady sliding": ("0", "0", "9"),
+          "-0.01 s/m": ("0.043", "0.065", "43"),
+          "0.001": ("0.0008", "0.101", "5"),
+          "on": ("0.106", "0.054", "25"),
+          "real modes alone": ("0.63", "0.33", "14"),
+          "real modes to 7500 Hz": ("0.63", "0.33", "14"),
+          "real modes + 1st order": ("0.15", "0.12", "9"),
+          "to 2500 Hz": ("0", "0", "3")}
+CHANGES = {"consistent", "-0.01 s/m", "on", "real modes alone", "real modes to 7500 Hz", "real modes + 1st order", "to 2500 Hz"}
+
+
+def rows_of(runs):
+    rows = runs("ingredients", "disc_pins.prm", *TRIALS).table("ingredients.csv")
+    # A table's numbers are numbers, also where they name what was tried
+    return {row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}": row for row in rows}
+
+
+@entry("ingredients", "The table of the default scene")
+def default_scene(runs):
+    rows = rows_of(runs)
+    for tried, (frequency, divergence, unstable) in QUOTED.items():
+        row = rows[tried]
+        yield Number(f"{row['ingredient']}: {tried}, frequency [%]", frequency, row[FREQUENCY])
+        yield Number(f"{row['ingredient']}: {tried}, divergence rate [points]", divergence, row[DIVERGENCE])
+        yield Number(f"{row['ingredient']}: {tried}, unstable modes", unstable, row["unstable modes tried [-]"])
+        yield Number("  verdict changes (1) or not (0)", "1" if tried in CHANGES else "0", row["verdict changed [-]"])
+    row = rows["residual iteration"]
+    yield Number("residual iteration, frequency [%]", "0.000005", row[FREQUENCY])
+    yield Number("residual iteration, divergence rate [points]", "0.000003", row[DIVERGENCE])
+    yield Number("unstable modes of the scene", "9", row["unstable modes here [-]"])
+
+
+@entry("ingredients", "First-order responses, a slope, and what half of the band loses")
+def statements(runs):
+    rows = rows_of(runs)
+    real, response = rows["real modes alone"], rows["real modes + 1st order"]
+    yield Number("error in divergence rate beside real modes alone", "0.37", response[DIVERGENCE] / real[DIVERGENCE])
+    slope = rows["-0.01 s/m"]
+    yield Number("more modes that grow with a slope", "34", slope["unstable modes tried [-]"] - slope["unstable modes here [-]"])
+    yield Number("modes that half of the band loses", "49", rows["to 2500 Hz"]["modes without counterpart [-]"])
