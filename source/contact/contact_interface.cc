@@ -20,8 +20,8 @@ namespace Squeal
   {
     const Decision inclined("direction cosine of the normal of a contact node", 1e-12);
 
-    /// Nodes closer to the axis have no sliding direction but that of rounding errors [m].
-    constexpr double smallest_axis_distance = 1e-9;
+    /// Nodes closer to the axis, compared with the outermost one, have no sliding direction but that of rounding errors [-].
+    constexpr double smallest_axis_distance = 1e-8;
 
     /// A node of a contact surface with the area-weighted normal of the faces that meet there.
     struct SurfaceNode
@@ -68,8 +68,8 @@ namespace Squeal
       return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
     }
 
-    /// n, t, b of a contact node.
-    void set_frame(ContactNode &node, Eigen::Vector3d normal, const Rotation rotation)
+    /// n, t, b of a contact node; @p outermost is the largest distance of one from the axis [m].
+    void set_frame(ContactNode &node, Eigen::Vector3d normal, const double outermost, const Rotation rotation)
     {
       normal *= 1. / normal.norm();
       for (double &cosine : normal)
@@ -78,7 +78,7 @@ namespace Squeal
       node.normal = (1. / normal.norm()) * normal;
 
       const double r = node.axis_distance();
-      if (!(r > smallest_axis_distance))
+      if (!(r > smallest_axis_distance * outermost))
         throw MeshError("a contact node lies on the disc's axis, where nothing slides", "surface disc_contact",
                         "move the pins away from the axis");
       const Eigen::Vector3d e_theta = Eigen::Vector3d(-node.position[1], node.position[0], 0.) / (rotation == Rotation::negative ? -r : r);
@@ -98,8 +98,13 @@ namespace Squeal
 
     // Disc nodes sorted by x: a partner is looked for among the neighbours only
     std::vector<std::pair<double, unsigned int>> sorted;
+    double                                       outermost = 0.;
     for (const auto &[number, node] : disc_nodes)
-      sorted.emplace_back(position(model, number)[0], number);
+      {
+        const Eigen::Vector3d p = position(model, number);
+        sorted.emplace_back(p[0], number);
+        outermost = std::max(outermost, std::hypot(p[0], p[1]));
+      }
     std::sort(sorted.begin(), sorted.end());
 
     // Partners
@@ -138,7 +143,7 @@ namespace Squeal
         node.pin       = model.nodes()[pin_node].component;
         node.position  = position(model, nearest);
         node.area      = pin_entry.area;
-        set_frame(node, disc_nodes.at(nearest).area_normal, rotation);
+        set_frame(node, disc_nodes.at(nearest).area_normal, outermost, rotation);
         for (const unsigned int partner : {node.disc_node, node.pin_node})
           for (const int dof : model.nodes()[partner].dofs)
             if (dof < 0)

@@ -68,6 +68,84 @@ namespace Squeal
         }
       return image;
     }
+
+    // ------------------------------------------------------------ correction
+
+    constexpr int most_correction_steps = 12;
+
+    struct ComplexVector
+    {
+      MultiVector re, im; ///< n × 1
+
+      double norm() const
+      {
+        return std::hypot(column_norms(re)[0], column_norms(im)[0]);
+      }
+
+      void scale(const double factor)
+      {
+        re *= factor;
+        im *= factor;
+      }
+
+      /// this += c x
+      void add(const Complex c, const ComplexVector &x)
+      {
+        re += c.real() * x.re - c.imag() * x.im;
+        im += c.real() * x.im + c.imag() * x.re;
+      }
+    };
+
+    /// xᴴ y
+    Complex product(const ComplexVector &x, const ComplexVector &y)
+    {
+      return {column_products(x.re, y.re)[0] + column_products(x.im, y.im)[0],
+              column_products(x.re, y.im)[0] - column_products(x.im, y.re)[0]};
+    }
+
+    /**
+     * φ with ‖φ‖ = 1 less a correction orthogonal to it that minimises ‖Q(λ)φ‖ over the space of Q(s)⁻¹ r, of the residuals r on the
+     * way (generalised conjugate residuals; S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM Journal on Numerical Analysis 20 (1983)
+     * 345–357), until ‖Q(λ)φ‖ ≤ @p tolerance ‖Kφ‖.
+     */
+    ComplexVector corrected(const QuadraticPencil &pencil,
+                            const LinearOperator  &inverse,
+                            const Complex          lambda,
+                            const ComplexVector   &phi,
+                            const double           tolerance)
+    {
+      const PencilImage          before   = apply_pencil(pencil, {lambda}, phi.re, phi.im);
+      const double               accepted = tolerance * before.stiffness_norms[0];
+      ComplexVector              r{before.real, before.imaginary}, result = phi;
+      std::vector<ComplexVector> directions, images;
+      for (int step = 0; step < most_correction_steps && r.norm() > accepted; ++step)
+        {
+          ComplexVector z{MultiVector(phi.re.map(), 1), MultiVector(phi.re.map(), 1)};
+          inverse.apply(r.re, z.re);
+          inverse.apply(r.im, z.im);
+          z.add(-product(phi, z), phi);
+          const PencilImage image = apply_pencil(pencil, {lambda}, z.re, z.im);
+          ComplexVector     y{image.real, image.imaginary};
+          for (std::size_t i = 0; i < images.size(); ++i)
+            {
+              const Complex c = product(images[i], y);
+              y.add(-c, images[i]);
+              z.add(-c, directions[i]);
+            }
+          const double size = y.norm();
+          if (!(size > 0.))
+            break;
+          y.scale(1. / size);
+          z.scale(1. / size);
+          const Complex c = product(y, r);
+          r.add(-c, y);
+          result.add(-c, z);
+          directions.push_back(std::move(z));
+          images.push_back(std::move(y));
+        }
+      result.scale(1. / result.norm());
+      return result;
+    }
   } // namespace
 
   std::vector<double> residuals(const QuadraticPencil      &pencil,
@@ -95,22 +173,14 @@ namespace Squeal
       {
         if (modes.residuals[j] <= tolerance)
           continue;
-        const int         column = static_cast<int>(j);
-        MultiVector       re = view(*modes.real_part, column, 1), im = view(*modes.imaginary_part, column, 1);
-        const PencilImage before = apply_pencil(pencil, {modes.values[j]}, re, im);
-        MultiVector       new_re(re.map(), 1), new_im(re.map(), 1);
-        inverse.apply(before.real, new_re);
-        inverse.apply(before.imaginary, new_im);
-        new_re            = re - new_re;
-        new_im            = im - new_im;
-        const double norm = std::hypot(column_norms(new_re)[0], column_norms(new_im)[0]);
-        new_re *= 1. / norm;
-        new_im *= 1. / norm;
-        const double residual = apply_pencil(pencil, {modes.values[j]}, new_re, new_im).residuals()[0];
+        const int     column = static_cast<int>(j);
+        MultiVector   re = view(*modes.real_part, column, 1), im = view(*modes.imaginary_part, column, 1);
+        ComplexVector x        = corrected(pencil, inverse, modes.values[j], {re, im}, 0.1 * tolerance);
+        const double  residual = apply_pencil(pencil, {modes.values[j]}, x.re, x.im).residuals()[0];
         if (residual < modes.residuals[j])
           {
-            re                 = new_re;
-            im                 = new_im;
+            re                 = x.re;
+            im                 = x.im;
             modes.residuals[j] = residual;
           }
       }
@@ -125,16 +195,19 @@ namespace Squeal
       return worst / options.tolerance;
 
     // ‖φ‖ is one.
-    const double rounding = 10. * std::numeric_limits<double>::epsilon() * options.stiffness_norm;
-    MultiVector  product(*modes.real_part);
+    constexpr double ten_roundings = 10. * std::numeric_limits<double>::epsilon();
+    MultiVector      product(*modes.real_part);
     pencil.stiffness->apply(*modes.real_part, product);
     const std::vector<double> real_norms = column_norms(product);
     pencil.stiffness->apply(*modes.imaginary_part, product);
     const std::vector<double> imaginary_norms = column_norms(product);
     double                    largest         = 0.;
     for (std::size_t j = 0; j < modes.residuals.size(); ++j)
-      largest =
-        std::max(largest, modes.residuals[j] / std::max(options.tolerance, rounding / std::hypot(real_norms[j], imaginary_norms[j])));
+      {
+        const double rounding = ten_roundings * (options.stiffness_norm + std::abs(modes.values[j]) * options.damping_norm) /
+                                std::hypot(real_norms[j], imaginary_norms[j]);
+        largest = std::max(largest, modes.residuals[j] / std::max(options.tolerance, rounding));
+      }
     return largest;
   }
 } // namespace Squeal

@@ -11,11 +11,15 @@ namespace Squeal
 {
   std::uint64_t checksum(const HexMesh &mesh)
   {
-    constexpr double nanometre = 1e-9;
-    std::string      places;
+    double size = 0.;
+    for (const HexMesh::Point &point : mesh.points)
+      size = std::max(size, point.norm());
+    // A power of ten, which rounding of the size does not change
+    const double unit = 1e-8 * std::pow(10., std::floor(std::log10(size)));
+    std::string  places;
     for (const HexMesh::Point &point : mesh.points)
       for (unsigned int d = 0; d < 3; ++d)
-        places += std::to_string(std::llround(point[d] / nanometre)) + ' ';
+        places += std::to_string(std::llround(point[d] / unit)) + ' ';
     return checksum(std::string_view(places));
   }
 

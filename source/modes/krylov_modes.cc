@@ -99,6 +99,7 @@ namespace Squeal
     options.expected                   = n_expected;
     options.tolerance                  = parameters.complex_tolerance;
     options.stiffness_norm             = row_sum_norm(*matrices.stiffness);
+    options.damping_norm               = matrices.damping ? row_sum_norm(*matrices.damping) : 0.;
     options.report                     = [&](const std::string &state) { progress.update(state); };
 
     ComplexModes modes;

@@ -45,8 +45,8 @@ namespace Squeal
       };
       require(material.young_modulus > 0., "Young's modulus is " + exact_text(material.young_modulus) + " Pa", "Young modulus",
               "give a positive value");
-      require(material.poisson_ratio > -1. && material.poisson_ratio < 0.4999, "Poisson's ratio is " + exact_text(material.poisson_ratio),
-              "Poisson ratio", "give a value above -1 and below 0.4999 (displacement elements lock for incompressible materials)");
+      require(material.poisson_ratio > -1. && material.poisson_ratio <= 0.4999, "Poisson's ratio is " + exact_text(material.poisson_ratio),
+              "Poisson ratio", "give a value above -1 and up to 0.4999 (the stiffness of an incompressible material is infinite)");
       require(material.density > 0., "the density is " + exact_text(material.density) + " kg/m^3", "Density", "give a positive value");
       require(material.rayleigh_alpha >= 0. && std::isfinite(material.rayleigh_alpha),
               "the damping in proportion to the mass is " + exact_text(material.rayleigh_alpha) + " 1/s", "Rayleigh alpha",

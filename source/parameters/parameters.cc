@@ -23,6 +23,9 @@ namespace Squeal
     /// Characters of an unknown name that are held against the known ones: no known one is as long.
     constexpr std::size_t longest_name = 200;
 
+    /// α over the reach of the band up to which eigenvalues of waves not much faster than those of the band lie in it [-].
+    constexpr double most_damping_by_mass = 4.;
+
     /// Levenshtein distance without regard to case.
     unsigned int edit_distance(const std::string &a, const std::string &b)
     {
@@ -284,6 +287,15 @@ namespace Squeal
                              text("give less than ", 1. / radius, " s, let the band end below ",
                                   hertz(circular_frequency(discretization.maximum_frequency) / (beta * radius)),
                                   " Hz, or give Damping/Modal damping ratio instead"));
+
+    // Waves with α > 2 ω are overdamped, and one of their two real λ tends to −ω²/α: the stronger the damping, the faster the waves,
+    // beyond what the mesh resolves, whose eigenvalues come within reach of the band.
+    for (const auto &[section, material] : materials.all())
+      if (const double alpha = material.rayleigh_alpha; alpha > most_damping_by_mass * radius)
+        throw ParameterError("the damping in proportion to the mass, " + exact_text(alpha) +
+                               " 1/s, brings slow real eigenvalues -omega^2/alpha of waves far beyond the band into it",
+                             "parameter " + section + "/Rayleigh alpha",
+                             text("give at most ", most_damping_by_mass * radius, " 1/s, or give Damping/Modal damping ratio instead"));
   }
 
   void Parameters::check() const

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
+#include <squeal/estimates/conditioning.h>
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
@@ -9,6 +10,7 @@
 #include <squeal/studies/friction_modes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Squeal
 {
@@ -57,6 +59,7 @@ namespace Squeal
     FrictionModes result;
     result.modes = std::move(modes);
     // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
+    result.n_slow             = std::max(0, result.modes.n_rigid_body - frictionless.real.n_rigid_body);
     result.modes.n_rigid_body = frictionless.real.n_rigid_body;
     result.unstable           = unstable_modes(result.modes);
     result.labels             = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
@@ -148,10 +151,36 @@ namespace Squeal
     if (n_complex == n_real_modes)
       return "";
     const std::string counts = text("  note: ", n_real_modes, " real but ", n_complex, " complex modes lie in the band: ");
-    const std::string real   = text(n_values, " real eigenvalues stand for modes that do not oscillate");
-    if (2 * n_complex + n_values == 2 * n_real_modes)
-      return counts + real;
-    return counts + (n_values > 0 ? real + ", and " : "") + "with friction modes crossed its end";
+    std::string       rest;
+    if (n_values > 0)
+      rest = text(n_values, " real eigenvalues stand for modes that do not oscillate");
+    if (friction.n_slow > 0)
+      rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, count as zero");
+    if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
+      rest += text(rest.empty() ? "" : ", and ", "with friction modes crossed its end");
+    return counts + rest;
+  }
+
+  void record_conditioning(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+  {
+    const Conditioning conditioning =
+      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, friction.modes);
+    const auto   largest = [](const std::vector<double> &values) { return *std::max_element(values.begin(), values.end()); };
+    const double kappa   = largest(conditioning.modes);
+    run.measure("condition number of the stiffness [-]", conditioning.stiffness);
+    run.measure("condition number of the mass [-]", conditioning.mass);
+    run.measure("condition number of the span of the modes [-]", conditioning.span);
+    run.measure("largest condition number of an eigenvalue [-]", kappa);
+    run.measure("largest cancellation in the stiffness [-]", conditioning.largest_cancellation);
+    run.measure("largest root of eps_res [-]", conditioning.largest_residual);
+    run.measure("digits of the eigenvalues [-]", conditioning.digits());
+    const SolverParameters &solvers = run.parameters.solvers;
+    if (conditioning.largest_error() >
+        (solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance))
+      run.warn(text("the eigenvalues keep some ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
+                    100. * conditioning.largest_error(), " % of omega are not told from zero (condition numbers: stiffness ",
+                    conditioning.stiffness, ", eigenvalues up to ", kappa, "; cancellation in the stiffness ",
+                    conditioning.largest_cancellation, "; energy of the residuals up to ", conditioning.largest_residual, ")"));
   }
 
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/factorization.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/frictionless_modes.h>
 
@@ -13,6 +14,22 @@ namespace Squeal
   {
     /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
     constexpr double label_band = 1.2;
+
+    /**
+     * Refuses a speed beyond a critical one, at which K − Ω² ρ N has negative eigenvalues: the disc cannot keep its shape in the fixed
+     * frame, and no Cholesky factor exists.
+     */
+    void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
+    {
+      if (!parameters.operation.rotating_disc || !parameters.has_friction())
+        return;
+      int       n_null = 0;
+      const int n      = count_negative_eigenvalues(*coupled.stiffness, "stiffness of the turning disc", &n_null);
+      if (n + n_null > 0)
+        throw ParameterError(text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
+                                  n + n_null, n + n_null == 1 ? " motion has" : " motions have", " no positive stiffness"),
+                             "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
+    }
 
     /// Refuses a band with more modes than allowed before any mode is computed: counting them takes one factorisation.
     void check_number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
@@ -100,6 +117,7 @@ namespace Squeal
     result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
     // -------------------------------------------------------- component modes
+    check_speed(coupled, parameters);
     check_number_of_modes(coupled, (1. + margin) * omega_max, run);
 
     const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);

@@ -147,6 +147,7 @@ namespace Squeal
     const FrictionModes                friction      = friction_modes(frictionless, operation.friction_coefficient, run);
     const Linearisation               &linearisation = frictionless.linearisation;
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
+    record_conditioning(frictionless, friction, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
     run.count("real eigenvalues", friction.modes.real_values.size());

@@ -33,6 +33,7 @@ namespace Squeal
     /// A norm of K. Modes far below the others have a small ‖Kφ‖; their ‖Q(λ)φ‖ may be as large as its rounding
     /// errors, ten times the machine precision times this norm. 0: may not.
     double stiffness_norm = 0.;
+    double damping_norm   = 0.; ///< of C, likewise, for those of λCφ
 
     int block_size = 4; ///< vectors per block solve
 

@@ -16,7 +16,8 @@ namespace Squeal
     ComplexModes           modes;
     std::vector<ModeLabel> labels;
     std::vector<bool>      unstable; ///< beyond their uncertainty
-    Cost                   cost;     ///< of the solution
+    int  n_slow = 0; ///< pairs of λ that count as zero but belong to no rigid body, such as slow decay against strong dampers
+    Cost cost;       ///< of the solution
 
     std::size_t n_unstable() const;
 
@@ -29,6 +30,12 @@ namespace Squeal
 
   /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
+
+  /**
+   * Keeps condition numbers and the digits that the eigenvalues keep (estimates/conditioning.h) in the run record, and warns where
+   * they are fewer than the tolerance of the solver asks for.
+   */
+  void record_conditioning(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 
   /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,

@@ -1,0 +1,239 @@
+#include <squeal/estimates/conditioning.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <limits>
+#include <tuple>
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr int n_lanczos_steps = 15;
+    /// Of a Lanczos vector beside the one before: the space is exhausted.
+    constexpr double negligible = 1e-14;
+
+    /// λ closer than this part of them are one multiple eigenvalue.
+    constexpr double cluster_width = 1e-7;
+
+    using Operator = std::function<MultiVector(const MultiVector &)>;
+
+    /// Smallest and largest Ritz value of a symmetric operator in a Krylov space.
+    std::pair<double, double> extreme_ritz_values(const Operator &A, const RowMap &map)
+    {
+      MultiVector q = random_vectors(map, 1), before(map, 1);
+      q *= 1. / column_norms(q)[0];
+      DenseMatrix T    = DenseMatrix::Zero(n_lanczos_steps, n_lanczos_steps);
+      double      beta = 0.;
+      int         size = 0;
+      while (size < std::min(n_lanczos_steps, map.n()))
+        {
+          MultiVector w = A(q);
+          w -= beta * before;
+          const double alpha = column_products(q, w)[0];
+          w -= alpha * q;
+          T(size, size) = alpha;
+          beta          = column_norms(w)[0];
+          ++size;
+          if (size == std::min(n_lanczos_steps, map.n()) || !(beta > negligible * std::abs(alpha)))
+            break;
+          T(size, size - 1) = T(size - 1, size) = beta;
+          before                                = q;
+          q                                     = (1. / beta) * w;
+        }
+      const auto values = symmetric_eigenpairs(DenseMatrix(T.topLeftCorner(size, size))).values;
+      return {values.front(), values.back()};
+    }
+
+    /// √ of the diagonal, as a vector n × 1.
+    MultiVector root_of_diagonal(const SparseMatrix &A)
+    {
+      MultiVector       result(A.rows(), 1);
+      SparseMatrix::Row row;
+      for (int i = 0; i < result.n_local_rows(); ++i)
+        {
+          A.get_row(i, row);
+          for (const auto &[column, value] : row)
+            if (column == A.rows().number(i))
+              result(i, 0) = std::sqrt(std::abs(value));
+        }
+      return result;
+    }
+
+    MultiVector product(const MultiVector &scaling, MultiVector X)
+    {
+      X.col(0).array() *= scaling.col(0).array();
+      return X;
+    }
+
+    MultiVector quotient(MultiVector X, const MultiVector &scaling)
+    {
+      X.col(0).array() /= scaling.col(0).array();
+      return X;
+    }
+
+    /// Smallest and largest Ritz value of D A D.
+    std::pair<double, double> equilibrated_extremes(const SparseMatrix &A, const MultiVector &roots)
+    {
+      return extreme_ritz_values([&](const MultiVector &x) { return quotient(A * quotient(x, roots), roots); }, A.rows());
+    }
+
+    double condition_of_mass(const SparseMatrix &M)
+    {
+      const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
+      return largest / smallest;
+    }
+
+    double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)
+    {
+      const MultiVector roots = root_of_diagonal(K);
+      const auto        inverse_max =
+        extreme_ritz_values([&](const MultiVector &x) { return product(roots, inverse.solve_frictionless(product(roots, x))); }, K.rows());
+      return equilibrated_extremes(K, roots).second * inverse_max.second;
+    }
+
+    /// |A|, entry by entry.
+    std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
+    {
+      return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int place, SparseMatrix::Row &row) {
+        A.get_row(place, row);
+        for (auto &entry : row)
+          entry.second = std::abs(entry.second);
+      });
+    }
+
+    /// γ of each vector.
+    std::vector<double> cancellations(const SparseMatrix &K, const MultiVector &X, const MultiVector &KX)
+    {
+      const int   k = X.n_columns() / 2;
+      MultiVector size(X.map(), k, false);
+      size.local()             = (X.local().leftCols(k).array().square() + X.local().rightCols(k).array().square()).sqrt().matrix();
+      const auto          sums = column_products(size, *moduli(K) * size), energies = complex_products(X, KX);
+      std::vector<double> result;
+      for (int j = 0; j < k; ++j)
+        result.push_back(sums[j] / std::abs(energies[j]));
+      return result;
+    }
+
+    /// XᴴY of complex vectors kept as halves, from [Re X, Im X]ᵀ [Re Y, Im Y].
+    ComplexDenseMatrix hermitian_product(const DenseMatrix &products)
+    {
+      const Eigen::Index k  = products.rows() / 2;
+      const DenseMatrix  re = products.topLeftCorner(k, k) + products.bottomRightCorner(k, k),
+                        im  = products.topRightCorner(k, k) - products.bottomLeftCorner(k, k);
+      ComplexDenseMatrix result(k, k);
+      result.real() = re;
+      result.imag() = im;
+      return result;
+    }
+
+    /**
+     * Of a multiple eigenvalue any basis of its space is found, which says nothing about how this space lies to others: T, for which
+     * TᴴGT = I in each cluster.
+     */
+    ComplexDenseMatrix orthonormal_within_clusters(const std::vector<std::complex<double>> &lambda, const ComplexDenseMatrix &G)
+    {
+      const int          k = static_cast<int>(lambda.size());
+      ComplexDenseMatrix T = ComplexDenseMatrix::Identity(k, k);
+      std::vector<bool>  done(k, false);
+      for (int i = 0; i < k; ++i)
+        {
+          std::vector<int> members;
+          for (int j = i; j < k; ++j)
+            if (!done[j] && std::abs(lambda[i] - lambda[j]) <= cluster_width * std::abs(lambda[i]))
+              members.push_back(j);
+          for (const int j : members)
+            done[j] = true;
+          if (members.size() < 2)
+            continue;
+          const ComplexDenseMatrix among = G(members, members);
+          const ComplexDenseMatrix L     = among.llt().matrixL();
+          T(members, members)            = ComplexDenseMatrix(L.adjoint().inverse());
+        }
+      return T;
+    }
+
+    /// κ of each λ, from the energies of the states and of their conjugates, and the condition number of these.
+    std::pair<std::vector<double>, double> conditions(const std::vector<std::complex<double>> &lambda,
+                                                      const DenseMatrix                       &stiffness,
+                                                      const DenseMatrix                       &mass)
+    {
+      // [Re X, Im X]ᵀ A [Re X, −Im X] makes Xᴴ A X̄
+      const Eigen::Index k         = stiffness.rows() / 2;
+      const auto         with_conj = [k](DenseMatrix products) {
+        const ComplexDenseMatrix direct = hermitian_product(products);
+        products.rightCols(k) *= -1.;
+        const ComplexDenseMatrix crossed = hermitian_product(products);
+        ComplexDenseMatrix       result(2 * k, 2 * k);
+        result << direct, crossed, crossed.conjugate(), direct.conjugate();
+        return result;
+      };
+      Eigen::VectorXcd values(2 * k);
+      values << as_column(lambda), as_column(lambda).conjugate();
+      ComplexDenseMatrix G =
+        with_conj(stiffness) + ComplexDenseMatrix(values.conjugate().asDiagonal() * with_conj(mass) * values.asDiagonal());
+      const Eigen::VectorXd scale = G.diagonal().real().cwiseAbs().cwiseSqrt().cwiseInverse();
+      G                           = ComplexDenseMatrix(scale.asDiagonal() * G * scale.asDiagonal());
+      const ComplexDenseMatrix T  = orthonormal_within_clusters(lambda, G.topLeftCorner(k, k));
+      ComplexDenseMatrix       basis(ComplexDenseMatrix::Zero(2 * k, 2 * k));
+      basis.topLeftCorner(k, k)     = T;
+      basis.bottomRightCorner(k, k) = T.conjugate();
+      G                             = ComplexDenseMatrix(basis.adjoint() * G * basis);
+
+      // The real form of a Hermitian matrix: each eigenvalue twice
+      DenseMatrix real(4 * k, 4 * k);
+      real << G.real(), -G.imag(), G.imag(), G.real();
+      const RealPairs     axes = symmetric_eigenpairs(real);
+      std::vector<double> result;
+      for (Eigen::Index j = 0; j < k; ++j)
+        {
+          double square = 0.;
+          for (Eigen::Index i = 0; i < 4 * k; ++i)
+            square += std::norm(axes.vectors(j, i)) / std::max(axes.values[i], std::numeric_limits<double>::epsilon());
+          result.push_back(std::sqrt(square));
+        }
+      return {result, axes.values.back() / std::max(axes.values.front(), std::numeric_limits<double>::epsilon())};
+    }
+  } // namespace
+
+  double Conditioning::largest_error() const
+  {
+    return errors.empty() ? 0. : *std::max_element(errors.begin(), errors.end());
+  }
+
+  double Conditioning::digits() const
+  {
+    return std::max(0., -std::log10(std::max(largest_error(), std::numeric_limits<double>::epsilon())));
+  }
+
+  Conditioning estimate_conditioning(const CoupledSystem  &system,
+                                     const UpdatedInverse &inverse,
+                                     const double          shift,
+                                     const ComplexModes   &modes)
+  {
+    const SparseMatrix &M = *system.mass;
+    const auto          K = shift == 0. ? system.stiffness : add(1., *system.stiffness, shift * shift, M);
+    Conditioning        result;
+    result.stiffness = condition_of_stiffness(*K, inverse);
+    result.mass      = condition_of_mass(M);
+    if (modes.lambda.empty())
+      return result;
+
+    const MultiVector         X = join({modes.real_part.get(), modes.imaginary_part.get()}), KX = *system.stiffness * X;
+    const std::vector<double> gamma     = cancellations(*system.stiffness, X, KX);
+    std::tie(result.modes, result.span) = conditions(modes.lambda, gram(X, KX), gram(X, M * X));
+    result.largest_cancellation         = *std::max_element(gamma.begin(), gamma.end());
+    for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+      {
+        const double residual   = std::sqrt(std::abs(modes.energy_residuals[j]));
+        result.largest_residual = std::max(result.largest_residual, residual);
+        result.errors.push_back(0.5 * result.modes[j] * (residual + std::numeric_limits<double>::epsilon() * gamma[j]));
+      }
+    return result;
+  }
+} // namespace Squeal

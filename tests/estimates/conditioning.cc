@@ -1,0 +1,121 @@
+#include "solutions.h"
+
+#include <squeal/estimates/conditioning.h>
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// Modes below 10 rad/s with what they lose.
+  std::pair<ComplexModes, Conditioning> conditioned(const CoupledSystem &system, const double mu, const double band = 10.)
+  {
+    UpdatedInverse   inverse(system, 0., FactorizationLibrary::automatic);
+    SolverParameters solvers;
+    Progress         progress;
+    solvers.complex_tolerance = 1e-13;
+    ComplexModes modes        = krylov_modes(system, inverse, 0., mu, band, system.map().n(), solvers, progress);
+    return {modes, estimate_conditioning(system, inverse, 0., modes)};
+  }
+
+  CoupledSystem without_contact(std::shared_ptr<const SparseMatrix> M,
+                                std::shared_ptr<const SparseMatrix> C,
+                                std::shared_ptr<const SparseMatrix> K)
+  {
+    const RowMap contact = rows(1), map = K->rows();
+    return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{}; }), nullptr);
+  }
+
+  /// K̃ = [3, 0.7 − μ; 0.7, 2] of two unit masses, one contact.
+  CoupledSystem flutter()
+  {
+    const RowMap map = rows(2), contact = rows(1);
+    return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
+                      sparse(map, map,
+                             [](const int i) {
+                               return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}};
+                             })},
+                     sparse(contact, map,
+                            [](int) {
+                              return Row{{0, 1.}};
+                            }),
+                     sparse(contact, map, [](int) {
+                       return Row{{1, 1.}};
+                     }));
+  }
+
+  /// Condition numbers ‖y‖ ‖x‖ / |yᴴ x| of the eigenvalues of ż = A z in the coordinates z = (K^½ u, v), largest.
+  double condition_of_first_order_system(const double mu)
+  {
+    DenseMatrix K(2, 2), K_mu(2, 2);
+    K << 3., 0.7, 0.7, 2.;
+    K_mu << 3., 0.7 - mu, 0.7, 2.;
+    const RealPairs axes  = symmetric_eigenpairs(K);
+    const auto      power = [&axes](const double p) {
+      return DenseMatrix(axes.vectors * as_column(axes.values).array().pow(p).matrix().asDiagonal() * axes.vectors.transpose());
+    };
+    DenseMatrix A                 = DenseMatrix::Zero(4, 4);
+    A.topRightCorner(2, 2)        = power(0.5);
+    A.bottomLeftCorner(2, 2)      = -K_mu * power(-0.5);
+    const DenseEigenpairs pairs   = eigenpairs(A, true);
+    double                largest = 0.;
+    for (int j = 0; j < 4; ++j)
+      largest =
+        std::max(largest, pairs.left.col(j).norm() * pairs.right.col(j).norm() / std::abs(pairs.left.col(j).dot(pairs.right.col(j))));
+    return largest;
+  }
+} // namespace
+
+TEST(Conditioning, OfALaplacianInAnyUnits)
+{
+  const int  m      = 3;
+  const auto values = laplacian_eigenvalues(m, 1);
+  const auto bounds = std::minmax_element(values.begin(), values.end());
+  for (const double unit : {1., 1e-12, 1e15})
+    {
+      const auto K                     = add(unit, *laplacian(m, 1), 0., *laplacian(m, 1));
+      const auto M                     = Testing::diagonal(K->rows(), [unit](const int i) { return unit * (i % 2 == 0 ? 1. : 1e2); });
+      const auto [modes, conditioning] = conditioned(without_contact(M, nullptr, K), 0.);
+      EXPECT_NEAR(conditioning.stiffness, *bounds.second / *bounds.first, 1e-6 * conditioning.stiffness);
+      EXPECT_NEAR(conditioning.mass, 1., 1e-12);
+      ASSERT_FALSE(modes.lambda.empty());
+      for (const double kappa : conditioning.modes)
+        EXPECT_NEAR(kappa, 1., 1e-8);
+      EXPECT_GT(conditioning.digits(), 9.);
+    }
+}
+
+TEST(Conditioning, SeesWhatCancelsInTheStiffness)
+{
+  const double delta = 1e-6;
+  const RowMap map   = rows(2);
+  const auto   M     = Testing::diagonal(map, [](int) { return 1.; });
+  const auto K = sparse(map, map, [delta](const int i) { return i == 0 ? Row{{0, 1.}, {1, delta - 1.}} : Row{{0, delta - 1.}, {1, 1.}}; });
+  const auto [modes, conditioning] = conditioned(without_contact(M, nullptr, K), 0., 0.1);
+  ASSERT_EQ(modes.lambda.size(), 1u);
+  EXPECT_NEAR(conditioning.largest_cancellation * delta, 2., 1e-5);
+  EXPECT_NEAR(conditioning.stiffness * delta, 2., 1e-5);
+  // ½ ε γ = 2.2e-10
+  EXPECT_GT(conditioning.errors[0], 2e-10);
+  EXPECT_NEAR(conditioning.digits(), 9.6, 0.3);
+}
+
+TEST(Conditioning, GrowsTowardsACoalescence)
+{
+  const double threshold = 1. / 2.8 + 0.7;
+  for (const double distance : {0.5, 1e-2, 1e-4, -1e-2, -0.5})
+    {
+      const double mu                  = threshold * (1. - distance);
+      const auto [modes, conditioning] = conditioned(flutter(), mu);
+      ASSERT_EQ(conditioning.modes.size(), 2u);
+      const double expected = condition_of_first_order_system(mu);
+      EXPECT_NEAR(std::max(conditioning.modes[0], conditioning.modes[1]) / expected, 1., 1e-4) << distance;
+      if (std::abs(distance) < 1e-3)
+        EXPECT_GT(expected, 30.);
+    }
+}
