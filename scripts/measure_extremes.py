@@ -10,6 +10,7 @@ Exits with 1 where a case is neither right nor refused as it should be. The envi
 
 import argparse
 import collections
+import concurrent.futures
 import os
 import pathlib
 import sys
@@ -22,22 +23,29 @@ from extremes.cases import CASES
 from extremes.judge import judge
 
 
+def judge_in(number, case, keep):
+    """The row of a case, run in DIR/NUMBER or in a folder that does not stay."""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = keep / f"{number:03d}" if keep else pathlib.Path(temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        return judge(case, folder)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
     parser.add_argument("--quick", action="store_true", help="only those that the tests run")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cases at a time (default: %(default)s)")
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keeps the runs there")
     parser.add_argument("--write", action="store_true", help="writes the table into doc/extremes.md")
     arguments = parser.parse_args()
     chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)]
     rows = []
     print(page.HEAD)
-    for number, case in enumerate(chosen):
-        with tempfile.TemporaryDirectory() as temporary:
-            folder = arguments.keep / f"{number:03d}" if arguments.keep else pathlib.Path(temporary)
-            folder.mkdir(parents=True, exist_ok=True)
-            rows.append(judge(case, folder))
-        print(page.line(rows[-1]), flush=True)
+    with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
+        for row in pool.map(judge_in, range(len(chosen)), chosen, [arguments.keep] * len(chosen)):
+            rows.append(row)
+            print(page.line(row), flush=True)
     outcomes = collections.Counter(row.outcome for row in rows)
     print(f"\n{len(rows)} cases: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()))
     if arguments.write:

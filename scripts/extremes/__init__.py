@@ -1,7 +1,8 @@
 """Parameters far from those of a brake: scenes, an independent solution of each, and the judgement of what the program says.
 
-    cases.py   the scenes as data
-    oracle.py  all eigenvalues of the exported matrices by SciPy, refined in extended precision
-    judge.py   runs a case and says whether it is right, refused or wrong
-    page.py    the table of doc/extremes.md
+    cases.py     the scenes as data
+    oracle.py    all eigenvalues of the exported matrices by SciPy, refined in extended precision
+    judge.py     runs a case and says whether it is right, refused or wrong
+    scaling.py   the small scene in other units of length
+    page.py      the table of doc/extremes.md
 """

@@ -13,7 +13,7 @@ import numpy as np
 
 import exported_matrices
 import parameter_file
-from extremes import oracle
+from extremes import oracle, scaling
 from extremes.cases import BASE, RIGHT
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
@@ -21,12 +21,16 @@ SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "s
 
 # Largest relative difference of an eigenvalue from the oracle's
 TOLERANCE = 1e-6
-# Largest residual of a mode in the tables
+# Largest residual of a mode in the tables of a run that does not warn of lost digits
 LARGEST_RESIDUAL = 1e-8
+# Tables have 12 digits
+PRINTED = 1e-11
 # Eigenvalues that near to the end of the band or to its radius may be listed or not
 EDGE = 1e-7
 # |lambda| / end of the band up to which the program takes lambda for zero
 ZERO = 1e-4
+# Largest difference of results without unit from those of the scene in metres
+SAME_IN_ALL_UNITS = 1e-8
 # Time that a run may take [s]
 TIME_LIMIT = 300
 
@@ -43,6 +47,7 @@ class Row:
     count: str = "–"
     oracle: str = "–"
     deviation: str = "–"
+    digits: str = "–"
     remark: str = ""
 
     @property
@@ -101,7 +106,7 @@ def judge(case, folder):
             judge_refusal(case, process, folder, row)
         else:
             judge_results(case, process, folder, row)
-            if case.expected is not RIGHT:
+            if case.expected != RIGHT:
                 raise Wrong(f"{row.outcome}, but should be refused: {case.expected}")
     except Wrong as wrong:
         row.outcome = "WRONG"
@@ -117,7 +122,7 @@ def judge_refusal(case, process, folder, row):
     if (folder / "run").exists():
         raise Wrong("refused, but left results")
     row.outcome, row.remark = "refused", reason[1]
-    if case.expected is RIGHT or case.expected not in process.stderr:
+    if case.expected == RIGHT or case.expected not in process.stderr:
         raise Wrong(f"refused: {reason[1]}")
 
 
@@ -139,7 +144,7 @@ def judge_results(case, process, folder, row):
     if found != counted:
         raise Wrong(f"{found} real modes found, {counted} counted")
     if case.argument_count:
-        row.count += argument_count(case, folder)
+        row.count += argument_count(case, folder, modes, band)
 
     # ------------------------------------------------ an independent solution
     matrices = exported_matrices.read_matrices(run)
@@ -157,18 +162,37 @@ def judge_results(case, process, folder, row):
         own_error, dense_error = max(own_error, solution.error), max(dense_error, solution.first_error)
     row.oracle = " / ".join(methods)
     row.deviation = f"{worst:.0e}"
-    if residual > LARGEST_RESIDUAL:
-        raise Wrong(f"residual {residual:.1e}")
+    record = json.loads((run / "run.json").read_text(encoding="utf-8"))
+    digits = record["quantities"]["digits of the eigenvalues [-]"]
+    row.digits = f"{digits:.0f}"
+    has_warned = any("digits" in warning for warning in record["warnings"])
+    if residual > LARGEST_RESIDUAL and not has_warned:
+        raise Wrong(f"residual {residual:.1e} without a warning")
+    if worst > max(10.0 ** (1 - digits), PRINTED):
+        raise Wrong(f"eigenvalues differ by {worst:.1e}, the run says that {digits:.1f} digits are right")
     if worst > TOLERANCE:
         raise Wrong(f"eigenvalues differ by {worst:.1e} (oracle's own error {own_error:.0e})")
     row.outcome = "right"
+    if case.unit:
+        compare_units(case, folder, row)
     if own_error > TOLERANCE / 10:
         row.outcome, row.remark = "not judged", f"the oracle's own error is {own_error:.0e}"
     elif dense_error > TOLERANCE:
         row.remark = f"LAPACK alone is off by {dense_error:.0e}"
-    digits = json.loads((run / "run.json").read_text(encoding="utf-8"))["quantities"].get("digits of the eigenvalues [-]")
-    if digits is not None and digits < 6:
-        row.remark = (row.remark + "; " if row.remark else "") + f"{digits:.0f} digits left"
+    if has_warned:
+        row.remark += ("; " if row.remark else "") + "the run warns of lost digits"
+
+
+def compare_units(case, folder, row):
+    """Holds the tables of a scene against those of the same scene in metres."""
+    process = call("scene.prm", "--output", "metres", *(word for setting in case.unit for word in ("--set", setting)), folder=folder)
+    if process.returncode != 0:
+        raise Wrong(f"refused in metres: {process.stderr}")
+    largest = max(scaling.difference(read_table(folder / "metres" / name), read_table(folder / "run" / name), case.scale)
+                  for name in ("complex_modes.csv", "real_modes.csv", "component_modes.csv"))
+    if largest > SAME_IN_ALL_UNITS:
+        raise Wrong(f"differs by {largest:.1e} from the scene in metres")
+    row.remark = f"{largest:.0e} from the scene in metres"
 
 
 def compare(what, actual, expected, band, radius):
@@ -187,8 +211,11 @@ def compare(what, actual, expected, band, radius):
     return oracle.match(actual, inside)
 
 
-def argument_count(case, folder):
-    """Number of complex modes by the argument principle, which a sweep of one friction coefficient can ask for."""
+def argument_count(case, folder, modes, band):
+    """
+    Number of complex modes by the argument principle, which a sweep of one friction coefficient can ask for, of those with
+    |Re lambda| up to 0.1 and Im lambda from 0.001 of the end of the band.
+    """
     parameters = parameter_file.read_parameters(folder / "run" / "parameters.prm")
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",
@@ -197,8 +224,9 @@ def argument_count(case, folder):
     if process.returncode != 0:
         return f", argument refused ({process.stderr.strip().splitlines()[0][7:]})"
     check_numbers(folder / "count")
-    counts = read_table(folder / "count" / "argument_counts.csv")[0]
-    counted, tracked = int(counts["modes counted [-]"]), int(counts["modes of the sweep [-]"])
-    if counted != tracked:
-        raise Wrong(f"argument principle: {counted} modes counted, {tracked} in the sweep")
+    counted = int(read_table(folder / "count" / "argument_counts.csv")[0]["modes counted [-]"])
+    n_inside = sum(abs(mode.real) <= 0.1 * band and 1e-3 * band <= mode.imag <= band for mode in modes)
+    n_on_edge = sum(abs(mode.imag - band) <= EDGE * band for mode in modes)
+    if not n_inside - n_on_edge <= counted <= n_inside:
+        raise Wrong(f"argument principle: {counted} modes counted, {n_inside} in the table")
     return f", argument {counted}"

@@ -28,6 +28,8 @@ LARGEST_DENSE = 1600
 # Eigenvalues closer than this part of their modulus are refined together
 CLUSTER = 1e-6
 N_ITERATIONS = 4
+# |lambda| / end of the band of what counts as zero, and is not refined
+ZERO = 0.9e-4
 # Change in a refinement from which there is no need of another
 CONVERGED = 1e-9
 
@@ -95,7 +97,7 @@ class Oracle:
     # ---------------------------------------------------------------- refinement
 
     def refine(self, values):
-        """Values that coincide are refined together; those at zero stay what they are."""
+        """Values that coincide are refined together; those that count as zero stay what they are."""
         order = np.lexsort((values.real, values.imag))
         left, refined = list(values[order]), []
         while left:
@@ -111,7 +113,7 @@ class Oracle:
 
     def refine_cluster(self, cluster):
         centre = np.mean(cluster)
-        if abs(centre) < 1e-6 * self.shift:
+        if abs(centre) < ZERO * 2 * np.pi * self.band:
             return cluster
         if abs(centre.imag) <= 1e-9 * abs(centre):
             centre = complex(centre.real, 0)

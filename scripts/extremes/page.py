@@ -4,12 +4,12 @@ import pathlib
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "doc" / "extremes.md"
 BEGIN, END = "<!-- cases -->", "<!-- end of cases -->"
-COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "remark")
+COLUMNS = ("case", "value", "outcome", "modes", "residual", "count", "oracle", "deviation", "digits", "remark")
 HEAD = "| " + " | ".join(COLUMNS) + " |\n" + "|---" * len(COLUMNS) + "|"
 
 
 def line(row):
-    cells = (row.group, row.value, row.outcome, row.modes, row.residual, row.count, row.oracle, row.deviation, row.remark)
+    cells = (row.group, row.value, row.outcome, row.modes, row.residual, row.count, row.oracle, row.deviation, row.digits, row.remark)
     return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 

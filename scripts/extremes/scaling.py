@@ -1,0 +1,49 @@
+"""The same scene in other units of length: every result that has no unit must be the same.
+
+Lengths times s, with Young's moduli, densities and pressures as they are: frequencies, rates and speeds go with 1 / s, forces with s^2,
+stiffnesses per area of mounts with 1 / s, damping coefficients of contact nodes with s^2.
+"""
+
+LENGTHS = {"Disc inner radius": 0.2, "Disc outer radius": 0.3155, "Disc thickness": 0.0463, "Pin diameter": 0.052, "Pin height": 0.0318,
+           "Element size": 0.0577, "Top pin radii": 0.257, "Bottom pin radii": 0.257, "Pairing tolerance": 1e-6}
+MOUNT = (0, 7.8e10, 1.88e10)
+
+
+def scaled(s, *, held=True, damped=False):
+    """Settings of the small scene in which lengths are s times as long."""
+    settings = [f"Geometry/{name}={value * s!r}" for name, value in LENGTHS.items()]
+    settings += [f"Band/Maximum frequency={5000 / s!r}", f"Operation/Load per side={1000 * s**2!r}", f"Operation/Rotation speed={4 / s!r}"]
+    stiffnesses = ", ".join(repr(stiffness / s) for stiffness in MOUNT)
+    settings.append(f"Mounts/Elastic mounts={f'disc_bore: {stiffnesses}' if held else ''}")
+    if damped:
+        settings += ["Operation/Radial dissipation=consistent", f"Disc material/Rayleigh beta={1e-7 * s!r}", f"Pin material/Rayleigh alpha={20 / s!r}"]
+    return tuple(settings)
+
+
+def difference(rows, others, s):
+    """
+    Largest difference of two tables of modes, the lengths of the second s times as long: frequencies relative to themselves, rates relative
+    to omega, numbers without unit as they are; infinite where texts, numbers of rows or signs of growth differ.
+    """
+    if len(rows) != len(others):
+        return float("inf")
+    largest = 0.0
+    for row, other in zip(rows, others):
+        for column, cell in row.items():
+            if column == "frequency [Hz]" or column == "growth rate [1/s]":
+                size = float(row["frequency [Hz]"]) or 1.0
+                largest = max(largest, abs(float(cell) - s * float(other[column])) / size)
+            elif is_number(cell) and is_number(other[column]):
+                part = 100 if "[%]" in column else 1
+                largest = max(largest, abs(float(cell) - float(other[column])) / part)
+            elif cell != other[column]:
+                return float("inf")
+    return largest
+
+
+def is_number(text):
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
