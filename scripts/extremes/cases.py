@@ -35,7 +35,7 @@ class Case:
     value: str
     settings: tuple
     expected: str = RIGHT
-    argument_count: bool = True
+    argument_count: bool = True  # whether the complex modes are counted, too
     quick: bool = False  # among those that ctest runs
     scale: float = 1.0  # lengths beside those of `unit`
     unit: tuple = ()  # settings of the same scene in metres, whose results without unit must be the same
@@ -81,9 +81,10 @@ add("friction coefficient", "10.1", "Operation/Friction coefficient=10.1", expec
 for element, setting in (("trilinear", ()), ("incompatible modes", ("Discretization/Element=incompatible modes",)), ("quadratic", ("Discretization/Element=quadratic",))):
     for ratio in (-0.9, 0, 0.45, 0.49, 0.499, 0.4999):
         add(f"Poisson's ratio of the pins, {element}", f"{ratio:g}", f"Pin material/Poisson ratio={ratio}", *setting,
+            argument_count=ratio == 0.4999 and element == "trilinear",
             quick=ratio == 0.4999 and element == "trilinear")
     add(f"Poisson's ratio of disc and pins, {element}", "0.4999", "Pin material/Poisson ratio=0.4999", "Disc material/Poisson ratio=0.4999",
-        *setting)
+        *setting, argument_count=False)
 add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio=0.5", expected="Poisson ratio", quick=True)
 
 # ------------------------------------------------------------------ materials
@@ -93,12 +94,13 @@ for exponent in range(-6, 7):
     # Slow waves are resolved up to a lower frequency
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
     add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
-        quick=exponent in (-6, 6))
+        quick=exponent in (-6, 6), argument_count=exponent in (-6, 6))
 add("Young's modulus pin to disc", "1e-6, 5 kHz", f"Pin material/Young modulus={1e-6 * DISC_MODULUS!r}", expected=UNRESOLVED)
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
     end = 5000 * min(1, (1 / ratio) ** 0.5)
-    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent in (-6, 6))
+    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent in (-6, 6),
+        argument_count=exponent in (-6, 6))
 add("density pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
 
 # ------------------------------------------------------------------ shapes
@@ -116,6 +118,7 @@ for ratio in (0.02, 0.05, 0.1, 0.5, 1, 2, 5, 10, 20):
 for what, options in (("", {}), (", damped", {"damped": True}), (", free disc", {"held": False})):
     for unit, scale in (("micrometres", 1e-6), ("millimetres", 1e-3), ("kilometres", 1e3)):
         add(f"metres taken as{what}", unit, *scaled(scale, **options), scale=scale, unit=scaled(1.0, **options),
+            argument_count=False,
             quick=unit != "millimetres" and what == ", damped")
 
 # ------------------------------------------------------------------ mounts and rotation
