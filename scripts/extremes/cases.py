@@ -73,7 +73,7 @@ UNRESOLVED = "the mesh does not resolve"
 # ------------------------------------------------------------------ friction
 
 for mu in (0, 1e-6, 0.1, 0.4, 1, 2, 3, 5, 10):
-    add("friction coefficient", f"{mu:g}", f"Operation/Friction coefficient={mu}", quick=mu in (0, 10))
+    add("friction coefficient", f"{mu:g}", f"Operation/Friction coefficient={mu}", quick=mu == 10)
 add("friction coefficient", "10.1", "Operation/Friction coefficient=10.1", expected="Friction coefficient", quick=True)
 
 # ------------------------------------------------------------------ Poisson's ratio
@@ -85,7 +85,7 @@ for element, setting in (("trilinear", ()), ("incompatible modes", ("Discretizat
             quick=ratio == 0.4999 and element == "trilinear")
     add(f"Poisson's ratio of disc and pins, {element}", "0.4999", "Pin material/Poisson ratio=0.4999", "Disc material/Poisson ratio=0.4999",
         *setting, argument_count=False)
-add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio=0.5", expected="Poisson ratio", quick=True)
+add("Poisson's ratio of the pins, trilinear", "0.5", "Pin material/Poisson ratio=0.5", expected="Poisson ratio")
 
 # ------------------------------------------------------------------ materials
 
@@ -94,12 +94,12 @@ for exponent in range(-6, 7):
     # Slow waves are resolved up to a lower frequency
     end = 5000 * min(1, (ratio / 1e-2) ** 0.5)
     add("Young's modulus pin to disc", f"1e{exponent}", f"Pin material/Young modulus={ratio * DISC_MODULUS!r}", band(end),
-        quick=exponent in (-6, 6), argument_count=exponent in (-6, 6))
+        quick=exponent == -6, argument_count=exponent in (-6, 6))
 add("Young's modulus pin to disc", "1e-6, 5 kHz", f"Pin material/Young modulus={1e-6 * DISC_MODULUS!r}", expected=UNRESOLVED)
 for exponent in range(-6, 7):
     ratio = 10.0**exponent
     end = 5000 * min(1, (1 / ratio) ** 0.5)
-    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent in (-6, 6),
+    add("density pin to disc", f"1e{exponent}", f"Pin material/Density={ratio * DISC_DENSITY!r}", band(end), quick=exponent == 6,
         argument_count=exponent in (-6, 6))
 add("density pin to disc", "1e6, 5 kHz", f"Pin material/Density={1e6 * DISC_DENSITY!r}", expected=UNRESOLVED)
 
@@ -111,7 +111,7 @@ for ratio in (1e-3, 3e-3, 1e-2, 0.03, 0.1, 0.3, 1):
 for ratio in (0.02, 0.05, 0.1, 0.5, 1, 2, 5, 10, 20):
     end = 5000 * min(1, 1 / ratio)
     add("height / diameter of the pins", f"{ratio:g}", f"Geometry/Pin height={ratio * PIN_DIAMETER!r}",
-        f"Geometry/Pin layers={max(2, round(2 * ratio))}", band(end), quick=ratio in (0.02, 20))
+        f"Geometry/Pin layers={max(2, round(2 * ratio))}", band(end), quick=ratio == 20)
 
 # ------------------------------------------------------------------ units of length
 
@@ -152,7 +152,7 @@ add("end of the band [Hz]", "440: one mode", band(440.0))
 for which, frequency in (("a real mode", 468.738364319), ("a complex mode", 563.560037244), ("a complex mode of a doublet", 901.629050712)):
     add("end of the band on a mode [Hz]", f"{frequency!r}: {which}", band(frequency), quick=which == "a real mode")
 add("end of the band [Hz]", "12000", band(12000.0))
-add("end of the band [Hz]", "100000", band(1e5), expected=UNRESOLVED, quick=True)
+add("end of the band [Hz]", "100000", band(1e5), expected=UNRESOLVED)
 add("end of the band [Hz]", "0", band(0.0), expected="Maximum frequency")
 add("end of the band [Hz]", "100000, mesh 20 times smaller",
     *(f"Geometry/{name}={value / 20!r}" for name, value in (
@@ -165,7 +165,7 @@ add("layout", "one pin", *pins([0.257], [0], sides=("Top",)))
 add("layout", "three pins, one side only", *pins([0.257] * 3, [-20, 0, 20], sides=("Top",)))
 add("layout", "60 pins", *pins([0.257] * 30, [12 * k for k in range(30)]), "Geometry/Pin diameter=0.03", "Geometry/Pin layers=1")
 add("layout", "no pin", *pins([], [], sides=()), expected="pin")
-add("mesh", "one layer everywhere", "Geometry/Pin layers=1", quick=True)
+add("mesh", "one layer everywhere", "Geometry/Pin layers=1")
 add("mesh", "coarsest: 0.05775 m", "Geometry/Pin layers=1", "Geometry/Element size=0.05775")
 add("mesh", "too coarse: 0.058 m", "Geometry/Element size=0.058", expected="Element size")
 add("mesh", "fine: 61 nodes per pin, 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02", "Geometry/Disc layers=2",
