@@ -7,6 +7,7 @@ import math
 import os
 import pathlib
 import re
+import resource
 import subprocess
 
 import numpy as np
@@ -31,8 +32,8 @@ EDGE = 1e-7
 ZERO = 1e-4
 # Largest difference of results without unit from those of the scene in metres
 SAME_IN_ALL_UNITS = 1e-8
-# Time that a run may take [s]
-TIME_LIMIT = 300
+# Time of the processor, and time on a clock, that a run may take [s]
+CPU_LIMIT, TIME_LIMIT = 300, 1500
 
 
 @dataclasses.dataclass
@@ -63,7 +64,7 @@ def call(*arguments, folder):
     """The finished process; one that does not end, crashes, or exits with other than 0 or 1, is wrong."""
     try:
         process = subprocess.run([str(SQUEAL), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
-                                 stdin=subprocess.DEVNULL)
+                                 stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT)))
     except subprocess.TimeoutExpired:
         raise Wrong(f"no end within {TIME_LIMIT} s") from None
     if process.returncode not in (0, 1):
