@@ -1,4 +1,5 @@
 #include <squeal/geometry/extrusion.h>
+#include <squeal/geometry/grading.h>
 #include <squeal/geometry/plan_smoothing.h>
 
 #include <set>
@@ -21,25 +22,26 @@ namespace Squeal
     class Stack
     {
     public:
-      /// The points go from those of the lower end to those of the upper end, see points_between().
+      /// The points go from those of the lower end to those of the upper end, see points_between(); ends of layers from 0 to 1.
       Stack(const Plan                     &plan,
             const std::vector<Plan::Point> &lower,
             const std::vector<Plan::Point> &upper,
             const std::vector<Plan::Face>  &faces,
             const double                    z_lower,
             const double                    z_upper,
-            const unsigned int              n_layers,
+            const std::vector<double>      &ends,
             const unsigned int              volume,
             HexMesh                        &mesh)
-        : nodes(n_layers + 1, std::vector<unsigned int>(plan.points.size()))
+        : nodes(ends.size(), std::vector<unsigned int>(plan.points.size()))
         , mesh(mesh)
       {
         // Nodes, layer by layer, in the order of the plan; both ends exactly as given, so that contact faces coincide to the last bit
-        const std::set<unsigned int> used = nodes_of(faces);
+        const std::set<unsigned int> used     = nodes_of(faces);
+        const unsigned int           n_layers = ends.size() - 1;
         for (unsigned int layer = 0; layer <= n_layers; ++layer)
           {
-            const std::vector<Plan::Point> points = points_between(plan, lower, upper, double(layer) / n_layers);
-            const double                   z      = layer == n_layers ? z_upper : z_lower + (z_upper - z_lower) * layer / n_layers;
+            const std::vector<Plan::Point> points = points_between(plan, lower, upper, ends[layer]);
+            const double                   z      = layer == n_layers ? z_upper : z_lower + (z_upper - z_lower) * ends[layer];
             for (const unsigned int node : used)
               {
                 nodes[layer][node] = mesh.points.size();
@@ -89,19 +91,24 @@ namespace Squeal
     // Disc
     const double                   z_face = parameters.disc_thickness / 2., z_end = z_face + parameters.pin_height;
     const std::vector<Plan::Point> top = points_on_side(plan, Plan::Side::top), bottom = points_on_side(plan, Plan::Side::bottom);
-    Stack                          disc(plan, bottom, top, plan.faces, -z_face, z_face, parameters.disc_layers, 0, mesh);
+    Stack disc(plan, bottom, top, plan.faces, -z_face, z_face, graded_intervals(parameters.disc_layers, 1.), 0, mesh);
     for (const Plan::Pin &pin : plan.pins)
       disc.name_end(pin.side == Plan::Side::top, plan.faces_of(pin), disc_contact);
     for (std::size_t c = 0; c < plan.curves.size(); ++c)
       disc.name_side(plan.curves[c].edges, first_curve + c);
 
-    // Pins
+    // Pins: thinner layers towards the end where they are held
+    const std::vector<double> upwards = graded_intervals(parameters.pin_layers, parameters.pin_grading);
+    std::vector<double>       downwards;
+    for (auto end = upwards.rbegin(); end != upwards.rend(); ++end)
+      downwards.push_back(1. - *end);
     for (std::size_t p = 0; p < plan.pins.size(); ++p)
       {
         const bool                    is_top = plan.pins[p].side == Plan::Side::top;
         const std::vector<Plan::Face> faces  = plan.faces_of(plan.pins[p]);
         const auto                   &points = is_top ? top : bottom;
-        Stack pin(plan, points, points, faces, is_top ? z_face : -z_end, is_top ? z_end : -z_face, parameters.pin_layers, p + 1, mesh);
+        Stack pin(plan, points, points, faces, is_top ? z_face : -z_end, is_top ? z_end : -z_face, is_top ? upwards : downwards, p + 1,
+                  mesh);
         pin.name_end(!is_top, faces, pin_contact);
         pin.name_end(is_top, faces, pin_clamp);
         pin.name_side(boundary_edges(faces), pin_side);

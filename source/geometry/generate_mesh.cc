@@ -2,6 +2,7 @@
 #include <squeal/base/text.h>
 #include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/generate_mesh.h>
+#include <squeal/geometry/grading.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/geometry/mesher.h>
@@ -150,6 +151,7 @@ namespace Squeal
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
       smooth(plan);
+      grade_round_pins(plan, parameters.pin_grading);
       return extrude(plan, parameters);
     }
 
