@@ -178,6 +178,7 @@ namespace Squeal
     reduction.declare(declarations);
     sweep.declare(declarations);
     ingredients.declare(declarations);
+    accuracy.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -308,6 +309,7 @@ namespace Squeal
     reduction.check();
     sweep.check();
     ingredients.check();
+    accuracy.check();
     if (study->check != nullptr)
       study->check(*this);
     check_damping_in_band();

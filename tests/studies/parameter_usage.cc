@@ -77,6 +77,13 @@ namespace
                                                               {"Sweep/Last map value", "2000"},
                                                               {"Sweep/Number of map values", "3"},
                                                               {"Sweep/Map friction coefficients", "3"},
+                                                              {"Accuracy study/Mesh factors", "1, 2"},
+                                                              {"Accuracy study/Elements", "quadratic"},
+                                                              {"Accuracy study/Outlines", "true area"},
+                                                              {"Accuracy study/Bases", "real"},
+                                                              {"Accuracy study/Grown tolerance", "1e-5"},
+                                                              {"Accuracy study/Largest number of dofs", "1e6"},
+                                                              {"Accuracy study/Band margin", "0.2"},
                                                               {"Ingredients/Frequency tolerance", "2"},
                                                               {"Ingredients/Divergence tolerance", "0.1"},
                                                               {"Ingredients/Trial friction slope", "-0.01"},
@@ -176,12 +183,13 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"dissipation", "ingredients", "paper", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "ingredients", "paper", "reduction", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
-  const std::vector<std::string> others = {"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Iteration", "Complex modes/Maximum"};
+  const std::vector<std::string> others = {"Reduction/",           "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration",
+                                           "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -191,7 +199,8 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"},
+            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Shift", "Complex modes/Tolerance",
+                             "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
@@ -200,30 +209,42 @@ TEST(ParameterUsage, OfStability)
 
 TEST(ParameterUsage, OfDissipation)
 {
-  EXPECT_EQ(unused_alone({"Study=dissipation"}), those_of({"Reduction/", "Sweep/", "Ingredients/", "Steady sliding/Contact",
-                                                           "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=dissipation"}),
+            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Steady sliding/Contact", "Complex modes/Iteration",
+                      "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
-  const std::vector<std::string> always = {"Reduction/", "Sweep/", "Ingredients/", "Complex modes/Iteration", "Complex modes/Maximum",
-                                           "Output/"};
+  const std::vector<std::string> always = {
+    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
   EXPECT_EQ(unused_alone({"Study=paper", "Steady sliding/Contact state=steady sliding"}), those_of(always));
 }
 
+TEST(ParameterUsage, OfAccuracy)
+{
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
+  const std::vector<std::string> others = joined({"Reduction/", "Sweep/", "Ingredients/", "Output/", "Complex modes/Iteration"}, steady);
+  EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
+  EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
+            those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
+}
+
 TEST(ParameterUsage, OfIngredients)
 {
   // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Output/"}));
 }
 
 TEST(ParameterUsage, OfReduction)
 {
   const std::vector<std::string> always = {"Sweep/",
                                            "Ingredients/",
+                                           "Accuracy study/",
                                            "Output/",
                                            "Steady sliding/Control",
                                            "Steady sliding/Displacement",
@@ -242,8 +263,9 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Complex modes/", "Operation/Friction coefficient",
-                                           "Output/Write", "Output/Component", "Output/Real"};
+  const std::vector<std::string> always = {
+    "Reduction/",   "Ingredients/",     "Accuracy study/", "Complex modes/", "Operation/Friction coefficient",
+    "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/parameters/accuracy.h>
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/damping.h>
 #include <squeal/parameters/geometry.h>
@@ -30,6 +31,7 @@ namespace Squeal
     ReductionParameters      reduction;
     SweepParameters          sweep;
     IngredientsParameters    ingredients;
+    AccuracyStudyParameters  accuracy;
     SolverParameters         solvers;
     OutputParameters         output;
 

@@ -1,0 +1,42 @@
+#include <squeal/base/resident_memory.h>
+
+#include <malloc.h>
+
+#include <fstream>
+#include <string>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// A line of /proc/self/status, "VmHWM:   123456 kB", in bytes.
+    double status(const std::string &name)
+    {
+      std::ifstream stream("/proc/self/status");
+      std::string   word;
+      while (stream >> word)
+        if (double kilobytes; word == name + ":" && stream >> kilobytes)
+          return 1024. * kilobytes;
+      return 0.;
+    }
+  } // namespace
+
+  double resident_memory()
+  {
+    return status("VmRSS");
+  }
+
+  double peak_resident_memory()
+  {
+    return status("VmHWM");
+  }
+
+  bool reset_peak_memory()
+  {
+    malloc_trim(0);
+    // 5: the peak of the resident memory becomes what is resident now, proc(5)
+    std::ofstream stream("/proc/self/clear_refs");
+    stream << 5 << std::flush;
+    return static_cast<bool>(stream);
+  }
+} // namespace Squeal

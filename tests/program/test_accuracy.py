@@ -1,0 +1,102 @@
+"""`Study = accuracy` as a user runs it, on a small scene."""
+
+import math
+import unittest
+
+from program import ProgramTest, numbers, read_table
+
+BAND = 2500
+STUDY = ["Study=accuracy", f"Band/Maximum frequency={BAND}", "Accuracy study/Mesh factors=1, 2", "Accuracy study/Outlines=true area",
+         "Accuracy study/Elements=trilinear, incompatible modes", "Accuracy study/Bases=real + 1st-ord. two-sided"]
+# What `Mesh factors = 2` makes of the scene
+TWICE = ["Geometry/Nodes per pin face=19", "Geometry/Element size=0.02", "Geometry/Pin layers=4", "Geometry/Disc layers=2",
+         "Geometry/Outlines=true area"]
+METHODS = ["full order", "real + 1st-ord. two-sided"]
+
+
+class Accuracy(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", *STUDY)
+        cls.meshes, cls.modes, cls.orders = (read_table(cls.results / f"accuracy{name}.csv") for name in ("", "_modes", "_orders"))
+
+    def of(self, **condition):
+        names = {"element": "element", "factor": "mesh factor [-]", "method": "method"}
+        return [row for row in self.modes if all(row[names[key]] == value for key, value in condition.items())]
+
+    def test_rows(self):
+        """A row for each mesh, element and method, with numbers of one meaning."""
+        self.assertEqual([(row["mesh factor [-]"], row["element"], row["method"]) for row in self.meshes],
+                         [(factor, element, method) for factor in "12" for element in ("trilinear", "incompatible modes") for method in METHODS])
+        for name in ("accuracy", "accuracy_modes", "accuracy_orders"):
+            self.assertTrue(all(math.isfinite(number) for number in numbers(self.results / f"{name}.csv")), name)
+        for row in self.meshes:
+            self.assertGreater(float(row["memory [GB]"]), 0.05)
+            self.assertGreater(float(row["CPU time [s]"]), 0)
+            self.assertLess(float(row["rms frequency error [%]"]), float(row["frequency error [%]"]) * (1 + 1e-12))
+        self.assertIn("yes", [row["Pareto front"] for row in self.meshes])
+
+    def test_frequencies_are_those_of_a_run_on_that_mesh(self):
+        """The finer mesh made by hand, solved by another study."""
+        found = self.run_scene("twice", *TWICE, f"Band/Maximum frequency={1.1 * BAND}")
+        expected = [float(row["frequency [Hz]"]) for row in read_table(found / "complex_modes.csv")]
+        rows = self.of(element="trilinear", factor="2", method="full order")
+        self.assertGreater(len(rows), 8)
+        for row in rows:
+            if row["frequency [Hz]"]:
+                self.assertLess(min(abs(float(row["frequency [Hz]"]) / frequency - 1) for frequency in expected), 1e-8)
+
+    def test_kinds(self):
+        """Full order has no reduction error; on every mesh discretisation is what a basis and full order have in common."""
+        for row in self.of(method="full order"):
+            if row["counterpart"] != "none":
+                self.assertEqual(float(row["reduction frequency error [%]"]), 0)
+                self.assertEqual(row["frequency error [%]"], row["discretisation frequency error [%]"])
+        full, reduced = (self.of(method=method) for method in METHODS)
+        self.assertEqual([row["discretisation frequency error [%]"] for row in full], [row["discretisation frequency error [%]"] for row in reduced])
+        self.assertTrue(any(float(row["reduction frequency error [%]"] or 0) > 0 for row in reduced))
+
+    def test_finer_meshes_and_better_elements_are_closer(self):
+        rms = {(row["element"], row["mesh factor [-]"]): float(row["rms frequency error [%]"]) for row in self.meshes
+               if row["method"] == "full order"}
+        self.assertLess(rms["trilinear", "2"], rms["trilinear", "1"])
+        self.assertLess(rms["incompatible modes", "1"], rms["trilinear", "1"])
+
+    def test_modes_without_marks_have_one_shape(self):
+        for row in self.modes:
+            if row["counterpart"] == "by shape":
+                self.assertGreater(float(row["overlap [-]"]), 0.5)
+
+    def test_orders(self):
+        """Two meshes show no order."""
+        self.assertEqual({row["family"] for row in self.orders}, {"trilinear, true area", "incompatible modes, true area"})
+        self.assertEqual({row["order of frequency [-]"] for row in self.orders}, {""})
+        self.assertEqual(sorted({row["reference"] for row in self.orders}), ["no", "yes"])
+
+
+class Refusals(ProgramTest):
+    def assert_refused(self, *overrides, mentions):
+        process = self.call("scene.prm", "--output", "refused", *[word for override in overrides for word in ("--set", override)])
+        self.assertEqual(process.returncode, 1, process.stdout)
+        for text in mentions:
+            self.assertIn(text, process.stderr)
+        self.assertFalse((self.folder / "refused").exists())
+
+    def test_parameters(self):
+        self.assert_refused(*STUDY, "Accuracy study/Mesh factors=1", mentions=["Accuracy study/Mesh factors", "two or more"])
+        self.assert_refused(*STUDY, "Accuracy study/Elements=cubic", mentions=["`cubic`", "incompatible modes"])
+        self.assert_refused(*STUDY, "Accuracy study/Outlines=", mentions=["Accuracy study/Outlines is empty"])
+        self.assert_refused(*STUDY, "Accuracy study/Bases=best", mentions=["there is no basis `best`"])
+
+    def test_a_mesh_that_cannot_be_refined(self):
+        (self.folder / "bodies.msh").write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"disc\"\n$EndPhysicalNames\n",
+                                                encoding="utf-8")
+        self.assert_refused(*STUDY, "Geometry/File=bodies.msh", mentions=["bodies.msh", "cannot be refined"])
+
+    def test_nothing_to_extrapolate(self):
+        self.assert_refused(*STUDY, "Accuracy study/Largest number of dofs=10", mentions=["nothing can be extrapolated", "Largest number of dofs"])
+
+
+if __name__ == "__main__":
+    unittest.main()
