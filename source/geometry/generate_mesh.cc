@@ -2,7 +2,6 @@
 #include <squeal/base/text.h>
 #include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/generate_mesh.h>
-#include <squeal/geometry/grading.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/geometry/mesher.h>
@@ -151,7 +150,6 @@ namespace Squeal
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
       smooth(plan);
-      grade_round_pins(plan, parameters.pin_grading);
       return extrude(plan, parameters);
     }
 

@@ -222,11 +222,10 @@ namespace Squeal
       "Outlines", outlines,
       "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are smaller. true "
       "area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements follow the circle. Units: none.");
-    declarations.add(
-      "Pin grading", pin_grading,
-      "Thickness of a layer of a pin over that of the next one towards the end where it is held, and of rings of "
-      "elements of a round pin towards its outline; 1: all alike. Stresses are singular at the edge of that end. Units: none.",
-      {1., 4.});
+    declarations.add("Pin grading", pin_grading,
+                     "Thickness of a layer of a pin over that of the next one towards the end where it is held; 1: all alike. Stresses are "
+                     "singular at the edge of that end. Units: none.",
+                     {1., 4.});
     declarations.add("Pairing tolerance", pairing_tolerance,
                      "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
                      "Units: m.",

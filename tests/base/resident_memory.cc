@@ -20,8 +20,9 @@ TEST(ResidentMemory, PeakIsThatSinceTheReset)
     EXPECT_EQ(block[bytes / 2], 1);
     EXPECT_GT(resident_memory(), before + 0.9 * bytes);
   }
-  EXPECT_LT(resident_memory(), before + 0.1 * bytes);
   EXPECT_GT(peak_resident_memory(), before + 0.9 * bytes);
+  // Only now does freed memory go back to the system: Open MPI lets malloc keep it
   ASSERT_TRUE(reset_peak_memory());
+  EXPECT_LT(resident_memory(), before + 0.1 * bytes);
   EXPECT_LT(peak_resident_memory(), before + 0.1 * bytes);
 }

@@ -45,7 +45,7 @@ namespace
   }
 
   const std::vector<ElasticMount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
-  const Case                      flat = {"flat", 0., 1, held};
+  const Case                      flat = {"flat", 0., Element::trilinear, held};
 
   const std::vector<std::string> component_kinds = {"free",          "fixed",          "mixed",         "free with r.a.m.",
                                                     "free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m."};
@@ -467,7 +467,7 @@ TEST(ReducedBasis, DependentVectorsAreDropped)
 
 TEST(ReducedBasis, RigidBodyMotionsAreAddedWhereTheyAreMissing)
 {
-  const Bodies b({"free disc", 0., 1, {}});
+  const Bodies b({"free disc", 0., Element::trilinear, {}});
   const int    n_free = b.static_modes.rigid_body_modes()->n_columns();
   ASSERT_EQ(n_free, 6);
   const MultiVector elastic       = view(*b.disc_free, n_free, b.disc_free->n_columns() - n_free);

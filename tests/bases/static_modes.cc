@@ -196,7 +196,7 @@ TEST(StaticModes, FacesAtFortyFiveDegreesAreNoTrap)
 
 TEST(CoupledResponses, SolveWithTheirForces)
 {
-  const Scene          s = scene({"cone", 0.3, 1, held}, damped(mounted(held)), RadialDissipation::consistent);
+  const Scene          s = scene({"cone", 0.3, Element::trilinear, held}, damped(mounted(held)), RadialDissipation::consistent);
   const UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
   const MultiVector    Phi = random_vectors(s.coupled.map(), 4);
   const double         mu  = 0.37;
@@ -218,7 +218,7 @@ TEST(CoupledResponses, SolveWithTheirForces)
   check(damping_response(s.coupled, inverse, Phi), *with_friction(s.coupled, 0.).damping * Phi);
   check(damping_response(s.coupled, inverse, Phi, mu), *with_friction(s.coupled, mu).damping * Phi);
 
-  const Scene          undamped = scene({"flat", 0., 1, held}, mounted(held));
+  const Scene          undamped = scene({"flat", 0., Element::trilinear, held}, mounted(held));
   const UpdatedInverse other(undamped.coupled, 0., FactorizationLibrary::automatic);
   EXPECT_THROW(damping_response(undamped.coupled, other, random_vectors(undamped.coupled.map(), 1)), SolverError);
 }

@@ -116,6 +116,8 @@ TEST(Conditioning, GrowsTowardsACoalescence)
       const double expected = condition_of_first_order_system(mu);
       EXPECT_NEAR(std::max(conditioning.modes[0], conditioning.modes[1]) / expected, 1., 1e-4) << distance;
       if (std::abs(distance) < 1e-3)
-        EXPECT_GT(expected, 30.);
+        {
+          EXPECT_GT(expected, 30.);
+        }
     }
 }

@@ -17,7 +17,7 @@ namespace
               const Rotation               rotation     = Rotation::positive,
               const MPI_Comm               communicator = MPI_COMM_WORLD)
   {
-    return Scene(mesh_of(pins), mounted(), operating(dissipation, rotation), 1, communicator);
+    return Scene(mesh_of(pins), mounted(), operating(dissipation, rotation), Element::trilinear, communicator);
   }
 
   /// Where energy is lost: in the contact, in the bodies.

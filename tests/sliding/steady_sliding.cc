@@ -191,7 +191,7 @@ TEST(SteadySliding, EqualPinsCarryEqualLoadsOnlyWhereTheLayoutSaysSo)
     EXPECT_LT(pin.sliding_offset, 0.);
 
   // The other sense of rotation is the mirror image
-  const SlidingScene reversed(four_pins(), held, 1, Rotation::negative);
+  const SlidingScene reversed(four_pins(), held, Element::trilinear, Rotation::negative);
   const auto         mirrored_pins = reversed.pins(reversed.solve());
   EXPECT_NEAR(mirrored_pins[1].load, with[0].load, 1e-8 * with[0].load);
   EXPECT_NEAR(mirrored_pins[0].load, with[1].load, 1e-8 * with[1].load);

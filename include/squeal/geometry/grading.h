@@ -1,7 +1,5 @@
 #pragma once
 
-#include <squeal/geometry/plan.h>
-
 #include <vector>
 
 namespace Squeal
@@ -11,10 +9,4 @@ namespace Squeal
    * ratio 1.
    */
   std::vector<double> graded_intervals(unsigned int n, double ratio);
-
-  /**
-   * Makes the rings of elements of round pins thinner towards the outline, each by @p ratio: nodes move on straight lines through
-   * the centre, those of the outline stay. Under a pin that is held at its end stresses are singular along the edge.
-   */
-  void grade_round_pins(Plan &plan, double ratio);
 } // namespace Squeal

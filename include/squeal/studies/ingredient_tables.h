@@ -14,11 +14,11 @@ namespace Squeal
   {
     const Ingredient *ingredient; ///< null for several changes together
     std::string       name, here, tried;
-    std::string       obstacle; ///< empty if it was made; else nothing below has a meaning
-    Effect            effect;
+    std::string       obstacle = {}; ///< empty if it was made; else nothing below has a meaning
+    Effect            effect   = {};
     double            severity = 0.; ///< see Effect::severity()
-    StepCosts         costs;
-    int               n_dofs = 0;
+    StepCosts         costs    = {};
+    int               n_dofs   = 0;
 
     std::vector<std::string> answer = {}; ///< the verdict of the variant, line by line
   };
