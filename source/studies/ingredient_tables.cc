@@ -22,9 +22,9 @@ namespace Squeal
       return change < no_change ? "0" : decimal_text(change, 3);
     }
 
-    std::string label_of(const ModeChange *mode)
+    std::string label_of(const ModeChange *mode, const double change)
     {
-      if (mode == nullptr)
+      if (mode == nullptr || change < no_change)
         return "";
       return to_string(mode->label) + (mode->variant ? "" : " (lost)");
     }
@@ -53,23 +53,24 @@ namespace Squeal
   {
     const double total = reference.costs.cpu_seconds();
     return Table(
-      Columns<Row>{
-        {"ingredient", "", &Row::name},
-        {"here", "", &Row::here},
-        {"tried", "", &Row::tried},
-        where_made("change of frequency", "%", [](const Row &row) { return row.effect.frequency(); }),
-        where_made("mode of that change", "", [](const Row &row) { return label_of(row.effect.largest_frequency()); }),
-        where_made("change of divergence rate", "percentage points", [](const Row &row) { return row.effect.divergence(); }),
-        where_made("mode of that change of divergence rate", "", [](const Row &row) { return label_of(row.effect.largest_divergence()); }),
-        where_made("modes without counterpart", "-", [](const Row &row) { return row.effect.n_lost(); }),
-        where_made("unstable modes here", "-", [](const Row &row) { return row.effect.n_unstable(false); }),
-        where_made("unstable modes tried", "-", [](const Row &row) { return row.effect.n_unstable(true); }),
-        where_made("verdict changed", "-", [](const Row &row) { return row.effect.changes_verdict() ? 1 : 0; }),
-        where_made("wall time", "s", [](const Row &row) { return row.costs.seconds(); }),
-        where_made("processor time", "s", [](const Row &row) { return row.costs.cpu_seconds(); }),
-        where_made("dofs", "-", [](const Row &row) { return row.n_dofs; }),
-        where_made("cost beside the reference", "-", [total](const Row &row) { return row.costs.cpu_seconds() / total; }),
-        {"not tried because", "", &Row::obstacle}},
+      Columns<Row>{{"ingredient", "", &Row::name},
+                   {"here", "", &Row::here},
+                   {"tried", "", &Row::tried},
+                   where_made("change of frequency", "%", [](const Row &row) { return row.effect.frequency(); }),
+                   where_made("mode of that change", "",
+                              [](const Row &row) { return label_of(row.effect.largest_frequency(), row.effect.frequency()); }),
+                   where_made("change of divergence rate", "percentage points", [](const Row &row) { return row.effect.divergence(); }),
+                   where_made("mode of that change of divergence rate", "",
+                              [](const Row &row) { return label_of(row.effect.largest_divergence(), row.effect.divergence()); }),
+                   where_made("modes without counterpart", "-", [](const Row &row) { return row.effect.n_lost(); }),
+                   where_made("unstable modes here", "-", [](const Row &row) { return row.effect.n_unstable(false); }),
+                   where_made("unstable modes tried", "-", [](const Row &row) { return row.effect.n_unstable(true); }),
+                   where_made("verdict changed", "-", [](const Row &row) { return row.effect.changes_verdict() ? 1 : 0; }),
+                   where_made("wall time", "s", [](const Row &row) { return row.costs.seconds(); }),
+                   where_made("processor time", "s", [](const Row &row) { return row.costs.cpu_seconds(); }),
+                   where_made("dofs", "-", [](const Row &row) { return row.n_dofs; }),
+                   where_made("cost beside the reference", "-", [total](const Row &row) { return row.costs.cpu_seconds() / total; }),
+                   {"not tried because", "", &Row::obstacle}},
       results);
   }
 
@@ -82,10 +83,10 @@ namespace Squeal
         {"here", "", &Row::here},
         {"tried", "", [](const Row &row) { return row.obstacle.empty() ? row.tried : "-"; }},
         where_made("frequency", "%", [](const Row &row) { return row.effect.frequency(); }),
-        where_made("mode", "", [](const Row &row) { return label_of(row.effect.largest_frequency()); }),
+        where_made("mode", "", [](const Row &row) { return label_of(row.effect.largest_frequency(), row.effect.frequency()); }),
         where_made(
           "divergence", "points", [](const Row &row) { return row.effect.divergence(); }, 4),
-        where_made("mode", "", [](const Row &row) { return label_of(row.effect.largest_divergence()); }),
+        where_made("mode", "", [](const Row &row) { return label_of(row.effect.largest_divergence(), row.effect.divergence()); }),
         where_made("unstable", "", [](const Row &row) { return text(row.effect.n_unstable(false), " -> ", row.effect.n_unstable(true)); }),
         where_made("verdict", "", [](const Row &row) { return row.effect.changes_verdict() ? std::string("changes") : "same"; }),
         where_made(
@@ -124,7 +125,9 @@ namespace Squeal
 
   std::string largest_changes(const Effect &effect)
   {
-    return text(amount(effect.frequency()), " % in frequency (", label_of(effect.largest_frequency()), "), ", amount(effect.divergence()),
-                " percentage points in divergence rate (", label_of(effect.largest_divergence()), ")");
+    const auto of = [](const std::string &label) { return label.empty() ? "" : " (" + label + ")"; };
+    return text(amount(effect.frequency()), " % in frequency", of(label_of(effect.largest_frequency(), effect.frequency())), ", ",
+                amount(effect.divergence()), " percentage points in divergence rate",
+                of(label_of(effect.largest_divergence(), effect.divergence())), effect.changes_verdict() ? "; the verdict changes" : "");
   }
 } // namespace Squeal

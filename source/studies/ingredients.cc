@@ -30,6 +30,16 @@ namespace Squeal
       return to_string(p.sliding.state);
     }
 
+    std::string element_here(const Parameters &p)
+    {
+      return to_string(p.discretization.element);
+    }
+
+    std::string outlines_here(const Parameters &p)
+    {
+      return to_string(p.geometry.outlines);
+    }
+
     std::string slope_text(const double slope)
     {
       return slope == 0. ? "none" : exact_text(slope) + " s/m";
@@ -73,6 +83,31 @@ namespace Squeal
       if (!state)
         return "equal shares of the load close all nodes; see contact state";
       return std::count(state->closed.begin(), state->closed.end(), false) > 0 ? nullptr : "no node lifts off";
+    }
+
+    template <Element element>
+    bool has_element(const Parameters &p)
+    {
+      return p.discretization.element == element;
+    }
+
+    template <Element element>
+    std::string element_name(const Parameters &)
+    {
+      return to_string(element);
+    }
+
+    template <Element element>
+    void take_element(Variation &v)
+    {
+      v.parameters.discretization.element = element;
+    }
+
+    Reason no_polygon(const Parameters &p, const std::optional<SlidingState> &)
+    {
+      if (has_element<Element::quadratic>(p))
+        return "edges of quadratic elements follow the circles";
+      return unless(p.geometry.is_plan(), "the geometry is a solid, whose outlines are as it has them");
     }
 
     template <const char *reduced_basis>
@@ -141,6 +176,22 @@ namespace Squeal
       {"rotation of the disc", [](P p) { return on_or_off(p.operation.rotating_disc); }, [](P) { return on_or_off(true); },
        [](P p) { return p.operation.rotating_disc; }, [](Variation &v) { v.parameters.operation.rotating_disc = true; }, ChangeKind::adds,
        Departure::mesh},
+
+      // ------------------------------------------------------------- discretisation
+      {"element", element_here, element_name<Element::trilinear>, has_element<Element::trilinear>, take_element<Element::trilinear>,
+       ChangeKind::speeds, Departure::mesh},
+      {"element", element_here, element_name<Element::incompatible_modes>, [](P p) { return !has_element<Element::quadratic>(p); },
+       take_element<Element::incompatible_modes>, ChangeKind::speeds, Departure::mesh},
+      {"element", element_here, element_name<Element::incompatible_modes>, [](P p) { return !has_element<Element::trilinear>(p); },
+       take_element<Element::incompatible_modes>, ChangeKind::adds, Departure::mesh},
+      {"element", element_here, element_name<Element::quadratic>, has_element<Element::quadratic>, take_element<Element::quadratic>,
+       ChangeKind::adds, Departure::mesh},
+      {"outlines", outlines_here, [](P) { return to_string(Outlines::inscribed); },
+       [](P p) { return p.geometry.outlines == Outlines::inscribed; },
+       [](Variation &v) { v.parameters.geometry.outlines = Outlines::inscribed; }, ChangeKind::shows, Departure::mesh, no_polygon},
+      {"outlines", outlines_here, [](P) { return to_string(Outlines::true_area); },
+       [](P p) { return p.geometry.outlines == Outlines::true_area; },
+       [](Variation &v) { v.parameters.geometry.outlines = Outlines::true_area; }, ChangeKind::adds, Departure::mesh, no_polygon},
 
       // -------------------------------------------------------------------- modes
       {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); }, [](P) { return to_string(ComplexSolver::krylov); },

@@ -28,7 +28,7 @@ namespace Squeal
           run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
                                  locking_poisson_ratio,
                                  " on bending frequencies are more than 1 % too high, growth rates less accurate "
-                                 "still; set Discretization/Element = quadratic"));
+                                 "still; set Discretization/Element = incompatible modes"));
     }
 
     bool is_free_disc(const Scene &scene, const SecondOrderSystem &system, const Parameters &parameters)

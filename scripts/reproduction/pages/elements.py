@@ -21,10 +21,16 @@ DISC = {("trilinear", "inscribed", 3): ("2353.0", "0.680", "3452.1", "0.856", "3
         ("quadratic", "inscribed", 2): ("2315.1", "0.770", "3481.3", "1.134", "3369.2", "0.908")}
 
 
-def pin_frequency(runs, label, element, outlines, nodes, layers):
-    results = runs(f"pin_{element}_{outlines}_{nodes}_{layers}".replace(" ", "_"), "disc_pins.prm", *ONE_PIN,
+GRADED = {("quadratic", 7, 2, 1.5): "3485.9", ("quadratic", 7, 2, 2): "3487.3", ("incompatible modes", 19, 4, 1.5): "3580.3"}
+LOCKING = {"trilinear": (("3555.6", "2.9"), ("3468.2", "4.2"), ("3511.8", "5.2"), ("3576.1", "6.5")),
+           "incompatible modes": (("3539.5", "2.4"), ("3390.9", "1.9"), ("3388.5", "1.5"), ("3403.0", "1.3")),
+           "quadratic": (("3457.0", None), ("3327.3", None), ("3338.4", None), ("3359.1", None))}
+
+
+def pin_frequency(runs, label, element, outlines, nodes, layers, *, grading=1, ratio=0.25):
+    results = runs(f"pin_{element}_{outlines}_{nodes}_{layers}_{grading}_{ratio}".replace(" ", "_"), "disc_pins.prm", *ONE_PIN,
                    f"Discretization/Element={element}", f"Geometry/Outlines={outlines}", f"Geometry/Nodes per pin face={nodes}",
-                   f"Geometry/Pin layers={layers}")
+                   f"Geometry/Pin layers={layers}", f"Geometry/Pin grading={grading}", f"Pin material/Poisson ratio={ratio}")
     return min(mode["frequency [Hz]"] for mode in results.table("component_modes.csv")
                if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
 
@@ -35,6 +41,23 @@ def pins(runs):
         for (nodes, layers), frequency in zip(MESHES, quoted):
             yield Number(f"{label}, {element}, {outlines}, {nodes} nodes, {layers} layers [Hz]", frequency,
                          pin_frequency(runs, label, element, outlines, nodes, layers))
+
+
+@entry("elements", "F1 of a sliding pin with thinner layers at its held end")
+def layers_of_pins(runs):
+    for (element, nodes, layers, grading), quoted in GRADED.items():
+        yield Number(f"{element}, {nodes} nodes, {layers} layers, {grading} [Hz]", quoted,
+                     pin_frequency(runs, "F1", element, "inscribed", nodes, layers, grading=grading))
+
+
+@entry("elements", "Locking: F1 of a sliding pin by element and Poisson's ratio")
+def locking(runs):
+    for element, quoted in LOCKING.items():
+        for ratio, (frequency, excess) in zip((0.25, 0.47, 0.49, 0.499), quoted):
+            found, exact = (pin_frequency(runs, "F1", kind, "inscribed", 19, 4, ratio=ratio) for kind in (element, "quadratic"))
+            yield Number(f"{element}, {ratio} [Hz]", frequency, found)
+            if excess is not None:
+                yield Number(f"{element}, {ratio} [%]", excess, 100 * (found / exact - 1))
 
 
 @entry("elements", "A0-4, A0-5 and F1 of the default scene by element and outlines")
