@@ -1,4 +1,4 @@
-#include "solutions.h"
+#include "flutter.h"
 
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
@@ -62,30 +62,10 @@ namespace
     return "";
   }
 
-  /**
-   * ẍ + K̃ x = 0 with two degrees of freedom, K̃ = [3, 0.7 − 1.3 μ; 0.7, 2]: the
-   * modes coalesce where 1 + 2.8 (0.7 − 1.3 μ) = 0.
-   */
+  /// The modes of flutter(1.3).
   struct Flutter
   {
     static constexpr double threshold = (1. / 2.8 + 0.7) / 1.3;
-
-    CoupledSystem system() const
-    {
-      const RowMap map = rows(2), contact = rows(1);
-      return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
-                        sparse(map, map,
-                               [](const int i) {
-                                 return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}};
-                               })},
-                       sparse(contact, map,
-                              [](int) {
-                                return Row{{0, 1.}};
-                              }),
-                       sparse(contact, map, [](int) {
-                         return Row{{1, 1.3}};
-                       }));
-    }
 
     /// The mode that grows or, below the threshold, the higher one.
     Complex lambda(const double mu) const
@@ -105,7 +85,7 @@ namespace
 TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 {
   const Flutter       flutter;
-  const CoupledSystem system = flutter.system();
+  const CoupledSystem system = Testing::flutter(1.3);
   for (const ContourMethod method : methods(system))
     {
       // Below the threshold, both on the imaginary axis: the contour may be as narrow as one likes.

@@ -1,4 +1,4 @@
-#include "solutions.h"
+#include "flutter.h"
 
 #include <squeal/estimates/conditioning.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
@@ -29,24 +29,6 @@ namespace
   {
     const RowMap contact = rows(1), map = K->rows();
     return system_of({M, C, K}, sparse(contact, map, [](int) { return Row{}; }), nullptr);
-  }
-
-  /// K̃ = [3, 0.7 − μ; 0.7, 2] of two unit masses, one contact.
-  CoupledSystem flutter()
-  {
-    const RowMap map = rows(2), contact = rows(1);
-    return system_of({Testing::diagonal(map, [](int) { return 1.; }), nullptr,
-                      sparse(map, map,
-                             [](const int i) {
-                               return i == 0 ? Row{{0, 3.}, {1, 0.7}} : Row{{0, 0.7}, {1, 2.}};
-                             })},
-                     sparse(contact, map,
-                            [](int) {
-                              return Row{{0, 1.}};
-                            }),
-                     sparse(contact, map, [](int) {
-                       return Row{{1, 1.}};
-                     }));
   }
 
   /// Condition numbers ‖y‖ ‖x‖ / |yᴴ x| of the eigenvalues of ż = A z in the coordinates z = (K^½ u, v), largest.
@@ -111,7 +93,7 @@ TEST(Conditioning, GrowsTowardsACoalescence)
   for (const double distance : {0.5, 1e-2, 1e-4, -1e-2, -0.5})
     {
       const double mu                  = threshold * (1. - distance);
-      const auto [modes, conditioning] = conditioned(flutter(), mu);
+      const auto [modes, conditioning] = conditioned(flutter(1.), mu);
       ASSERT_EQ(conditioning.modes.size(), 2u);
       const double expected = condition_of_first_order_system(mu);
       EXPECT_NEAR(std::max(conditioning.modes[0], conditioning.modes[1]) / expected, 1., 1e-4) << distance;

@@ -13,7 +13,7 @@ import time
 import unittest
 
 from program import ProgramTest, contents, read_table
-from test_lost_results import EXECUTABLE, LONG, LostResults, limit_files
+from test_lost_results import EXECUTABLE, LONG, TimedRuns, limit_files
 
 TRIALS = int(os.environ.get("SQUEAL_TRIALS", "6"))
 PATIENCE = 120  # [s] for one run on a busy machine
@@ -24,16 +24,7 @@ def is_one_message(text):
     return len(lines) == 3 and all(line.startswith(part) for line, part in zip(lines, ("error: ", "  where:  ", "  change: ")))
 
 
-class Faults(LostResults):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        start = time.monotonic()
-        cls.run_scene("timed", *LONG)
-        cls.duration = time.monotonic() - start
-        cls.needed = sum(path.stat().st_size for path in (cls.folder / "timed").rglob("*") if path.is_file())
-        shutil.rmtree(cls.folder / "timed")
-
+class Faults(TimedRuns):
     def at_random_moments(self, trial, seed):
         """Calls trial(number, delay), two at a time; it returns what is wrong."""
         numbers = random.Random(seed)

@@ -238,8 +238,8 @@ class Places(LostResults):
         self.assertEqual(copy.stat().st_mode & 0o7777, 0o2750)
 
 
-class Signals(LostResults):
-    TRIALS = 40
+class TimedRuns(LostResults):
+    """How long a run takes [s], and how much it writes [byte]."""
 
     @classmethod
     def setUpClass(cls):
@@ -247,7 +247,12 @@ class Signals(LostResults):
         start = time.monotonic()
         cls.run_scene("timed", *LONG)
         cls.duration = time.monotonic() - start
+        cls.needed = sum(path.stat().st_size for path in (cls.folder / "timed").rglob("*") if path.is_file())
         shutil.rmtree(cls.folder / "timed")
+
+
+class Signals(TimedRuns):
+    TRIALS = 40
 
     def trial(self, number, delay):
         """Ends a run after a while; returns what is wrong."""
