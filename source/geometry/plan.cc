@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/geometry/plan.h>
+#include <squeal/geometry/polygon.h>
 
 #include <boost/algorithm/string/predicate.hpp>
 
@@ -41,20 +42,6 @@ namespace Squeal
       return result;
     }
 
-    /// Twice the signed area, positive for a counter-clockwise polygon.
-    template <typename Nodes>
-    double twice_area(const Nodes &nodes, const std::vector<Plan::Point> &points)
-    {
-      double sum = 0.;
-      for (std::size_t i = 0; i < nodes.size(); ++i)
-        {
-          const Plan::Point &a = points[nodes[i]];
-          const Plan::Point &b = points[nodes[(i + 1) % nodes.size()]];
-          sum += a[0] * b[1] - a[1] * b[0];
-        }
-      return sum;
-    }
-
     Plan::Point mean(const std::vector<unsigned int> &nodes, const std::vector<Plan::Point> &points)
     {
       Plan::Point sum;
@@ -63,39 +50,18 @@ namespace Squeal
       return sum / double(nodes.size());
     }
 
-    /// Puts the edges of a closed curve around a pin one behind the other, counter-clockwise.
+    /// The nodes of a closed curve around a pin one behind the other, counter-clockwise.
     std::vector<unsigned int> closed_loop(const Plan::Curve &curve, const std::vector<Plan::Point> &points, const std::string &where)
     {
-      std::map<unsigned int, std::vector<unsigned int>> neighbours;
-      for (const auto &[a, b] : curve.edges)
-        {
-          neighbours[a].push_back(b);
-          neighbours[b].push_back(a);
-        }
-
-      std::vector<unsigned int> loop = {neighbours.begin()->first};
-      unsigned int              last = no_node;
-      do
-        {
-          const unsigned int               here = loop.back();
-          const std::vector<unsigned int> &next = neighbours.at(here);
-          if (next.size() != 2)
-            break;
-          loop.push_back(next[0] == last ? next[1] : next[0]);
-          last = here;
-        }
-      while (loop.back() != loop.front());
-
-      if (loop.size() != curve.edges.size() + 1 || loop.back() != loop.front())
+      std::vector<unsigned int> loop = closed_polygon(curve.edges);
+      if (loop.empty())
         throw MeshError("Physical curve '" + curve.name + "' is not one closed curve", where,
                         "give the curves around exactly one hole of the plan this name");
-      loop.pop_back();
-
       if (loop.size() % 6 != 0)
         throw MeshError("Physical curve '" + curve.name + "' has " + std::to_string(loop.size()) +
                           " nodes; a pin is filled by three blocks of equal size, which needs a multiple of 6",
                         where, "make it of three arcs with 'Transfinite Curve' of the same number of nodes");
-      if (twice_area(loop, points) < 0.)
+      if (signed_area(loop, points) < 0.)
         std::reverse(loop.begin(), loop.end());
 
       // The first spoke points away from the axis of the disc.
@@ -278,7 +244,7 @@ namespace Squeal
         Plan::Face face;
         for (unsigned int v = 0; v < 4; ++v)
           face[v] = node_index(element.nodes[v]);
-        if (twice_area(face, plan.points) < 0.)
+        if (signed_area(face, plan.points) < 0.)
           std::reverse(face.begin(), face.end());
         Plan::Face key = face;
         std::sort(key.begin(), key.end());

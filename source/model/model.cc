@@ -1,6 +1,8 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/geometry/polygon.h>
 #include <squeal/model/model.h>
 
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_tools.h>
@@ -11,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 #include <sstream>
 
@@ -24,53 +25,15 @@ namespace Squeal
     /// Gmsh numbers the vertices of a quadrilateral around it, deal.II lexicographically.
     constexpr std::array<unsigned int, 8> gmsh_vertex = {{0, 1, 3, 2, 4, 5, 7, 6}};
 
-    struct Cylinder
+    /// Points closer than this are taken for the same [m]: far below any element size, in any unit of length.
+    double resolution(const std::vector<Point<3>> &vertices)
     {
-      Point<3> axis_point;
-      double   radius;
-    };
-
-    /// Largest distance of a vertex from its cylinder, relative to the radius.
-    constexpr double roundness = 1e-6;
-
-    /// Points closer than this are taken for the same [m], far below any element size.
-    constexpr double grid = 1e-7;
-
-    /// Circle through the points in the x-y plane by linear least squares, x² + y² = 2 a x + 2 b y + c.
-    std::optional<Cylinder> fit_cylinder(const std::vector<Point<3>> &points)
-    {
-      // Four corners of a square lie on a circle as well: only six directions or more are taken for one.
-      std::set<std::pair<long, long>> plan;
-      for (const auto &p : points)
-        plan.insert({std::lround(p[0] / grid), std::lround(p[1] / grid)});
-      if (plan.size() < 6)
-        return {};
-      // About the centroid the normal equations are well scaled.
-      Point<3> centre;
-      for (const auto &p : points)
-        centre += p / static_cast<double>(points.size());
-      Tensor<2, 3> normal;
-      Tensor<1, 3> rhs;
-      for (const auto &p : points)
-        {
-          const Tensor<1, 3> d = p - centre, row({2. * d[0], 2. * d[1], 1.});
-          normal += outer_product(row, row);
-          rhs += (d[0] * d[0] + d[1] * d[1]) * row;
-        }
-      if (std::abs(determinant(normal)) < 1e-14 * std::pow(normal.norm(), 3))
-        return {}; // a plane surface
-      const Tensor<1, 3> solution = invert(normal) * rhs;
-      const double       radius   = std::sqrt(solution[2] + solution[0] * solution[0] + solution[1] * solution[1]);
-
-      Cylinder cylinder{centre + Point<3>(solution[0], solution[1], 0.), radius};
-      for (const auto &p : points)
-        if (std::abs(std::hypot(p[0] - cylinder.axis_point[0], p[1] - cylinder.axis_point[1]) - radius) > roundness * radius)
-          return {};
-      return cylinder;
+      const auto [lower, upper] = BoundingBox<3>(vertices).get_boundary_points();
+      return 1e-7 * lower.distance(upper);
     }
 
     /// A key that is equal for coincident mid-points of edges.
-    std::array<long, 3> edge_key(const Point<3> &p)
+    std::array<long, 3> edge_key(const Point<3> &p, const double grid)
     {
       return {{std::lround(p[0] / grid), std::lround(p[1] / grid), std::lround(p[2] / grid)}};
     }
@@ -91,24 +54,26 @@ namespace Squeal
       for (const char *name : {PhysicalNames::disc_bore, PhysicalNames::disc_rim, PhysicalNames::pin_side})
         if (model.has_surface(name))
           candidates.insert(model.surface_id(name));
-      std::map<Patch, std::vector<Point<3>>> patches;
+      std::map<Patch, std::vector<Point<2>>> patches; // seen along z
       for (const auto &cell : triangulation.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary() && candidates.count(face->boundary_id()))
             for (const unsigned int v : face->vertex_indices())
-              patches[{face->boundary_id(), cell->material_id()}].push_back(face->vertex(v));
+              patches[{face->boundary_id(), cell->material_id()}].emplace_back(face->vertex(v)[0], face->vertex(v)[1]);
 
       // One manifold for each patch that is a cylinder
       std::map<Patch, types::manifold_id> manifolds;
       for (const auto &[patch, points] : patches)
-        if (const auto cylinder = fit_cylinder(points))
+        if (const auto circle = circle_through(points))
           {
             const types::manifold_id id = manifolds.size() + 1;
             manifolds[patch]            = id;
-            triangulation.set_manifold(id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), cylinder->axis_point));
+            triangulation.set_manifold(
+              id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(circle->centre[0], circle->centre[1], 0.)));
           }
 
       // Faces and edges of the cylinders; their rims are remembered
+      const double                                      grid = resolution(triangulation.get_vertices());
       std::map<std::array<long, 3>, types::manifold_id> curved_edges;
       for (const auto &cell : triangulation.active_cell_iterators())
         for (const auto &face : cell->face_iterators())
@@ -121,7 +86,7 @@ namespace Squeal
                     // An edge along the axis is straight and lies on no rim.
                     const auto line = face->line(l);
                     if (std::hypot(line->vertex(0)[0] - line->vertex(1)[0], line->vertex(0)[1] - line->vertex(1)[1]) > grid)
-                      curved_edges[edge_key(0.5 * (line->vertex(0) + line->vertex(1)))] = it->second;
+                      curved_edges[edge_key(0.5 * (line->vertex(0) + line->vertex(1)), grid)] = it->second;
                   }
               }
 
@@ -134,7 +99,7 @@ namespace Squeal
             for (unsigned int l = 0; l < face->n_lines(); ++l)
               {
                 const auto line = face->line(l);
-                const auto it   = curved_edges.find(edge_key(0.5 * (line->vertex(0) + line->vertex(1))));
+                const auto it   = curved_edges.find(edge_key(0.5 * (line->vertex(0) + line->vertex(1)), grid));
                 if (it != curved_edges.end())
                   line->set_manifold_id(it->second);
               }

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace Squeal
+{
+  /// The nodes of a closed curve one behind the other, from the least on; none where the edges are not one closed curve.
+  std::vector<unsigned int> closed_polygon(const std::vector<std::array<unsigned int, 2>> &edges);
+
+  /// Area of a polygon, given by the indices of its nodes, positive if they are counter-clockwise [m²].
+  template <typename Nodes>
+  double signed_area(const Nodes &nodes, const std::vector<dealii::Point<2>> &points)
+  {
+    double twice = 0.;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      {
+        const dealii::Point<2> &a = points[nodes[i]];
+        const dealii::Point<2> &b = points[nodes[(i + 1) % nodes.size()]];
+        twice += a[0] * b[1] - a[1] * b[0];
+      }
+    return twice / 2.;
+  }
+
+  struct Circle
+  {
+    dealii::Point<2> centre; ///< [m]
+    double           radius; ///< [m]
+  };
+
+  /**
+   * The circle on which all points lie, to 1e-6 of its radius, in any unit of length: by linear least squares,
+   * x² + y² = 2 a x + 2 b y + c. None if there is no such circle, and none through fewer than six different points, since four
+   * corners of a square lie on a circle as well.
+   */
+  std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points);
+} // namespace Squeal
