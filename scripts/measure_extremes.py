@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """Runs the cases of doc/extremes.md, holds each against an independent solution, and prints the table of that page.
 
-    scripts/measure_extremes.py                    # all cases, about ten minutes
+    scripts/measure_extremes.py                    # all cases, some twenty minutes on two idle cores
     scripts/measure_extremes.py --only mounts      # those whose name contains a word
-    scripts/measure_extremes.py --write            # all, and writes the table into doc/extremes.md
+    scripts/measure_extremes.py --missing          # those that the table of the page does not have
+    scripts/measure_extremes.py --write            # all, and writes what was measured into the table of the page
 
 Exits with 1 where a case is neither right nor refused as it should be. The environment variable SQUEAL names the program.
 """
@@ -35,11 +36,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", metavar="WORDS", help="only the cases whose name contains WORDS")
     parser.add_argument("--quick", action="store_true", help="only those that the tests run")
+    parser.add_argument("--missing", action="store_true", help="only those that are not in the table of doc/extremes.md")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), metavar="N", help="cases at a time (default: %(default)s)")
     parser.add_argument("--keep", type=pathlib.Path, metavar="DIR", help="keeps the runs there")
-    parser.add_argument("--write", action="store_true", help="writes the table into doc/extremes.md")
+    parser.add_argument("--write", action="store_true", help="writes the rows measured into the table of doc/extremes.md, beside the others that it has")
     arguments = parser.parse_args()
-    chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)]
+    known = page.names() if arguments.missing else ()
+    chosen = [case for case in CASES if arguments.only in case.name and (case.quick or not arguments.quick)
+              and (case.group, case.value) not in known]
     rows = []
     print(page.HEAD)
     with concurrent.futures.ProcessPoolExecutor(arguments.jobs) as pool:
@@ -49,7 +53,7 @@ def main():
     outcomes = collections.Counter(row.outcome for row in rows)
     print(f"\n{len(rows)} cases: " + ", ".join(f"{count} {outcome}" for outcome, count in outcomes.items()))
     if arguments.write:
-        page.write(rows)
+        page.write(rows, [(case.group, case.value) for case in CASES])
     return 0 if all(row.is_as_expected for row in rows) else 1
 
 

@@ -1,0 +1,63 @@
+"""Growing waves of a sliding pad beside the continuum, which Chebyshev polynomials solve: doc/well_posedness.md."""
+
+import math
+import os
+import sys
+import unittest
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from program import SOURCE, ProgramTest, read_table
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+try:
+    import numpy as np
+    from reproduction.sliding_layer import Layer
+except ImportError:
+    raise unittest.SkipTest("NumPy and SciPy are missing") from None
+
+PAD, RADIUS = Layer(0.012, 1.9e9, 0.25, 3070), 0.01935
+# Im c / Re c of the half-space at mu = 2 and Poisson's ratio 1/2: c^2 = c_s^2 (1 - s^2), s = (mu - i)^2 / (mu^2 + 1)
+INCOMPRESSIBLE = np.sqrt(1 - ((2 - 1j) / (2 + 1j))**2)
+
+
+class Continuum(unittest.TestCase):
+    def test_half_space_flutters_above_one(self):
+        self.assertEqual(PAD.half_space(0.99), 0)
+        self.assertGreater(PAD.half_space(1.01), 1e-3)
+        # Plane stress with the ratio nu is plane strain with nu / (1 + nu): 1 gives an incompressible half-space
+        exact = INCOMPRESSIBLE.imag / INCOMPRESSIBLE.real
+        self.assertAlmostEqual(Layer(1.0, 1.0, 0.9999999, 1.0).half_space(2.0), exact, delta=1e-5)
+
+    def test_short_waves_of_a_layer_are_those_of_the_half_space(self):
+        values = PAD.eigenvalues(2 * math.pi * 4 / PAD.thickness, 2.0)
+        values = values[abs(values) < 4e6]
+        first = values[np.argmax(values.real)]
+        self.assertAlmostEqual(first.real / abs(first.imag), PAD.half_space(2.0), delta=2e-3)
+
+    def test_waves_without_friction_are_shear_waves(self):
+        """k = 0: u_x = sin(omega (H - y) / c_s) with a free end, u_y with both ends held."""
+        values = PAD.eigenvalues(0.0, 0.0).imag
+        compression = PAD.shear_speed / math.sqrt(PAD.speed_ratio)
+        for omega in (math.pi / 2 * PAD.shear_speed / PAD.thickness, math.pi * compression / PAD.thickness):
+            self.assertLess(min(abs(abs(values) - omega)), 1e-6 * omega)
+
+
+class Ring(ProgramTest):
+    def test_growth_rates_converge_to_those_of_the_layer(self):
+        """The three waves that grow fastest, on a ring of so many waves that its curvature matters little."""
+        exact = np.sort([max(values.real[abs(values.imag) < 2 * math.pi * 46e3])
+                         for values in (PAD.eigenvalues(n / RADIUS, 1.5, 50) for n in (5, 6, 7))])[::-1]
+        errors = []
+        for layers, size in ((5, 0.0024), (8, 0.0016)):
+            results = self.run_scene(f"ring_{layers}", "Geometry/Disc inner radius=0.0186", "Geometry/Disc outer radius=0.0196",
+                                     f"Geometry/Pin layers={layers}", f"Geometry/Element size={size}",
+                                     file=str(SOURCE / "prm" / "studies" / "sliding_ring.prm"))
+            rates = sorted((float(mode["growth rate [1/s]"]) for mode in read_table(results / "complex_modes.csv")), reverse=True)
+            errors.append(max(abs(rates[:3] / exact - 1)))
+        self.assertLess(errors[0], 0.06)
+        self.assertLess(errors[1], 0.6 * errors[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
