@@ -37,8 +37,8 @@ namespace Squeal
 
   /**
    * E, 3 n_q × n: the displacement at common points times √m_q from free dofs of a mesh, so that (E u)ᵀ E v is the mass
-   * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count: incompatible modes
-   * of an element, which vanish with the square of its size, do not.
+   * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count:
+   * incompatible modes of an element, which vanish with the square of its size, do not.
    *
    * Throws MeshError if the mesh lacks a body.
    */

@@ -24,10 +24,11 @@ namespace Squeal
    * Pairs modes of two meshes by their shapes at common points, one to one. W are the masses of the points.
    *
    * Modes need not be orthogonal to each other: a mode of the coarse mesh is close to the combination of those of the fine one,
-   * φ ≈ Σ c_j ψ_j, all normalised, that differs least from it, and |c_j|² is the share of ψ_j. It is connected with the modes of the largest shares that
-   * together have ¾ of all, those left out that have less than ¼ of the largest; and so are the modes of the fine mesh with those of the coarse one. A
-   * shape may thus turn by up to 30° towards another one from mesh to mesh and still has but one counterpart. Connections make groups, in chains, but for pairs of
-   * modes that are connected with each other alone seen from either side.
+   * φ ≈ Σ c_j ψ_j, all normalised, that differs least from it, and |c_j|² is the share of ψ_j. It is connected with the modes of
+   * the largest shares that together have ¾ of all, those left out that have less than ¼ of the largest; and so are the modes of
+   * the fine mesh with those of the coarse one. A shape may thus turn by up to 30° towards another one from mesh to mesh and still
+   * has but one counterpart. Connections make groups, in chains, but for pairs of modes that are connected with each other alone
+   * seen from either side.
    *
    * - One mode of each mesh: they are partners.
    * - Several: a cluster. Their eigenvalues are so close that discretisation turns the eigenvectors among each other, as those of a

@@ -26,8 +26,8 @@ namespace Squeal
    *
    *   G_ij = φ_iᴴ K φ_j + λ̄_i λ_j φ_iᴴ M φ_j        2k × 2k
    *
-   * Members of a multiple eigenvalue (1e-7 of it) have one κ, that of their space. It is 1 without friction and damping, infinite at a coalescence, and a lower bound: parts of the left vectors in
-   * modes beyond the band are not in it.
+   * Members of a multiple eigenvalue (1e-7 of it) have one κ, that of their space. It is 1 without friction and damping, infinite
+   * at a coalescence, and a lower bound: parts of the left vectors in modes beyond the band are not in it.
    */
   struct Conditioning
   {
