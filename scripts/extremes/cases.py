@@ -163,10 +163,11 @@ add("end of the band [Hz]", "100000, mesh 20 times smaller",
 
 add("layout", "one pin", *pins([0.257], [0], sides=("Top",)))
 add("layout", "three pins, one side only", *pins([0.257] * 3, [-20, 0, 20], sides=("Top",)))
-add("layout", "60 pins", *pins([0.257] * 30, [12 * k for k in range(30)]), "Geometry/Pin diameter=0.03", "Geometry/Pin layers=1")
+add("layout", "60 pins", *pins([0.257] * 30, [12 * k for k in range(30)]), "Geometry/Pin diameter=0.03", "Geometry/Pin layers=1",
+    band(2000.0))
 add("layout", "no pin", *pins([], [], sides=()), expected="pin")
 add("mesh", "one layer everywhere", "Geometry/Pin layers=1")
-add("mesh", "coarsest: 0.05775 m", "Geometry/Pin layers=1", "Geometry/Element size=0.05775")
+add("mesh", "coarsest: 0.05774 m", "Geometry/Pin layers=1", "Geometry/Element size=0.05774")
 add("mesh", "too coarse: 0.058 m", "Geometry/Element size=0.058", expected="Element size")
 add("mesh", "fine: 61 nodes per pin, 0.02 m", "Geometry/Nodes per pin face=61", "Geometry/Element size=0.02", "Geometry/Disc layers=2",
     "Geometry/Pin layers=6")
