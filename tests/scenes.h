@@ -3,6 +3,7 @@
 #include <squeal/assembly/elasticity.h>
 #include <squeal/contact/coupled_system.h>
 #include <squeal/geometry/extrusion.h>
+#include <squeal/geometry/pin_grid.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>
 

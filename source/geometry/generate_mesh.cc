@@ -6,6 +6,7 @@
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/geometry/mesher.h>
 #include <squeal/geometry/outlines.h>
+#include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
 #include <squeal/geometry/problem_size.h>
@@ -145,7 +146,7 @@ namespace Squeal
       if (gmsh.dimension() != 2)
         throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
                         "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
-      Plan plan = make_plan(gmsh, where);
+      Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
       check_memory(expected_size(plan, parameters), least_degree, no_modes, where);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);

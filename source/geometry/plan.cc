@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/polygon.h>
 
@@ -42,14 +43,6 @@ namespace Squeal
       return result;
     }
 
-    Plan::Point mean(const std::vector<unsigned int> &nodes, const std::vector<Plan::Point> &points)
-    {
-      Plan::Point sum;
-      for (const unsigned int node : nodes)
-        sum += points[node];
-      return sum / double(nodes.size());
-    }
-
     /// The nodes of a closed curve around a pin one behind the other, counter-clockwise.
     std::vector<unsigned int> closed_loop(const Plan::Curve &curve, const std::vector<Plan::Point> &points, const std::string &where)
     {
@@ -65,7 +58,7 @@ namespace Squeal
         std::reverse(loop.begin(), loop.end());
 
       // The first spoke points away from the axis of the disc.
-      const Plan::Point centre = mean(loop, points);
+      const Plan::Point centre = mean_point(loop, points);
       if (const double radius = std::hypot(centre[0], centre[1]); radius > 0.)
         {
           const auto outward = [&](const unsigned int node) { return (points[node] * centre) / radius; };
@@ -124,8 +117,9 @@ namespace Squeal
     class PlanReader
     {
     public:
-      PlanReader(const GmshMesh &mesh, const std::string &where)
+      PlanReader(const GmshMesh &mesh, const PinRings &rings, const std::string &where)
         : mesh(mesh)
+        , rings(rings)
         , where(where)
         , plan_node(mesh.points.size(), no_node)
       {}
@@ -148,7 +142,11 @@ namespace Squeal
         if (group.name == PhysicalNames::disc)
           has_disc = true;
         else
-          add_pin(group.name, faces, {}, false);
+          {
+            Plan::Pin pin;
+            pin.faces = faces;
+            add_pin(group.name, pin);
+          }
       }
 
       void add_curve(const GmshMesh::Group &group)
@@ -185,29 +183,26 @@ namespace Squeal
       /// Fills the holes, each once for one or two pins.
       void fill_holes()
       {
-        const std::set<Plan::Edge>                                outline = sorted_edges(boundary_edges(plan.faces));
-        std::map<std::set<Plan::Edge>, std::vector<unsigned int>> filled;
+        const std::set<Plan::Edge>                outline = sorted_edges(boundary_edges(plan.faces));
+        std::map<std::set<Plan::Edge>, Plan::Pin> filled;
         for (const Plan::Curve &curve : pin_curves)
           {
             const std::set<Plan::Edge> edges = sorted_edges(curve.edges);
             if (!std::includes(outline.begin(), outline.end(), edges.begin(), edges.end()))
               throw MeshError("Physical curve '" + curve.name + "' does not surround a hole of the plan", where,
                               "cut the hole out of the surface 'disc', or name the surface under the pin instead");
-            const std::vector<unsigned int> loop  = closed_loop(curve, plan.points, where);
-            std::vector<unsigned int>      &faces = filled[edges];
-            if (faces.empty())
-              for (const Plan::Face &face : fill_with_o_grid(loop, plan.points))
-                {
-                  faces.push_back(plan.faces.size());
-                  plan.faces.push_back(face);
-                }
+            const std::vector<unsigned int> loop = closed_loop(curve, plan.points, where);
+            const auto [hole, is_new]            = filled.emplace(edges, Plan::Pin());
+            if (is_new)
+              hole->second = fill(loop);
             Plan::Point displacement;
             if (const auto place = centres.find(curve.name); place != centres.end())
               {
-                displacement = Plan::Point(place->second - mean(loop, plan.points));
+                displacement = Plan::Point(place->second - mean_point(loop, plan.points));
                 centres.erase(place);
               }
-            add_pin(curve.name, faces, displacement, true);
+            hole->second.displacement = displacement;
+            add_pin(curve.name, hole->second);
           }
         if (!centres.empty())
           throw MeshError("Physical point '" + centres.begin()->first + "' is not the centre of any pin", where,
@@ -218,9 +213,26 @@ namespace Squeal
       Plan plan;
 
     private:
-      void add_pin(const std::string &name, const std::vector<unsigned int> &faces, const Plan::Point &displacement, const bool is_round)
+      void add_pin(const std::string &name, Plan::Pin pin)
       {
-        plan.pins.push_back({name, starts_with(name, "pin_top") ? Plan::Side::top : Plan::Side::bottom, faces, displacement, is_round});
+        pin.name = name;
+        pin.side = starts_with(name, "pin_top") ? Plan::Side::top : Plan::Side::bottom;
+        plan.pins.push_back(pin);
+      }
+
+      /// The faces and nodes of what fills a closed curve, without name, side and place.
+      Plan::Pin fill(const std::vector<unsigned int> &loop)
+      {
+        const PinGrid grid = fill_pin(loop, rings, plan.points);
+        Plan::Pin     pin;
+        pin.is_round   = true;
+        pin.ring_nodes = grid.ring_nodes;
+        for (const Plan::Face &face : grid.faces)
+          {
+            pin.faces.push_back(plan.faces.size());
+            plan.faces.push_back(face);
+          }
+        return pin;
       }
 
       /// Index of a node in the plan, which has those that are used by a surface and no others.
@@ -255,6 +267,7 @@ namespace Squeal
       }
 
       const GmshMesh                    &mesh;
+      const PinRings                     rings;
       const std::string                 &where;
       std::vector<unsigned int>          plan_node;
       std::map<Plan::Face, unsigned int> face_index; ///< by ascending nodes
@@ -292,59 +305,9 @@ namespace Squeal
     , cross(a[0] * b[1] - a[1] * b[0])
   {}
 
-  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points)
+  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where)
   {
-    const unsigned int k         = loop.size() / 6;
-    const auto         at        = [&](const unsigned int i) { return loop[i % loop.size()]; };
-    const auto         add_point = [&](const Plan::Point &point) -> unsigned int {
-      points.push_back(point);
-      return points.size() - 1;
-    };
-
-    // Centre and inner nodes of the spokes
-    const Plan::Point  centre      = mean(loop, points);
-    const unsigned int centre_node = add_point(centre);
-    for (unsigned int s = 0; s < 3; ++s)
-      for (unsigned int i = 1; i < k; ++i)
-        add_point((1. - double(i) / k) * centre + double(i) / k * points[at(2 * k * s)]);
-    const auto spoke = [&](const unsigned int s, const unsigned int i) {
-      return i == 0 ? centre_node : i == k ? at(2 * k * s) : centre_node + s % 3 * (k - 1) + i;
-    };
-
-    // Blocks: i runs along one spoke, j along the next, the far sides are on the loop
-    std::vector<Plan::Face> faces;
-    for (unsigned int b = 0; b < 3; ++b)
-      {
-        std::vector<std::vector<unsigned int>> node(k + 1, std::vector<unsigned int>(k + 1, no_node));
-        for (unsigned int i = 0; i <= k; ++i)
-          {
-            node[i][0] = spoke(b, i);
-            node[0][i] = spoke(b + 1, i);
-            node[k][i] = at(2 * k * b + i);
-            node[i][k] = at(2 * k * (b + 1) - i);
-          }
-
-        // Transfinite interpolation between the four sides
-        const auto p = [&](const unsigned int i, const unsigned int j) { return points[node[i][j]]; };
-        for (unsigned int i = 1; i < k; ++i)
-          for (unsigned int j = 1; j < k; ++j)
-            {
-              const double s = double(i) / k, t = double(j) / k;
-              node[i][j] =
-                add_point(Plan::Point((1. - t) * p(i, 0) + t * p(i, k) + (1. - s) * p(0, j) + s * p(k, j) - (1. - s) * (1. - t) * p(0, 0) -
-                                      s * (1. - t) * p(k, 0) - (1. - s) * t * p(0, k) - s * t * p(k, k)));
-            }
-
-        for (unsigned int i = 0; i < k; ++i)
-          for (unsigned int j = 0; j < k; ++j)
-            faces.push_back({{node[i][j], node[i + 1][j], node[i + 1][j + 1], node[i][j + 1]}});
-      }
-    return faces;
-  }
-
-  Plan make_plan(const GmshMesh &mesh, const std::string &where)
-  {
-    PlanReader reader(mesh, where);
+    PlanReader reader(mesh, rings, where);
     const auto for_groups = [&](const int dimension, void (PlanReader::*add)(const GmshMesh::Group &)) {
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.dimension == dimension)

@@ -37,6 +37,14 @@ namespace Squeal
         fixed[edge[0]] = fixed[edge[1]] = true;
     }
 
+    /// Nodes on the outline of a pin and those of its rings.
+    void fix(const Plan::Pin &pin, const Plan &plan, std::vector<bool> &fixed)
+    {
+      fix_outline(plan.faces_of(pin), fixed);
+      for (const unsigned int node : pin.ring_nodes)
+        fixed[node] = true;
+    }
+
     /// A pin with its nodes where they are now: it may turn about its centre.
     TurningPart turning_part(const Plan::Pin &pin, const Plan &plan, const std::vector<Plan::Point> &points)
     {
@@ -115,7 +123,7 @@ namespace Squeal
     std::vector<bool> fixed(plan.points.size(), false);
     fix_outline(plan.faces, fixed);
     for (const Plan::Pin &pin : plan.pins)
-      fix_outline(plan.faces_of(pin), fixed);
+      fix(pin, plan, fixed);
     smooth(plan.faces, fixed, plan.points);
   }
 
@@ -132,7 +140,7 @@ namespace Squeal
         displaced = displaced || pin.displacement != Plan::Point();
         if (pin.side != side)
           continue;
-        fix_outline(plan.faces_of(pin), outline);
+        fix(pin, plan, outline);
         for (const unsigned int node : nodes_of(plan.faces_of(pin)))
           {
             given[node]         = true;

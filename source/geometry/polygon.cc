@@ -72,6 +72,14 @@ namespace Squeal
     return polygon.size() == neighbours.size() ? polygon : std::vector<unsigned int>();
   }
 
+  dealii::Point<2> mean_point(const std::vector<unsigned int> &nodes, const std::vector<dealii::Point<2>> &points)
+  {
+    dealii::Point<2> sum;
+    for (const unsigned int node : nodes)
+      sum += points[node];
+    return sum / double(nodes.size());
+  }
+
   std::optional<Circle> circle_through(const std::vector<Point<2>> &points)
   {
     if (points.empty())

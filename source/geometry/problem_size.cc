@@ -2,6 +2,7 @@
 #include <squeal/base/memory_limit.h>
 #include <squeal/base/text.h>
 #include <squeal/geometry/problem_size.h>
+#include <squeal/parameters/pin_face.h>
 
 #include <cmath>
 #include <set>
@@ -41,7 +42,8 @@ namespace Squeal
     const auto   squared    = [](const double x) { return x * x; };
     const double annulus    = dealii::numbers::PI * (squared(parameters.disc_outer_radius) - squared(parameters.disc_inner_radius));
     const double plan_nodes = annulus / squared(parameters.element_size);
-    const double pin_nodes  = parameters.nodes_per_pin_face * double(parameters.top.radii.size() + parameters.bottom.radii.size());
+    const double pin_face   = parameters.nodes_per_pin_face + parameters.pin_rings * 6. * blocks_of_pin_face(parameters.nodes_per_pin_face);
+    const double pin_nodes  = pin_face * double(parameters.top.radii.size() + parameters.bottom.radii.size());
     return extruded(plan_nodes, plan_nodes, pin_nodes, pin_nodes, parameters);
   }
 

@@ -1,19 +1,14 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/geometry/polygon.h>
+#include <squeal/model/curved_boundaries.h>
 #include <squeal/model/model.h>
 
-#include <deal.II/base/bounding_box.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
 
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
 #include <sstream>
 
 namespace Squeal
@@ -24,86 +19,6 @@ namespace Squeal
   {
     /// Gmsh numbers the vertices of a quadrilateral around it, deal.II lexicographically.
     constexpr std::array<unsigned int, 8> gmsh_vertex = {{0, 1, 3, 2, 4, 5, 7, 6}};
-
-    /// Points closer than this are taken for the same [m]: far below any element size, in any unit of length.
-    double resolution(const std::vector<Point<3>> &vertices)
-    {
-      const auto [lower, upper] = BoundingBox<3>(vertices).get_boundary_points();
-      return 1e-7 * lower.distance(upper);
-    }
-
-    /// A key that is equal for coincident mid-points of edges.
-    std::array<long, 3> edge_key(const Point<3> &p, const double grid)
-    {
-      return {{std::lround(p[0] / grid), std::lround(p[1] / grid), std::lround(p[2] / grid)}};
-    }
-
-    /**
-     * Makes quadratic elements follow their cylinders: where all vertices of a
-     * named surface (disc_bore, disc_rim; pin_side, pin by pin) lie on a circular
-     * cylinder about an axis parallel to z, its faces and edges get that
-     * cylinder as their manifold, and so do the coincident edges of the contact
-     * faces on the other side, so that contact nodes pair in degree 2 as well.
-     * Surfaces of any other shape keep straight edges.
-     */
-    void attach_cylinders(const Model &model, Triangulation<3> &triangulation)
-    {
-      // Vertices of each candidate surface, component by component
-      using Patch = std::pair<types::boundary_id, types::material_id>;
-      std::set<types::boundary_id> candidates;
-      for (const char *name : {PhysicalNames::disc_bore, PhysicalNames::disc_rim, PhysicalNames::pin_side})
-        if (model.has_surface(name))
-          candidates.insert(model.surface_id(name));
-      std::map<Patch, std::vector<Point<2>>> patches; // seen along z
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && candidates.count(face->boundary_id()))
-            for (const unsigned int v : face->vertex_indices())
-              patches[{face->boundary_id(), cell->material_id()}].emplace_back(face->vertex(v)[0], face->vertex(v)[1]);
-
-      // One manifold for each patch that is a cylinder
-      std::map<Patch, types::manifold_id> manifolds;
-      for (const auto &[patch, points] : patches)
-        if (const auto circle = circle_through(points))
-          {
-            const types::manifold_id id = manifolds.size() + 1;
-            manifolds[patch]            = id;
-            triangulation.set_manifold(
-              id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(circle->centre[0], circle->centre[1], 0.)));
-          }
-
-      // Faces and edges of the cylinders; their rims are remembered
-      const double                                      grid = resolution(triangulation.get_vertices());
-      std::map<std::array<long, 3>, types::manifold_id> curved_edges;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary())
-            if (const auto it = manifolds.find({face->boundary_id(), cell->material_id()}); it != manifolds.end())
-              {
-                face->set_all_manifold_ids(it->second);
-                for (unsigned int l = 0; l < face->n_lines(); ++l)
-                  {
-                    // An edge along the axis is straight and lies on no rim.
-                    const auto line = face->line(l);
-                    if (std::hypot(line->vertex(0)[0] - line->vertex(1)[0], line->vertex(0)[1] - line->vertex(1)[1]) > grid)
-                      curved_edges[edge_key(0.5 * (line->vertex(0) + line->vertex(1)), grid)] = it->second;
-                  }
-              }
-
-      // The same rims on both sides of the contact: a pin's outline on the disc, the disc's rim or bore on a pad that ends there
-      const std::set<types::boundary_id> contact = {model.surface_id(PhysicalNames::disc_contact),
-                                                    model.surface_id(PhysicalNames::pin_contact)};
-      for (const auto &cell : triangulation.active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && contact.count(face->boundary_id()))
-            for (unsigned int l = 0; l < face->n_lines(); ++l)
-              {
-                const auto line = face->line(l);
-                const auto it   = curved_edges.find(edge_key(0.5 * (line->vertex(0) + line->vertex(1)), grid));
-                if (it != curved_edges.end())
-                  line->set_manifold_id(it->second);
-              }
-    }
   } // namespace
 
   Model::Model(const HexMesh &mesh, const Element element, MPI_Comm communicator)
@@ -120,7 +35,7 @@ namespace Squeal
   {
     create_triangulation(mesh);
     if (element == Element::quadratic)
-      attach_cylinders(*this, tria);
+      follow_cylinders(*this, tria);
     distribute_dofs();
   }
 

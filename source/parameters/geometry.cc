@@ -153,6 +153,7 @@ namespace Squeal
             {"bottom_pin_angles", list(bottom.angles)},
             {"nodes_per_pin_face", std::to_string(nodes_per_pin_face)},
             {"pin_layers", std::to_string(pin_layers)},
+            {"pin_rings", std::to_string(pin_rings)},
             {"pin_grading", exact_text(pin_grading)},
             {"disc_layers", std::to_string(disc_layers)},
             {"element_size", exact_text(element_size)},
@@ -167,7 +168,7 @@ namespace Squeal
       script.emplace(geometry);
     std::set<std::string> used = {"pairing_tolerance"};
     if (is_plan())
-      used.insert({"disc_thickness", "pin_height", "disc_layers", "pin_layers", "pin_grading"});
+      used.insert({"disc_thickness", "pin_height", "disc_layers", "pin_layers", "pin_rings", "pin_grading"});
     for (const auto &[name, value] : script_variables())
       if (script && script->find({name}))
         used.insert(name);
@@ -222,9 +223,13 @@ namespace Squeal
       "Outlines", outlines,
       "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are smaller. true "
       "area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements follow the circle. Units: none.");
+    declarations.add("Pin rings", pin_rings,
+                     "Rings of elements along the outline of every pin of a plan, around its blocks; each adds 6 k nodes to the face, k of "
+                     "Nodes per pin face = 3 k (k + 1) + 1. Units: none.",
+                     {0, 20});
     declarations.add("Pin grading", pin_grading,
-                     "Thickness of a layer of a pin over that of the next one towards the end where it is held; 1: all alike. Stresses are "
-                     "singular at the edge of that end. Units: none.",
+                     "Size of a layer or ring of a pin over that of the next one towards the edge where the pin is held; 1: all alike. "
+                     "Stresses are singular there. Units: none.",
                      {1., 4.});
     declarations.add("Pairing tolerance", pairing_tolerance,
                      "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "

@@ -1,6 +1,7 @@
 #include "scenes.h"
 
 #include <squeal/geometry/outlines.h>
+#include <squeal/geometry/pin_grid.h>
 
 using namespace Squeal;
 using namespace Scenes;

@@ -49,7 +49,7 @@ TEST(GeometryParameters, EveryTextSaysUnits)
   GeometryParameters parameters;
   Declarations       declarations;
   parameters.declare(declarations);
-  EXPECT_EQ(declarations.parameters().size(), 20u);
+  EXPECT_EQ(declarations.parameters().size(), 21u);
   for (const DeclaredParameter &parameter : declarations.parameters())
     EXPECT_NE(parameter.documentation.find("Units: "), std::string::npos) << parameter.path;
 }

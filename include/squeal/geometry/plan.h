@@ -11,6 +11,8 @@
 
 namespace Squeal
 {
+  struct PinRings;
+
   /**
    * Disc and pins seen along the axis: quadrilaterals that cover the annulus,
    * those under each pin, and the named parts of the annulus' boundary. A face
@@ -32,10 +34,11 @@ namespace Squeal
     struct Pin
     {
       std::string               name; ///< "pin_top..." or "pin_bottom..."
-      Side                      side;
-      std::vector<unsigned int> faces;            ///< indices into Plan::faces, ascending
-      Point                     displacement;     ///< from the place in the plan to that on the disc [m]
-      bool                      is_round = false; ///< filled by fill_with_o_grid(): it may turn about its centre
+      Side                      side = Side::top;
+      std::vector<unsigned int> faces;              ///< indices into Plan::faces, ascending
+      Point                     displacement;       ///< from the place in the plan to that on the disc [m]
+      bool                      is_round   = false; ///< filled by fill_pin(): it may turn about its centre
+      std::vector<unsigned int> ring_nodes = {};    ///< inside its outline, of rings: smoothing leaves them where they are
     };
 
     struct Curve
@@ -58,7 +61,7 @@ namespace Squeal
    * - surface `disc`: the annulus, with or without what is under the pins;
    * - surfaces `pin_top*`, `pin_bottom*`: the faces under that pin;
    * - curves `pin_top*`, `pin_bottom*`: a closed curve around a hole of the
-   *   surfaces, which is filled by fill_with_o_grid();
+   *   surfaces, which is filled by fill_pin();
    * - points `pin_top*`, `pin_bottom*`: where the centre of the pin of that
    *   name is on its side of the disc, if it is not the centre of its curve;
    * - other curves: parts of the annulus' boundary.
@@ -68,15 +71,7 @@ namespace Squeal
    * surfaces that are not joined, open curves, pins of one side that touch, a
    * named curve inside the annulus, no pin.
    */
-  Plan make_plan(const GmshMesh &mesh, const std::string &where);
-
-  /**
-   * Fills a closed polygon of 6 k nodes, counter-clockwise, with three blocks of
-   * k x k quadrilaterals around its centre: 3 k (k + 1) + 1 nodes in total. The
-   * first node and every 2 k-th after it lie at the end of a spoke. Appends the
-   * new nodes to @p points.
-   */
-  std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points);
+  Plan make_plan(const GmshMesh &mesh, const PinRings &rings, const std::string &where);
 
   /// Edges that belong to one of the given faces only, in the sense of rotation of that face.
   std::vector<Plan::Edge> boundary_edges(const std::vector<Plan::Face> &faces);

@@ -7,7 +7,7 @@ namespace Squeal
   /**
    * Moves nodes inside the disc and inside the pins until no badly shaped face
    * gets better by moving one of its nodes. Nodes on the boundary of the
-   * annulus and on the outlines of pins stay.
+   * annulus, on the outlines of pins and of their rings stay.
    *
    * The shape at the corner between edges a and b is 2 a x b / (a² + b²): 1 for
    * a square, 0 for a flat corner or an edge of length 0, negative if inverted.

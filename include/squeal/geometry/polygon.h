@@ -25,6 +25,9 @@ namespace Squeal
     return twice / 2.;
   }
 
+  /// Mean of points, given by their indices, which must not be none [m].
+  dealii::Point<2> mean_point(const std::vector<unsigned int> &nodes, const std::vector<dealii::Point<2>> &points);
+
   struct Circle
   {
     dealii::Point<2> centre; ///< [m]

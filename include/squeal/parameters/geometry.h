@@ -45,7 +45,8 @@ namespace Squeal
     unsigned int disc_layers          = 3;
     double       element_size         = 0.0115; ///< in the plane of the disc [m]
     Outlines     outlines             = Outlines::inscribed;
-    double       pin_grading          = 1.;    ///< thickness of neighbouring layers, towards the held end [-]
+    unsigned int pin_rings            = 0;     ///< of elements along the outline of every pin
+    double       pin_grading          = 1.;    ///< sizes of neighbouring layers and rings, towards the edge of the held end [-]
     double       pairing_tolerance    = 1e-6;  ///< distance of the two nodes of a contact pair [m]
     bool         allow_shell_commands = false; ///< whether a geometry may run programs and write files
     double       meshing_time_limit   = 600.;  ///< [s]

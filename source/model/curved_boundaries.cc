@@ -1,0 +1,185 @@
+#include <squeal/geometry/polygon.h>
+#include <squeal/model/curved_boundaries.h>
+
+#include <deal.II/base/bounding_box.h>
+#include <deal.II/grid/manifold_lib.h>
+#include <deal.II/grid/tria_accessor.h>
+#include <deal.II/grid/tria_iterator.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace Squeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    using Cell = Triangulation<3>::active_cell_iterator;
+    using Face = Triangulation<3>::face_iterator;
+
+    /// Largest difference between the distances of a face's vertices from the axis, relative to these.
+    constexpr double roundness = 1e-6;
+
+    /// Points closer than this are taken for the same [m]: far below any element size, in any unit of length.
+    double resolution(const std::vector<Point<3>> &vertices)
+    {
+      const auto [lower, upper] = BoundingBox<3>(vertices).get_boundary_points();
+      return 1e-7 * lower.distance(upper);
+    }
+
+    /// Gives faces the manifolds of cylinders.
+    class CylinderFaces
+    {
+    public:
+      CylinderFaces(const Model &model, Triangulation<3> &triangulation)
+        : model(model)
+        , triangulation(triangulation)
+        , grid(resolution(triangulation.get_vertices()))
+      {}
+
+      /// Surfaces that are cylinders, component by component.
+      void find()
+      {
+        std::set<types::boundary_id> candidates;
+        for (const char *name : {PhysicalNames::disc_bore, PhysicalNames::disc_rim, PhysicalNames::pin_side})
+          if (model.has_surface(name))
+            candidates.insert(model.surface_id(name));
+        std::map<Patch, std::vector<Point<2>>> patches; // vertices, seen along z
+        for (const auto &cell : triangulation.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary() && candidates.count(face->boundary_id()))
+              for (const unsigned int v : face->vertex_indices())
+                patches[{face->boundary_id(), cell->material_id()}].emplace_back(face->vertex(v)[0], face->vertex(v)[1]);
+        for (const auto &[patch, points] : patches)
+          if (const auto circle = circle_through(points))
+            {
+              const Cylinder cylinder{types::manifold_id(cylinders.size() + 1), circle->centre};
+              cylinders.emplace(patch, cylinder);
+              triangulation.set_manifold(
+                cylinder.id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
+            }
+      }
+
+      /// The cylinders themselves, then the rings behind them.
+      void attach()
+      {
+        std::vector<RingFace> rings;
+        for (const auto &cell : triangulation.active_cell_iterators())
+          for (const unsigned int f : cell->face_indices())
+            if (const auto cylinder = cylinder_of(cell, f))
+              {
+                attach(cell->face(f), cylinder->id);
+                add_rings(cell, f, *cylinder, rings);
+              }
+        std::map<CellId, unsigned int> faces_of_cell;
+        for (const RingFace &ring : rings)
+          ++faces_of_cell[ring.behind->id()];
+        for (const RingFace &ring : rings)
+          if (faces_of_cell.at(ring.behind->id()) == 1)
+            attach(ring.face, ring.id);
+      }
+
+      /// The same rims on both sides of the contact: a pin's outline and rings on the disc, the disc's rim or bore on a pad that ends there.
+      void attach_other_side() const
+      {
+        const std::set<types::boundary_id> contact = {model.surface_id(PhysicalNames::disc_contact),
+                                                      model.surface_id(PhysicalNames::pin_contact)};
+        for (const auto &cell : triangulation.active_cell_iterators())
+          for (const auto &face : cell->face_iterators())
+            if (face->at_boundary() && contact.count(face->boundary_id()))
+              for (unsigned int l = 0; l < face->n_lines(); ++l)
+                if (const auto it = curved_edges.find(key(face->line(l))); it != curved_edges.end())
+                  face->line(l)->set_manifold_id(it->second);
+      }
+
+    private:
+      using Patch = std::pair<types::boundary_id, types::material_id>;
+      using Line  = Triangulation<3>::line_iterator;
+      using Key   = std::array<long, 3>; ///< equal for coincident mid-points of edges
+
+      struct Cylinder
+      {
+        types::manifold_id id;
+        Point<2>           axis;
+      };
+
+      /// A face between two rings, or between the innermost one and what is inside.
+      struct RingFace
+      {
+        Face               face;
+        Cell               behind; ///< on the side of the axis
+        types::manifold_id id;
+      };
+
+      const Model                      &model;
+      Triangulation<3>                 &triangulation;
+      const double                      grid;
+      std::map<Patch, Cylinder>         cylinders;
+      std::map<Key, types::manifold_id> curved_edges;
+
+      std::optional<Cylinder> cylinder_of(const Cell &cell, const unsigned int f) const
+      {
+        if (!cell->face(f)->at_boundary())
+          return {};
+        const auto it = cylinders.find({cell->face(f)->boundary_id(), cell->material_id()});
+        return it == cylinders.end() ? std::nullopt : std::make_optional(it->second);
+      }
+
+      bool is_round(const Face &face, const Point<2> &axis) const
+      {
+        double least = std::numeric_limits<double>::max(), most = 0.;
+        for (const unsigned int v : face->vertex_indices())
+          {
+            const double r = std::hypot(face->vertex(v)[0] - axis[0], face->vertex(v)[1] - axis[1]);
+            least          = std::min(least, r);
+            most           = std::max(most, r);
+          }
+        return most - least <= roundness * most;
+      }
+
+      /// Follows a stack of cells from face @p f of @p cell inwards as long as their faces are round.
+      void add_rings(Cell cell, unsigned int f, const Cylinder &cylinder, std::vector<RingFace> &rings) const
+      {
+        while (true)
+          {
+            const unsigned int opposite = GeometryInfo<3>::opposite_face[f];
+            if (cell->face(opposite)->at_boundary() || !is_round(cell->face(opposite), cylinder.axis))
+              return;
+            const Cell behind = cell->neighbor(opposite);
+            rings.push_back({cell->face(opposite), behind, cylinder.id});
+            f    = cell->neighbor_of_neighbor(opposite);
+            cell = behind;
+          }
+      }
+
+      Key key(const Line &line) const
+      {
+        const Point<3> p = 0.5 * (line->vertex(0) + line->vertex(1));
+        return {{std::lround(p[0] / grid), std::lround(p[1] / grid), std::lround(p[2] / grid)}};
+      }
+
+      /// Of a face and its edges, which are remembered but for those along the axis: they are straight and lie on no rim.
+      void attach(const Face &face, const types::manifold_id id)
+      {
+        face->set_all_manifold_ids(id);
+        for (unsigned int l = 0; l < face->n_lines(); ++l)
+          if (const Line line = face->line(l);
+              std::hypot(line->vertex(0)[0] - line->vertex(1)[0], line->vertex(0)[1] - line->vertex(1)[1]) > grid)
+            curved_edges[key(line)] = id;
+      }
+    };
+  } // namespace
+
+  void follow_cylinders(const Model &model, Triangulation<3> &triangulation)
+  {
+    CylinderFaces faces(model, triangulation);
+    faces.find();
+    faces.attach();
+    faces.attach_other_side();
+  }
+} // namespace Squeal

@@ -1,0 +1,114 @@
+#include "scenes.h"
+
+#include <squeal/geometry/grading.h>
+#include <squeal/geometry/mesh_check.h>
+#include <squeal/geometry/pin_grid.h>
+#include <squeal/geometry/polygon.h>
+
+using namespace Squeal;
+using namespace Scenes;
+
+namespace
+{
+  constexpr double pi = 3.14159265358979323846;
+
+  /// Nodes on a circle of radius 1 about (3, 4).
+  std::vector<Plan::Point> circle(const unsigned int n)
+  {
+    std::vector<Plan::Point> points;
+    for (unsigned int i = 0; i < n; ++i)
+      points.emplace_back(3. + std::cos(2. * pi * i / n), 4. + std::sin(2. * pi * i / n));
+    return points;
+  }
+
+  std::vector<unsigned int> first(const unsigned int n)
+  {
+    std::vector<unsigned int> nodes;
+    for (unsigned int i = 0; i < n; ++i)
+      nodes.push_back(i);
+    return nodes;
+  }
+
+  /// Smallest and largest angle between the edges of faces [degree].
+  std::pair<double, double> angles(const std::vector<Plan::Face> &faces, const std::vector<Plan::Point> &points)
+  {
+    double least = 360., most = 0.;
+    for (const Plan::Face &face : faces)
+      for (unsigned int v = 0; v < 4; ++v)
+        {
+          const Corner corner(face, v, points);
+          double       angle = std::atan2(corner.cross, corner.a * corner.b) * 180. / pi;
+          angle += angle < 0. ? 360. : 0.;
+          least = std::min(least, angle);
+          most  = std::max(most, angle);
+        }
+    return {least, most};
+  }
+} // namespace
+
+TEST(PinGrid, RingsFillTheOutlineWithoutFlatCorners)
+{
+  for (const unsigned int k : {1u, 2u, 3u, 5u})
+    for (const unsigned int rings : {1u, 2u, 4u})
+      {
+        SCOPED_TRACE("k = " + std::to_string(k) + ", " + std::to_string(rings) + " rings");
+        std::vector<Plan::Point> points = circle(6 * k);
+        const PinGrid            grid   = fill_pin(first(6 * k), {rings, 1.5}, points);
+        EXPECT_EQ(points.size(), 3 * k * (k + 1) + 1 + 6 * k * rings);
+        EXPECT_EQ(grid.faces.size(), 3 * k * k + 6 * k * rings);
+        EXPECT_EQ(grid.ring_nodes.size(), 6 * k * rings);
+
+        double area = 0.;
+        for (const Plan::Face &face : grid.faces)
+          area += signed_area(face, points);
+        EXPECT_NEAR(area, 3. * k * std::sin(pi / (3. * k)), 1e-13);
+        EXPECT_EQ(boundary_edges(grid.faces).size(), 6 * k);
+
+        const auto [least, most] = angles(grid.faces, points);
+        EXPECT_GT(least, 45.);
+        EXPECT_LT(most, 135.);
+      }
+}
+
+TEST(PinGrid, WithoutRingsItIsTheOGrid)
+{
+  std::vector<Plan::Point> points = circle(12), same = circle(12);
+  const PinGrid            grid = fill_pin(first(12), {}, points);
+  EXPECT_EQ(grid.faces, fill_with_o_grid(first(12), same));
+  EXPECT_TRUE(grid.ring_nodes.empty());
+  EXPECT_EQ(points.size(), same.size());
+}
+
+TEST(PinGrid, RingsShrinkOutwardsByTheRatio)
+{
+  std::vector<Plan::Point> points = circle(6);
+  fill_pin(first(6), {4, 2.}, points);
+  // The outer three lie between 1 and 0.8 of the radius: 1 : 2 : 4 of 7 from outside
+  const double expected[] = {1., 1. - 0.2 / 7., 1. - 0.6 / 7., 0.8};
+  for (unsigned int ring = 0; ring < 4; ++ring)
+    for (unsigned int i = 0; i < 6; ++i)
+      EXPECT_NEAR(points[6 * ring + i].distance(Plan::Point(3., 4.)), expected[ring], 1e-14);
+}
+
+TEST(PinGrid, PinsOfASceneHaveRings)
+{
+  GeometryParameters parameters;
+  parameters.pin_rings   = 3;
+  parameters.pin_grading = 1.5;
+  parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // displaced from pins above
+  const HexMesh mesh     = generate_mesh(parameters);
+  EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.1);
+  // Distances from the axes: of every pin the same, on both sides
+  for (std::size_t pin = 0; pin < 2; ++pin)
+    {
+      const double      angle = parameters.bottom.angles[pin] * pi / 180., radius = parameters.pin_diameter / 2.;
+      const Plan::Point axis(parameters.bottom.radii[pin] * std::cos(angle), parameters.bottom.radii[pin] * std::sin(angle));
+      unsigned int      n_found = 0;
+      for (const HexMesh::Point &p : mesh.points)
+        if (p[2] < -parameters.disc_thickness / 2. - parameters.pin_height / 2.)
+          for (const double end : graded_intervals(2, 1.5))
+            n_found += std::abs(std::hypot(p[0] - axis[0], p[1] - axis[1]) / radius - 0.8 - 0.2 * end) < 1e-9;
+      // Layers of nodes above half of the height: three of five
+      EXPECT_EQ(n_found, 3u * 3u * 12u) << pin;
+    }
+}
