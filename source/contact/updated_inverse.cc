@@ -17,22 +17,31 @@ namespace Squeal
     }
   } // namespace
 
-  UpdatedInverse::UpdatedInverse(const CoupledSystem &system, const double shift, const FactorizationLibrary library)
+  UpdatedInverse::UpdatedInverse(const CoupledSystem       &system,
+                                 const double               shift,
+                                 const FactorizationLibrary library,
+                                 const AttachmentModes      attachment)
+    : factor(factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction"))
+    , A(system.friction_forces)
+    , V(normal_reactions(system, shift))
   {
-    const int n_c = system.n_contact();
-    factor = factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction");
+    if (attachment == AttachmentModes::at_once)
+      attachment_modes();
+  }
 
-    const MultiVector A = system.friction_forces->columns(0, n_c);
-    X                   = std::make_unique<MultiVector>(solve_frictionless(A));
-    V                   = normal_reactions(system, shift);
-    VX                  = V ? replicate(*V * *X) : DenseMatrix::Zero(n_c, n_c);
+  const MultiVector &UpdatedInverse::attachment_modes() const
+  {
+    if (!X)
+      X = std::make_unique<MultiVector>(solve_frictionless(A->columns(0, A->rank())));
+    return *X;
   }
 
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
-    friction_coefficient = mu;
-    const auto I         = DenseMatrix::Identity(VX.rows(), VX.cols());
-    correction           = regular_lu(I - mu * VX, "stiffness with friction, condensed to the contact nodes");
+    friction_coefficient  = mu;
+    const int         n_c = A->rank();
+    const DenseMatrix VX  = V ? replicate(*V * attachment_modes()) : DenseMatrix::Zero(n_c, n_c);
+    correction = regular_lu(DenseMatrix::Identity(n_c, n_c) - mu * VX, "stiffness with friction, condensed to the contact nodes");
   }
 
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const

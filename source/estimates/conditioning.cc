@@ -232,7 +232,8 @@ namespace Squeal
       {
         const double residual   = std::sqrt(std::abs(modes.energy_residuals[j]));
         result.largest_residual = std::max(result.largest_residual, residual);
-        result.errors.push_back(0.5 * result.modes[j] * (residual + std::numeric_limits<double>::epsilon() * gamma[j]));
+        const double of_solver  = modes.estimated_errors.empty() ? 0.5 * result.modes[j] * residual : modes.estimated_errors[j];
+        result.errors.push_back(of_solver + 0.5 * result.modes[j] * std::numeric_limits<double>::epsilon() * gamma[j]);
       }
     return result;
   }

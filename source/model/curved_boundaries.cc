@@ -22,6 +22,8 @@ namespace Squeal
     using Cell = Triangulation<3>::active_cell_iterator;
     using Face = Triangulation<3>::face_iterator;
 
+    constexpr types::material_id disc = 0;
+
     /// Largest difference between the distances of a face's vertices from the axis, relative to these.
     constexpr double roundness = 1e-6;
 
@@ -74,7 +76,8 @@ namespace Squeal
             if (const auto cylinder = cylinder_of(cell, f))
               {
                 attach(cell->face(f), cylinder->id);
-                add_rings(cell, f, *cylinder, rings);
+                if (cell->material_id() != disc)
+                  add_rings(cell, f, *cylinder, rings);
               }
         std::map<CellId, unsigned int> faces_of_cell;
         for (const RingFace &ring : rings)

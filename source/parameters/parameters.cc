@@ -169,6 +169,11 @@ namespace Squeal
   void Parameters::declare(Declarations &declarations)
   {
     declare_study(declarations, study);
+    declarations.add(
+      "Accuracy", goal,
+      "How accurate frequencies shall be; divergence rates in percentage points to a tenth of that. Chooses elements, mesh, solver and "
+      "tolerances in place of those below; Study = stability estimates what is achieved, mode by mode, with a second, coarser mesh. as "
+      "given: parameters below hold, and no error of the mesh is estimated.");
     geometry.declare(declarations);
     materials.declare(declarations);
     discretization.declare(declarations);
@@ -202,6 +207,10 @@ namespace Squeal
       if (const DeclaredParameter *parameter = declarations.find(statement.path))
         assign(*parameter, statement);
 
+    parameters.check();
+    if (parameters.goal == AccuracyGoal::as_given)
+      return parameters;
+    parameters = with_goal(parameters);
     parameters.check();
     return parameters;
   }

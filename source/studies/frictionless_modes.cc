@@ -143,7 +143,9 @@ namespace Squeal
 
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");
-    result.inverse = std::make_shared<UpdatedInverse>(coupled, result.shift, parameters.solvers.library);
+    const AttachmentModes attachment =
+      parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed : AttachmentModes::at_once;
+    result.inverse = std::make_shared<UpdatedInverse>(coupled, result.shift, parameters.solvers.library, attachment);
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
     result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
                                                     result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));

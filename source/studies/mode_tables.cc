@@ -44,7 +44,7 @@ namespace Squeal
     }
   } // namespace
 
-  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves)
+  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves, const Columns<int> &more)
   {
     const ComplexModes &modes = friction.modes;
     const auto          wave  = [&waves](double WaveShares::*share) {
@@ -63,7 +63,21 @@ namespace Squeal
                             {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     if (!modes.estimated_errors.empty())
       columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
+    columns.insert(columns.end(), more.begin(), more.end());
     return Table(columns, boost::irange<int>(0, friction.labels.size()));
+  }
+
+  Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyLimits &limits)
+  {
+    const auto known = [&errors](const double DiscretisationError::*error) {
+      return
+        [&errors, error](const int j) { return errors[j].has_counterpart ? std::make_optional(100. * (errors[j].*error)) : std::nullopt; };
+    };
+    return {{"estimated frequency error by the mesh", "%", known(&DiscretisationError::frequency), 1, true},
+            {"estimated divergence rate error by the mesh", "%", known(&DiscretisationError::divergence), 1, true},
+            {"in a cluster", "-", [&errors](const int j) { return errors[j].in_cluster; }},
+            {"converged", "-", [&errors, limits](const int j) { return errors[j].is_within(limits.frequency, limits.divergence); }},
+            {"verdict", "", [&errors](const int j) { return to_string(errors[j].verdict); }}};
   }
 
   Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)

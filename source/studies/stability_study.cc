@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
+#include <squeal/studies/mesh_estimate.h>
 #include <squeal/studies/mode_shapes.h>
 #include <squeal/studies/mode_tables.h>
 #include <squeal/studies/paper_scene.h>
@@ -110,13 +111,18 @@ namespace Squeal
     // ----------------------------------------------------------------- the answer
 
     /// Verdict and unstable modes, which is what most users want to know.
-    void report(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+    void report(const FrictionlessModes                &frictionless,
+                const FrictionModes                    &friction,
+                const std::vector<DiscretisationError> &mesh_errors,
+                Run                                    &run)
     {
       const Parameters &parameters = run.parameters;
       run.screen << '\n';
       for (const std::string &line :
            verdict(friction, parameters.operation.friction_coefficient, parameters.discretization.maximum_frequency))
         run.progress.note(line);
+      if (!mesh_errors.empty())
+        report_mesh_errors(mesh_errors, friction, run);
       if (friction.n_unstable() > 0)
         {
           run.screen << '\n';
@@ -133,7 +139,7 @@ namespace Squeal
   /**
    * `Study = stability`: component modes, real coupled modes and complex modes
    * at one friction coefficient, about equal shares of the load or about steady
-   * sliding, with their tables and mode shapes. A dry run makes, checks and
+   * sliding, with their tables and mode shapes; with an accuracy asked for, their errors by the mesh. A dry run makes, checks and
    * counts the mesh, and writes nothing.
    */
   static void run_stability_study(Scene &scene, Run &run)
@@ -142,7 +148,8 @@ namespace Squeal
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, run), run);
+    const std::optional<CoarserSolution> coarser      = solve_on_coarser_mesh(run);
+    FrictionlessModes                    frictionless = frictionless_modes(linearised_scene(scene, run), run);
     add_modal_damping(frictionless, parameters);
     const FrictionModes                friction      = friction_modes(frictionless, operation.friction_coefficient, run);
     const Linearisation               &linearisation = frictionless.linearisation;
@@ -156,10 +163,12 @@ namespace Squeal
       run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
 
     // ----------------------------------------------------------------- results
-    report(frictionless, friction, run);
+    const auto errors = coarser ? mesh_errors(*coarser, frictionless, friction, parameters.goal) : std::vector<DiscretisationError>();
+    report(frictionless, friction, errors, run);
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
-    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation)));
+    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation),
+                                                   coarser ? mesh_error_columns(errors, limits_of(parameters.goal)) : Columns<int>()));
     run.store_table("real_modes", real_table(frictionless));
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     if (!friction.modes.real_values.empty())

@@ -1,8 +1,6 @@
-#include "solutions.h"
+#include "convergence/given_modes.h"
 
 #include <squeal/convergence/mode_pairing.h>
-
-#include <Eigen/QR>
 
 #include <gtest/gtest.h>
 
@@ -11,22 +9,6 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  constexpr int n_values = 40;
-
-  ModesAtPoints modes(const std::vector<Complex> &lambda, const ComplexDenseMatrix &shapes)
-  {
-    const RowMap map = RowMap::even(n_values, MPI_COMM_WORLD);
-    return {lambda, distribute(shapes.real(), map), distribute(shapes.imag(), map)};
-  }
-
-  /// Orthonormal columns.
-  ComplexDenseMatrix orthonormal(const int k)
-  {
-    const MultiVector random = random_vectors(RowMap::even(n_values, MPI_COMM_WORLD), 2 * k, 7);
-    return Eigen::HouseholderQR<ComplexDenseMatrix>(from_halves(replicate(random))).householderQ() *
-           ComplexDenseMatrix::Identity(n_values, k);
-  }
-
   /// Columns i and j turned into each other by an angle.
   void turn(ComplexDenseMatrix &X, const int i, const int j, const double degrees)
   {
@@ -52,8 +34,6 @@ namespace
         result.push_back(i);
     return result;
   }
-
-  const Complex i(0., 1.);
 } // namespace
 
 TEST(ModePairing, FollowsShapesNotNumbers)

@@ -1,5 +1,6 @@
 """`Study = accuracy` as a user runs it, on a small scene."""
 
+import json
 import math
 import unittest
 
@@ -73,6 +74,61 @@ class Accuracy(ProgramTest):
         self.assertEqual({row["family"] for row in self.orders}, {"trilinear, true area", "incompatible modes, true area"})
         self.assertEqual({row["order of frequency [-]"] for row in self.orders}, {""})
         self.assertEqual(sorted({row["reference"] for row in self.orders}), ["no", "yes"])
+
+
+class Goal(ProgramTest):
+    """`Accuracy = 5 %` beside quadratic elements on a mesh that the program does not use to set itself."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        band = f"Band/Maximum frequency={BAND}"
+        cls.results = cls.run_scene("goal", "Accuracy=5 %", band)
+        cls.modes = read_table(cls.results / "complex_modes.csv")
+        fine = cls.run_scene("fine", "Discretization/Element=quadratic", "Geometry/Nodes per pin face=19", "Geometry/Pin layers=3",
+                             "Geometry/Pin rings=1", "Geometry/Element size=0.03", "Geometry/Disc layers=2", f"Band/Maximum frequency={1.1 * BAND}")
+        cls.reference = read_table(fine / "complex_modes.csv")
+
+    def test_modes_called_converged_are(self):
+        by_label = {row["label"]: row for row in self.reference}
+        n_compared = 0
+        for row in self.modes:
+            if row["converged [-]"] == "1" and row["in a cluster [-]"] == "0" and row["label"] in by_label:
+                found, exact = ([float(mode[column]) for column in ("frequency [Hz]", "divergence rate [%]")] for mode in (row, by_label[row["label"]]))
+                self.assertLess(abs(found[0] / exact[0] - 1), 0.05, row["label"])
+                self.assertLess(abs(found[1] - exact[1]), 0.5, row["label"])
+                self.assertLess(abs(found[0] / exact[0] - 1), 0.02 * float(row["estimated frequency error by the mesh [%]"]), row["label"])
+                n_compared += 1
+        self.assertGreater(n_compared, 5)
+
+    def test_what_it_says_agrees_with_the_table(self):
+        record = json.loads((self.results / "run.json").read_text(encoding="utf-8"))
+        for verdict in ("unstable", "stable", "undecided"):
+            self.assertEqual(record["counts"][f"modes {verdict} with the error of the mesh"],
+                             sum(row["verdict"] == verdict for row in self.modes))
+        self.assertEqual(record["counts"]["modes converged on the mesh"], sum(row["converged [-]"] == "1" for row in self.modes))
+
+    def test_the_parameters_that_it_leaves_repeat_it(self):
+        again = self.run_scene("again", file=self.results / "parameters.prm")
+        self.assertEqual((again / "complex_modes.csv").read_text(encoding="utf-8"),
+                         (self.results / "complex_modes.csv").read_text(encoding="utf-8"))
+
+    def test_unstable_modes_that_are_not_converged_are_named(self):
+        """Half of a percentage point of the divergence rate is less than strong friction makes of coarse meshes."""
+        process = self.call("scene.prm", "--output", "strong", "--set", "Accuracy=0.1 %", "--set", "Operation/Friction coefficient=1.5",
+                            "--set", f"Band/Maximum frequency={BAND}")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        rows = read_table(self.folder / "strong" / "complex_modes.csv")
+        n = sum(row["unstable [-]"] == "1" and row["converged [-]"] == "0" for row in rows)
+        self.assertEqual("not converged on this mesh" in process.stdout, n > 0)
+
+    def test_a_mesh_of_ones_own_is_refused(self):
+        (self.folder / "bodies.msh").write_text("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"disc\"\n$EndPhysicalNames\n",
+                                                encoding="utf-8")
+        process = self.call("scene.prm", "--output", "refused", "--set", "Accuracy=1 %", "--set", "Geometry/File=bodies.msh")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("cannot be refined", process.stderr)
+        self.assertFalse((self.folder / "refused").exists())
 
 
 class Refusals(ProgramTest):

@@ -9,6 +9,13 @@
 
 namespace Squeal
 {
+  /// When the n_c columns of X are solved for, which takes longer than the factor and memory for a dense n × n_c matrix.
+  enum class AttachmentModes
+  {
+    at_once,
+    when_needed ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
+  };
+
   /**
    * Inverse of the pencil with friction at a real shift s ≥ 0,
    *
@@ -24,8 +31,11 @@ namespace Squeal
   class UpdatedInverse : public LinearOperator
   {
   public:
-    /// Factorises S and computes X; throws SolverError if S is not positive definite.
-    UpdatedInverse(const CoupledSystem &system, double shift, FactorizationLibrary library);
+    /// Factorises S; throws SolverError if S is not positive definite.
+    UpdatedInverse(const CoupledSystem &system,
+                   double               shift,
+                   FactorizationLibrary library,
+                   AttachmentModes      attachment = AttachmentModes::at_once);
 
     /// Friction coefficient of the following apply(); throws SolverError if Q(s) is singular there.
     void set_friction_coefficient(double mu);
@@ -39,10 +49,7 @@ namespace Squeal
     const RowMap &map() const override;
 
     /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
-    const MultiVector &attachment_modes() const
-    {
-      return *X;
-    }
+    const MultiVector &attachment_modes() const;
 
     /// S⁻¹ by itself.
     const Factorization &frictionless() const
@@ -51,11 +58,11 @@ namespace Squeal
     }
 
   private:
-    std::unique_ptr<Factorization>      factor;
-    std::shared_ptr<const SparseMatrix> V;
-    std::unique_ptr<MultiVector>        X;
-    DenseMatrix                         VX;
-    double                              friction_coefficient = 0.;
-    std::optional<RealLU>               correction;
+    std::unique_ptr<Factorization>       factor;
+    std::shared_ptr<const LowRankFactor> A;
+    std::shared_ptr<const SparseMatrix>  V;
+    mutable std::unique_ptr<MultiVector> X; ///< once it has been needed
+    double                               friction_coefficient = 0.;
+    std::optional<RealLU>                correction;
   };
 } // namespace Squeal

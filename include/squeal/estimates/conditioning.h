@@ -17,6 +17,7 @@ namespace Squeal
    *
    *   |δλ| / |λ| = ½ κ (√ε_res + ε γ),   γ = |φ|ᵀ |K| |φ| / φᴴ K φ
    *
+   * Where the solver estimates its error by left and right residuals, that stands for ½ κ √ε_res, which is too large for modes of a basis.
    * ε_res (ComplexModes::energy_residuals) measures the residual by the energy of the displacements that it causes; γ is the factor by
    * which relative errors ε of the entries of K, such as those of assembly, change φᴴ K φ. It is large where parts of the
    * stiffness cancel, as for the bending of a thin plate.

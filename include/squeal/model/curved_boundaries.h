@@ -8,7 +8,7 @@ namespace Squeal
    * Makes quadratic elements follow their cylinders: where all vertices of a named surface (disc_bore, disc_rim; pin_side, pin by
    * pin) lie on a circular cylinder about an axis parallel to z, its faces and edges get that cylinder as their manifold. So do
    *
-   * - faces behind them that lie on a cylinder about the same axis, ring by ring: a ring that is thinner than the arc is high would
+   * - faces of pins behind them that lie on a cylinder about the same axis, ring by ring: a ring that is thinner than the arc is high would
    *   otherwise be squeezed between a curved and a straight face. A cell with two such faces side by side, whose edges would meet at
    *   180 degrees, keeps them straight;
    * - coincident edges of the contact faces on the other side, so that contact nodes pair in degree 2 as well.

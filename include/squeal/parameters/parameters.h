@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/parameters/accuracy.h>
+#include <squeal/parameters/accuracy_goal.h>
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/damping.h>
 #include <squeal/parameters/geometry.h>
@@ -22,6 +23,7 @@ namespace Squeal
   struct Parameters
   {
     const Study             *study = studies().front(); ///< the question
+    AccuracyGoal             goal  = AccuracyGoal::as_given;
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
@@ -40,7 +42,7 @@ namespace Squeal
 
     /**
      * Reads a parameter file, then applies overrides of the form
-     * "Section/Name=value", then checks every value and combination.
+     * "Section/Name=value", then what Accuracy asks for, then checks every value and combination.
      * Throws FileError, or ParameterError; an unknown name is answered with the
      * nearest known one, a refused value with what the parameter accepts.
      */

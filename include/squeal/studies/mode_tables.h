@@ -1,6 +1,8 @@
 #pragma once
 
+#include <squeal/convergence/discretisation_error.h>
 #include <squeal/output/table.h>
+#include <squeal/parameters/accuracy_goal.h>
 #include <squeal/studies/friction_modes.h>
 
 #include <optional>
@@ -19,8 +21,12 @@ namespace Squeal
    * unstable, how they travel, and estimates where there are any.
    *
    * @param waves of waves_with_rotation()
+   * @param more  columns by the numbers of the modes
    */
-  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves);
+  Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves, const Columns<int> &more = {});
+
+  /// Columns that estimated errors of the mesh add to complex_table(): those, whether they are within @p limits, and the verdict.
+  Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyLimits &limits);
 
   /**
    * The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most

@@ -1,0 +1,132 @@
+#include <squeal/base/conventions.h>
+#include <squeal/parameters/accuracy_goal.h>
+#include <squeal/parameters/mesh_family.h>
+#include <squeal/parameters/parameters.h>
+#include <squeal/parameters/pin_face.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Meshes of any size of disc and pins.
+    struct MeshDensity
+    {
+      Element      element;
+      unsigned int blocks; ///< k of the faces of pins
+      unsigned int rings;
+      double       grading;
+      unsigned int pin_layers; ///< of pins up to three fifths as high as wide
+      unsigned int disc_layers;
+      double       elements_per_wave; ///< of the disc
+    };
+
+    struct Level
+    {
+      AccuracyLimits limits;
+      MeshDensity    mesh, coarser;
+      double         tolerance; ///< of reduction and solvers: estimated |δλ| / |λ| [-]
+    };
+
+    /// Measured on the default scene, see doc/accuracy.md.
+    const Level &level(const AccuracyGoal goal)
+    {
+      static const Level five_percent = {{5e-2, 5e-3},
+                                         {Element::incompatible_modes, 2, 0, 1., 4, 2, 13.},
+                                         {Element::incompatible_modes, 1, 0, 1., 2, 1, 6.5},
+                                         1e-5};
+      static const Level one_percent  = {{1e-2, 1e-3},
+                                         {Element::quadratic, 2, 0, 1., 2, 2, 10.},
+                                         {Element::quadratic, 2, 0, 1., 1, 1, 6.5},
+                                         1e-5};
+      static const Level tenth        = {{1e-3, 1e-4},
+                                         {Element::quadratic, 2, 3, 1.5, 5, 3, 10.},
+                                         {Element::quadratic, 2, 2, 1.5, 3, 2, 7.5},
+                                         1e-5};
+      static const Level hundredth    = {{1e-4, 1e-5}, {Element::quadratic, 2, 4, 1.5, 7, 4, 13.}, tenth.mesh, 1e-6};
+      switch (goal)
+        {
+          case AccuracyGoal::five_percent:
+            return five_percent;
+          case AccuracyGoal::one_percent:
+            return one_percent;
+          case AccuracyGoal::a_tenth_percent:
+            return tenth;
+          default:
+            return hundredth;
+        }
+    }
+
+    /// Height over diameter up to which the layers of a level serve [-].
+    constexpr double squat_pin = 0.62;
+
+    /// Part of the band by which that on the coarser mesh is longer, over the accuracy asked for, and at least [-].
+    constexpr double band_margin = 2., least_band_margin = 0.02;
+
+    /// The shorter one of thin-plate bending waves, 2π (D / ρhω²)^¼, and Rayleigh's waves on the faces at the end of the band [m].
+    double shortest_wave(const Parameters &parameters)
+    {
+      constexpr double rayleigh  = 0.9; // of the speed of shear waves
+      const Material  &disc      = parameters.materials.disc;
+      const double     frequency = parameters.discretization.maximum_frequency, omega = circular_frequency(frequency);
+      const double     nu = disc.poisson_ratio, h = parameters.geometry.disc_thickness;
+      const double     plate_speed = std::sqrt(disc.young_modulus / (12. * (1. - nu * nu) * disc.density)); // √(D / ρh) / h
+      const double     shear_speed = std::sqrt(disc.young_modulus / (2. * (1. + nu) * disc.density));
+      return std::min(2. * M_PI * std::sqrt(plate_speed * h / omega), rayleigh * shear_speed / frequency);
+    }
+
+    GeometryParameters meshed(const Parameters &parameters, const MeshDensity &mesh)
+    {
+      GeometryParameters geometry = parameters.geometry;
+      check_follows(geometry);
+      const double width          = (geometry.disc_outer_radius - geometry.disc_inner_radius) / 2.;
+      const double slenderness    = geometry.pin_height / geometry.pin_diameter / squat_pin;
+      geometry.element_size       = std::min({shortest_wave(parameters) / mesh.elements_per_wave, width, geometry.disc_inner_radius});
+      geometry.nodes_per_pin_face = nodes_of_pin_face(mesh.blocks);
+      geometry.pin_rings          = mesh.rings;
+      geometry.pin_grading        = mesh.grading;
+      geometry.pin_layers         = std::lround(std::ceil(mesh.pin_layers * std::max(1., slenderness)));
+      const double layers         = geometry.disc_thickness / geometry.element_size;
+      geometry.disc_layers        = std::max(mesh.disc_layers, static_cast<unsigned int>(std::lround(layers)));
+      return geometry;
+    }
+
+    Parameters with(const Parameters &given, const MeshDensity &mesh, const double tolerance)
+    {
+      Parameters result                  = given;
+      result.discretization.element      = mesh.element;
+      result.geometry                    = meshed(given, mesh);
+      result.solvers.complex_solver      = ComplexSolver::residual_iteration;
+      result.solvers.iteration_tolerance = tolerance;
+      return result;
+    }
+  } // namespace
+
+  AccuracyLimits limits_of(const AccuracyGoal goal)
+  {
+    return level(goal).limits;
+  }
+
+  double error_by_difference(const AccuracyGoal goal)
+  {
+    return level(goal).mesh.element == Element::quadratic ? 1. / 3. : 2. / 3.;
+  }
+
+  Parameters with_goal(const Parameters &given)
+  {
+    if (given.goal == AccuracyGoal::as_given)
+      return given;
+    const Level &asked = level(given.goal);
+    return with(given, asked.mesh, asked.tolerance);
+  }
+
+  Parameters with_coarser_mesh(const Parameters &given)
+  {
+    const Level &asked  = level(given.goal);
+    Parameters   result = with(given, asked.coarser, asked.tolerance);
+    result.discretization.maximum_frequency *= 1. + std::max(band_margin * asked.limits.frequency, least_band_margin);
+    return result;
+  }
+} // namespace Squeal
