@@ -35,7 +35,7 @@ def logarithmic(panel):
 def draw_front(panel, solutions, column):
     front = pareto_front((solution.seconds, solution.errors[column]) for solution in solutions if solution.is_complete)
     if front:
-        panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front", zorder=1)
+        panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front of those with all modes", zorder=1)
 
 
 def cost_figure(solutions):
@@ -44,6 +44,11 @@ def cost_figure(solutions):
     families = in_order(solution.family for solution in solutions)
     for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
         style.prepare(panel, "", TIME, TITLES[column])
+        if all(solution.errors[column] <= FLOOR for solution in solutions):
+            panel.text(0.5, 0.5, "none beyond rounding outside of clusters", transform=panel.transAxes, ha="center", color=style.GREY)
+            panel.set_xticks([])
+            panel.set_yticks([])
+            continue
         draw_front(panel, solutions, column)
         for number, family in enumerate(families):
             look = style.mark_of(number)

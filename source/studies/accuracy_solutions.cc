@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/base/resident_memory.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace Squeal
 {
@@ -46,6 +48,8 @@ namespace Squeal
 
     std::vector<double> algebraic_errors(const ComplexModes &modes)
     {
+      if (!modes.estimated_errors.empty())
+        return modes.estimated_errors;
       std::vector<double> errors;
       for (const double residual : modes.energy_residuals)
         errors.push_back(0.5 * std::sqrt(residual));
@@ -133,6 +137,27 @@ namespace Squeal
   std::optional<SolvedMesh> AccuracySolver::solve(const MeshAndElement &mesh)
   {
     run.progress.begin(mesh.text());
+    const auto leave_out = [&](const std::string &reason) {
+      run.progress.finish("left out: " + reason);
+      missing.push_back({mesh, reason});
+    };
+    try
+      {
+        return solved(mesh);
+      }
+    catch (const Error &error)
+      {
+        leave_out(error.reason);
+      }
+    catch (const std::runtime_error &error) // of another process
+      {
+        leave_out(error.what());
+      }
+    return {};
+  }
+
+  SolvedMesh AccuracySolver::solved(const MeshAndElement &mesh)
+  {
     const Parameters  parameters = with(mesh);
     Progress          silent;
     Run               part(parameters, run, silent);
@@ -142,10 +167,7 @@ namespace Squeal
     Scene     scene  = mesh_scene(part);
     const int n_dofs = scene.model->n_dofs();
     if (n_dofs > parameters.accuracy.largest_dofs)
-      {
-        run.progress.finish(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs: left out"));
-        return {};
-      }
+      throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
     FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
     add_modal_damping(frictionless, parameters);
     Cost to_real_modes        = watch.cost();

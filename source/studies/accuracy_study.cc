@@ -67,6 +67,8 @@ namespace Squeal
     run.store_table("accuracy", accuracy_table(methods));
     run.store_table("accuracy_modes", accuracy_mode_table(methods));
     run.store_table("accuracy_orders", accuracy_order_table(families, reference, maximum_frequency));
+    if (!solver.left_out().empty())
+      run.store_table("accuracy_left_out", left_out_table(solver.left_out()));
     report(reference, maximum_frequency, run);
     run.screen << "\n  Pareto front: what nothing beats in both time and largest frequency error\n\n";
     pareto_table(methods).print(run.screen);

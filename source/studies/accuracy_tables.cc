@@ -38,18 +38,23 @@ namespace Squeal
       return a;
     }
 
+    /// Which mesh and element.
+    template <typename Row>
+    Columns<Row> mesh_columns(const std::function<const MeshAndElement &(const Row &)> &of)
+    {
+      return {
+        {"element", "", [of](const Row &row) { return of(row).element; }},
+        {"outlines", "",
+         [of](const Row &row) { return of(row).element == Element::quadratic ? std::string("curved") : to_string(of(row).outlines); }},
+        {"mesh factor", "-", [of](const Row &row) { return of(row).factor; }, 2}};
+    }
+
     /// Which mesh, element and method.
     template <typename Row>
     Columns<Row> identity(const std::function<const ComparedMethod &(const Row &)> &of)
     {
-      return {{"element", "", [of](const Row &row) { return of(row).mesh->mesh.element; }},
-              {"outlines", "",
-               [of](const Row &row) {
-                 const MeshAndElement &mesh = of(row).mesh->mesh;
-                 return mesh.element == Element::quadratic ? std::string("curved") : to_string(mesh.outlines);
-               }},
-              {"mesh factor", "-", [of](const Row &row) { return of(row).mesh->mesh.factor; }, 2},
-              {"method", "", [of](const Row &row) { return of(row).method->method; }}};
+      return mesh_columns<Row>([of](const Row &row) -> const MeshAndElement & { return of(row).mesh->mesh; }) +
+             Columns<Row>{{"method", "", [of](const Row &row) { return of(row).method->method; }}};
     }
 
     const ComparedMethod &itself(const ComparedMethod &method)
@@ -182,5 +187,12 @@ namespace Squeal
          [](const Row &row) { return row.counterpart ? Cell(percent * (row.mode->divergence - row.counterpart->divergence)) : Cell(); },
          4}},
       rows);
+  }
+
+  Table left_out_table(const std::vector<LeftOut> &meshes)
+  {
+    return Table(mesh_columns<LeftOut>([](const LeftOut &row) -> const MeshAndElement & { return row.mesh; }) +
+                   Columns<LeftOut>{{"reason", "", &LeftOut::reason}},
+                 meshes);
   }
 } // namespace Squeal

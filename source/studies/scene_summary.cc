@@ -116,8 +116,10 @@ namespace Squeal
     const unsigned int degree  = degree_of(parameters.discretization.element);
     const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band));
     const unsigned int allowed = parameters.solvers.maximum_modes;
-    const ProblemSize  size    = expected_size(mesh, degree);
-    const double       bytes   = size.memory(degree, std::min<double>(n_modes, allowed));
+    ProblemSize        size    = expected_size(mesh, degree);
+    if (parameters.solves_by(ComplexSolver::residual_iteration))
+      size.contact_nodes = 0.; // no attachment modes
+    const double bytes = size.memory(degree, std::min<double>(n_modes, allowed));
     run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9,
                            " GB of memory; ", available_memory() / 1e9, " GB are available"));
     run.measure("expected modes [-]", n_modes);

@@ -7,7 +7,8 @@ import unittest
 from program import ProgramTest, numbers, read_table
 
 BAND = 2500
-STUDY = ["Study=accuracy", f"Band/Maximum frequency={BAND}", "Accuracy study/Mesh factors=1, 2", "Accuracy study/Outlines=true area",
+STUDY = ["Study=accuracy", f"Band/Maximum frequency={BAND}", "Accuracy study/Mesh factors=1, 2, 5", "Accuracy study/Outlines=true area",
+         "Accuracy study/Largest number of dofs=20000",
          "Accuracy study/Elements=trilinear, incompatible modes", "Accuracy study/Bases=real + 1st-ord. two-sided"]
 # What `Mesh factors = 2` makes of the scene
 TWICE = ["Geometry/Nodes per pin face=19", "Geometry/Element size=0.02", "Geometry/Pin layers=4", "Geometry/Disc layers=2",
@@ -68,6 +69,12 @@ class Accuracy(ProgramTest):
         for row in self.modes:
             if row["counterpart"] == "by shape":
                 self.assertGreater(float(row["overlap [-]"]), 0.5)
+
+    def test_what_is_left_out_is_said(self):
+        rows = read_table(self.results / "accuracy_left_out.csv")
+        self.assertEqual([(row["mesh factor [-]"], row["element"]) for row in rows], [("5", "trilinear"), ("5", "incompatible modes")])
+        for row in rows:
+            self.assertIn("Largest number of dofs", row["reason"])
 
     def test_orders(self):
         """Two meshes show no order."""

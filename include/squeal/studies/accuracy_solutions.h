@@ -50,6 +50,13 @@ namespace Squeal
     std::vector<ModesByMethod> methods; ///< full order first
   };
 
+  /// A mesh and element without a solution.
+  struct LeftOut
+  {
+    MeshAndElement mesh;
+    std::string    reason;
+  };
+
   /**
    * Solves scenes on meshes one after the other, at full order and with the bases that the parameters name; modes are kept at the points of
    * the first mesh.
@@ -59,14 +66,23 @@ namespace Squeal
   public:
     explicit AccuracySolver(Run &run);
 
-    /// Nothing where the mesh has more dofs than the parameters allow. Each is a step of the run.
+    /// Nothing where that cannot be done, as of a mesh that does not come about or has more dofs than the parameters allow. Each is a step of the run.
     std::optional<SolvedMesh> solve(const MeshAndElement &mesh);
 
+    /// What could not be solved so far.
+    const std::vector<LeftOut> &left_out() const
+    {
+      return missing;
+    }
+
   private:
+    SolvedMesh solved(const MeshAndElement &mesh);
+
     Parameters with(const MeshAndElement &mesh) const;
 
     Run                        &run;
     const double                resident_before; ///< memory of this process before the first mesh [byte]
     std::optional<CommonPoints> points;
+    std::vector<LeftOut>        missing;
   };
 } // namespace Squeal

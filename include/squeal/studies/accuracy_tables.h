@@ -18,4 +18,7 @@ namespace Squeal
 
   /// Orders of convergence and limits of every mode up to a frequency [Hz], for every family of meshes, beside those of the reference.
   Table accuracy_order_table(const std::vector<ConvergedFamily> &families, const ConvergedFamily &reference, double maximum_frequency);
+
+  /// Meshes and elements without a solution: element, outlines, mesh factor, reason.
+  Table left_out_table(const std::vector<LeftOut> &meshes);
 } // namespace Squeal

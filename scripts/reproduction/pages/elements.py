@@ -21,16 +21,20 @@ DISC = {("trilinear", "inscribed", 3): ("2353.0", "0.680", "3452.1", "0.856", "3
         ("quadratic", "inscribed", 2): ("2315.1", "0.770", "3481.3", "1.134", "3369.2", "0.908")}
 
 
-GRADED = {("quadratic", 7, 2, 1.5): "3485.9", ("quadratic", 7, 2, 2): "3487.3", ("incompatible modes", 19, 4, 1.5): "3580.3"}
+# Element, nodes, layers, rings, grading
+RINGS = {("quadratic", 7, 3, 2, 1.5): "3451.0", ("quadratic", 7, 4, 2, 1.5): "3449.2", ("quadratic", 19, 4, 3, 1.5): "3448.6",
+         ("quadratic", 19, 5, 3, 1.5): "3447.9", ("quadratic", 37, 8, 5, 1.5): "3447.0", ("quadratic", 7, 2, 0, 1.5): "3485.9",
+         ("incompatible modes", 19, 4, 2, 1.5): "3542.7"}
 LOCKING = {"trilinear": (("3555.6", "2.9"), ("3468.2", "4.2"), ("3511.8", "5.2"), ("3576.1", "6.5"), ("3591.6", "6.8")),
            "incompatible modes": (("3539.5", "2.4"), ("3390.9", "1.9"), ("3388.5", "1.5"), ("3403.0", "1.3"), ("3420.1", "1.7")),
            "quadratic": (("3457.0", None), ("3327.3", None), ("3338.4", None), ("3359.1", None), ("3363.8", None))}
 
 
-def pin_frequency(runs, label, element, outlines, nodes, layers, *, grading=1, ratio=0.25):
-    results = runs(f"pin_{element}_{outlines}_{nodes}_{layers}_{grading}_{ratio}".replace(" ", "_"), "disc_pins.prm", *ONE_PIN,
+def pin_frequency(runs, label, element, outlines, nodes, layers, *, rings=0, grading=1, ratio=0.25):
+    results = runs(f"pin_{element}_{outlines}_{nodes}_{layers}_{rings}_{grading}_{ratio}".replace(" ", "_"), "disc_pins.prm", *ONE_PIN,
                    f"Discretization/Element={element}", f"Geometry/Outlines={outlines}", f"Geometry/Nodes per pin face={nodes}",
-                   f"Geometry/Pin layers={layers}", f"Geometry/Pin grading={grading}", f"Pin material/Poisson ratio={ratio}")
+                   f"Geometry/Pin layers={layers}", f"Geometry/Pin rings={rings}", f"Geometry/Pin grading={grading}",
+                   f"Pin material/Poisson ratio={ratio}")
     return min(mode["frequency [Hz]"] for mode in results.table("component_modes.csv")
                if mode["component"] == "pins" and mode["contact"] == "sliding" and mode["label"].startswith(label))
 
@@ -43,11 +47,11 @@ def pins(runs):
                          pin_frequency(runs, label, element, outlines, nodes, layers))
 
 
-@entry("elements", "F1 of a sliding pin with thinner layers at its held end")
-def layers_of_pins(runs):
-    for (element, nodes, layers, grading), quoted in GRADED.items():
-        yield Number(f"{element}, {nodes} nodes, {layers} layers, {grading} [Hz]", quoted,
-                     pin_frequency(runs, "F1", element, "inscribed", nodes, layers, grading=grading))
+@entry("elements", "F1 of a sliding pin with rings at its outline and thinner layers at its held end")
+def rings_of_pins(runs):
+    for (element, nodes, layers, rings, grading), quoted in RINGS.items():
+        yield Number(f"{element}, {nodes} nodes, {layers} layers, {rings} rings, {grading} [Hz]", quoted,
+                     pin_frequency(runs, "F1", element, "inscribed", nodes, layers, rings=rings, grading=grading))
 
 
 @entry("elements", "Locking: F1 of a sliding pin by element and Poisson's ratio")
