@@ -38,7 +38,8 @@ namespace Squeal
     std::vector<std::string>   surface_names;
   };
 
-  /// Of the places of the nodes, to 1e-8 of the size or less (a nanometre for some decimetres): tells two meshes with the same numbers of nodes apart.
+  /// Of the places of the nodes, to 1e-8 of the size or less (a nanometre for some decimetres): tells two meshes with the same
+  /// numbers of nodes apart.
   std::uint64_t checksum(const HexMesh &mesh);
 
   /// Index of the volume that each node belongs to.
