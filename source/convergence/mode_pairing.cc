@@ -48,6 +48,8 @@ namespace Squeal
     /// |c|² of the combinations of modes with Gram matrix G that come closest to others, of which C are the products with them.
     DenseMatrix shares(const ComplexDenseMatrix &G, const ComplexDenseMatrix &C)
     {
+      if (C.size() == 0) // Eigen refers to the first entry
+        return DenseMatrix(C.rows(), C.cols());
       Eigen::CompleteOrthogonalDecomposition<ComplexDenseMatrix> factors;
       factors.setThreshold(dependent);
       factors.compute(G);

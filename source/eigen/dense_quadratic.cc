@@ -106,12 +106,6 @@ namespace Squeal
     // ------------------------------------------------- vectors
     const int k = static_cast<int>(wanted.size());
     modes.right = ComplexDenseMatrix(r, k);
-    // Eigen refers to the first entry of what it solves for
-    if (k == 0)
-      {
-        modes.left = ComplexDenseMatrix(r, 0);
-        return modes;
-      }
     // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
     const ComplexDenseMatrix left_parts = pairs.left.bottomRows(r)(Eigen::all, wanted).conjugate();
     modes.left                          = from_halves(factors.solve_transposed(halves(left_parts)));

@@ -48,6 +48,11 @@ TEST(DenseMatrices, LUSolvesBothWaysAndRefusesSingular)
   EXPECT_LT(max_norm(A.transpose() * lu.solve_transposed(DenseMatrix::Identity(3, 3)) - DenseMatrix::Identity(3, 3)), 1e-13);
   EXPECT_GT(lu.reciprocal_condition(), 1e-4);
   EXPECT_LT(lu.reciprocal_condition(), 1.);
+  for (const DenseMatrix &none : {lu.solve(DenseMatrix(3, 0)), lu.solve_transposed(DenseMatrix(3, 0))})
+    {
+      EXPECT_EQ(none.rows(), 3);
+      EXPECT_EQ(none.cols(), 0);
+    }
 
   DenseMatrix singular = A;
   singular.col(2)      = A.col(0) - A.col(1);
