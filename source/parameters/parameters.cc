@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -210,7 +211,14 @@ namespace Squeal
     parameters.check();
     if (parameters.goal == AccuracyGoal::as_given)
       return parameters;
+    std::map<std::string, std::string> given;
+    for (const ParameterStatement &statement : statements)
+      if (const DeclaredParameter *parameter = declarations.find(statement.path))
+        given[statement.path] = parameter->value();
     parameters = with_goal(parameters);
+    for (const auto &[path, value] : given)
+      if (declarations.find(path)->value() != value)
+        parameters.replaced.push_back(path);
     parameters.check();
     return parameters;
   }

@@ -183,6 +183,8 @@ namespace Squeal
     std::string note;
     for (const UnusedParameter &parameter : unused_parameters(parameters))
       note += (note.empty() ? "  note: not used here: " : ", ") + parameter.path + " (" + parameter.why + ")";
+    for (const std::string &path : parameters.replaced)
+      note += (note.empty() ? "  note: not used here: " : ", ") + path + " (Accuracy = " + to_string(parameters.goal) + " chooses it)";
     return note;
   }
 

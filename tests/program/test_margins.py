@@ -19,6 +19,7 @@ OWN = {"accuracy": [ELEMENT_SIZE, "Accuracy study/Elements=trilinear, incompatib
        # Full order only: bases grown on one pin each side are looked at in doc/decisions.md
        "accuracy_one_pin": [ELEMENT_SIZE, "Accuracy study/Bases="],
        "disc_pins_18": ["Geometry/Element size=0.03"],
+       "sliding_ring": ["Band/Maximum frequency=46000"],
        "quadratic": [ELEMENT_SIZE, *(f"Geometry/{side} pin {name}" for side in ("Top", "Bottom")
                                      for name in ("radii=0.2275, 0.2275", "angles=-10, 10"))]}
 
