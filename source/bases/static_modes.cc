@@ -107,7 +107,7 @@ namespace Squeal
     if (!V_K)
       return MultiVector(real_modes.map(), real_modes.n_columns());
     if (side == Side::right)
-      return inverse.attachment_modes() * replicate(*V_K * real_modes);
+      return inverse.attachment_modes_times(replicate(*V_K * real_modes));
     return inverse.solve_frictionless(transpose_times(*V_K, *system.friction_forces->sparse_transpose() * real_modes));
   }
 

@@ -36,6 +36,11 @@ namespace Squeal
     return *X;
   }
 
+  MultiVector UpdatedInverse::attachment_modes_times(const DenseMatrix &B) const
+  {
+    return X ? *X * B : solve_frictionless(*A * B);
+  }
+
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
     friction_coefficient  = mu;

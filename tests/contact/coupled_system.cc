@@ -271,6 +271,17 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
           R -= B;
           EXPECT_LT(column_norms(R)[0], 1e-10 * column_norms(B)[0]);
         }
+      // Attachment modes that are solved for when they are needed, or not at all
+      const UpdatedInverse waiting(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::when_needed);
+      const DenseMatrix    Y    = DenseMatrix::Random(s.coupled.n_contact(), 3);
+      MultiVector          U    = inverse.attachment_modes_times(Y);
+      const double         size = column_norms(U)[0];
+      U -= waiting.attachment_modes_times(Y);
+      EXPECT_LT(column_norms(U)[0], 1e-12 * size);
+      MultiVector late(waiting.attachment_modes());
+      late -= inverse.attachment_modes();
+      EXPECT_EQ(column_norms(late)[0], 0.);
+
       // Attachment modes: S X = A
       auto S = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);
       S      = add(1., *S, shift, *with_friction(s.coupled, 0.).damping);

@@ -51,6 +51,9 @@ namespace Squeal
     /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
     const MultiVector &attachment_modes() const;
 
+    /// X B for B, n_c × k, the same on every process: k solves if X is not there yet.
+    MultiVector attachment_modes_times(const DenseMatrix &B) const;
+
     /// S⁻¹ by itself.
     const Factorization &frictionless() const
     {
