@@ -214,10 +214,10 @@ namespace Squeal
     std::map<std::string, std::string> given;
     for (const ParameterStatement &statement : statements)
       if (const DeclaredParameter *parameter = declarations.find(statement.path))
-        given[statement.path] = parameter->value();
+        given[statement.path] = parameter->print();
     parameters = with_goal(parameters);
     for (const auto &[path, value] : given)
-      if (declarations.find(path)->value() != value)
+      if (declarations.find(path)->print() != value)
         parameters.replaced.push_back(path);
     parameters.check();
     return parameters;

@@ -24,6 +24,7 @@ namespace Squeal
   {
     const Study             *study = studies().front(); ///< the question
     AccuracyGoal             goal  = AccuracyGoal::as_given;
+    std::vector<std::string> replaced; ///< parameters that were given other values than those that the goal asks for
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
