@@ -280,7 +280,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       EXPECT_LT(column_norms(U)[0], 1e-12 * size);
       MultiVector late(waiting.attachment_modes());
       late -= inverse.attachment_modes();
-      EXPECT_EQ(column_norms(late)[0], 0.);
+      EXPECT_LT(column_norms(late)[0], 1e-12 * column_norms(inverse.attachment_modes())[0]);
 
       // Attachment modes: S X = A
       auto S = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);

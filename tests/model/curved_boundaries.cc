@@ -52,8 +52,11 @@ TEST(CurvedBoundaries, RingsAreRoundOnBothSidesOfTheContact)
   std::vector<std::set<std::array<long, 3>>> sides(2);
   for (const Node &node : model.nodes())
     if (std::abs(node.position[2] - GeometryParameters().disc_thickness / 2.) < 1e-9)
-      sides[node.component].insert(
-        {{std::lround(1e8 * node.position[0]), std::lround(1e8 * node.position[1]), std::lround(1e8 * node.position[2])}});
+      {
+        const std::array<long, 3> place = {
+          {std::lround(1e8 * node.position[0]), std::lround(1e8 * node.position[1]), std::lround(1e8 * node.position[2])}};
+        sides[node.component].insert(place);
+      }
   EXPECT_EQ(sides[0].size(), sides[1].size());
   EXPECT_EQ(sides[0], sides[1]);
 }
