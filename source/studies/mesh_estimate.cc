@@ -98,7 +98,7 @@ namespace Squeal
     run.progress.note(text("  accuracy: ", to_string(run.parameters.goal),
                            " asked for; estimated by a coarser mesh, frequencies are within ", decimal_text(100. * frequency),
                            " % and divergence rates within ", decimal_text(100. * divergence), " percentage points",
-                           n_lost > 0 ? text(", ", n_lost, " modes without counterpart left out") : ""));
+                           n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart left out") : ""));
     run.progress.note(text("  with the error of the mesh: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
                            " stable, ", count(Verdict::undecided), " undecided; ", n_converged, " of ", errors.size(), " converged"));
     warn_of_unconverged(errors, friction, limits, run);
