@@ -35,7 +35,7 @@ namespace Squeal
       if (n > 0)
         run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh to ", 100. * limits.frequency,
                       " % of the frequency and ", 100. * limits.divergence, " percentage points of the divergence rate: ", names,
-                      n > n_named ? ", ..." : "", "; a finer mesh or a higher Accuracy tells whether they grow"));
+                      n > n_named ? ", ..." : "", "; finer meshes tell whether they grow"));
     }
   } // namespace
 
