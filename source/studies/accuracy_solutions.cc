@@ -6,6 +6,7 @@
 #include <squeal/modes/reduced_modes.h>
 #include <squeal/parameters/mesh_family.h>
 #include <squeal/studies/accuracy_solutions.h>
+#include <squeal/studies/mesh_estimate.h>
 #include <squeal/studies/reduction_sets.h>
 
 #include <deal.II/base/mpi.h>
@@ -178,14 +179,9 @@ namespace Squeal
 
     if (!points)
       points = common_points(*scene.model, parameters.materials);
-    SolvedMesh result{mesh,
-                      n_dofs,
-                      static_cast<int>(scene.interface.size()),
-                      at_points(*displacements_at(*points, *scene.model), *frictionless.linearisation.coupled.kernel, full.modes),
-                      full.labels,
-                      full.n_unstable(),
-                      {}};
-    const int  n_coupled = frictionless.linearisation.coupled.kernel->n_columns();
+    SolvedMesh result{
+      mesh, n_dofs, static_cast<int>(scene.interface.size()), modes_at(*points, frictionless, full), full.labels, full.n_unstable(), {}};
+    const int n_coupled = frictionless.linearisation.coupled.kernel->n_columns();
     result.methods.push_back({full_order, n_coupled, cost, full.modes.lambda, algebraic_errors(full.modes)});
 
     if (!parameters.accuracy.bases.empty())

@@ -3,7 +3,6 @@
 #include <squeal/studies/mesh_estimate.h>
 
 #include <algorithm>
-#include <ostream>
 
 namespace Squeal
 {
@@ -39,22 +38,26 @@ namespace Squeal
     }
   } // namespace
 
+  ModesAtPoints modes_at(const CommonPoints &points, const FrictionlessModes &frictionless, const FrictionModes &friction)
+  {
+    const Linearisation &linearisation = frictionless.linearisation;
+    return at_points(*displacements_at(points, *linearisation.scene->model), *linearisation.coupled.kernel, friction.modes);
+  }
+
   std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run)
   {
     if (run.parameters.goal == AccuracyGoal::as_given)
       return {};
     run.progress.begin("Coarser mesh");
     const Parameters  parameters = with_coarser_mesh(run.parameters);
-    std::ostream      nowhere(nullptr);
-    Progress          silent(nowhere, false);
+    Progress          silent;
     Run               part(parameters, run, silent);
     Scene             scene        = mesh_scene(part);
     FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
     add_modal_damping(frictionless, parameters);
     const FrictionModes friction = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
     const CommonPoints  points   = common_points(*scene.model, parameters.materials);
-    CoarserSolution     result{points,
-                           at_points(*displacements_at(points, *scene.model), *frictionless.linearisation.coupled.kernel, friction.modes)};
+    CoarserSolution     result{points, modes_at(points, frictionless, friction)};
     run.count("dofs of the coarser mesh", scene.model->free_map().n());
     run.progress.finish(text(scene.model->free_map().n(), " dofs, ", friction.modes.lambda.size(), " complex modes, ",
                              friction.n_unstable(), " unstable, to estimate the error of the mesh"));
@@ -66,10 +69,8 @@ namespace Squeal
                                                const FrictionModes     &friction,
                                                const AccuracyGoal       goal)
   {
-    const Linearisation &linearisation = frictionless.linearisation;
-    const auto           displacements = displacements_at(coarser.points, *linearisation.scene->model);
-    return discretisation_errors(coarser.modes, at_points(*displacements, *linearisation.coupled.kernel, friction.modes),
-                                 error_by_difference(goal), friction.modes.estimated_errors);
+    return discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
+                                 friction.modes.estimated_errors);
   }
 
   void report_mesh_errors(const std::vector<DiscretisationError> &errors, const FrictionModes &friction, Run &run)

@@ -1,21 +1,15 @@
+#include "printed.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/parameters.h>
 
 #include <gtest/gtest.h>
 
-#include <sstream>
-
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
-  std::string printed(const Parameters &parameters)
-  {
-    std::ostringstream stream;
-    parameters.print(stream, false);
-    return stream.str();
-  }
-
   Parameters goal(const AccuracyGoal goal)
   {
     Parameters parameters;

@@ -1,3 +1,5 @@
+#include "printed.h"
+
 #include <squeal/base/conventions.h>
 #include <squeal/studies/ingredient_effects.h>
 #include <squeal/studies/ingredient_selection.h>
@@ -7,19 +9,12 @@
 
 #include <cmath>
 #include <set>
-#include <sstream>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
-  std::string printed(const Parameters &parameters)
-  {
-    std::ostringstream stream;
-    parameters.print(stream, false);
-    return stream.str();
-  }
-
   /// The default scene with values to try.
   Parameters plain_scene()
   {

@@ -8,6 +8,9 @@
 
 namespace Squeal
 {
+  /// Modes with friction at common points, see at_points(); the points must be in the bodies of the scene.
+  ModesAtPoints modes_at(const CommonPoints &points, const FrictionlessModes &frictionless, const FrictionModes &friction);
+
   /// Modes on the coarser mesh with which the error of the mesh is estimated.
   struct CoarserSolution
   {
