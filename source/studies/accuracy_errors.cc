@@ -20,9 +20,9 @@ namespace Squeal
               std::max(a.algebraic, b.algebraic)};
     }
 
-    ComparedMode compared(const ConvergedMode &reference, const PairedMode &pair, const SolvedMesh &mesh, const ModesByMethod &method)
+    ModeErrors compared(const ConvergedMode &reference, const PairedMode &pair, const SolvedMesh &mesh, const ModesByMethod &method)
     {
-      ComparedMode mode{&reference, pair.partner, pair.overlap, pair.in_cluster || reference.in_cluster, 0., 0., {}, {}};
+      ModeErrors mode{&reference, pair.partner, pair.overlap, pair.in_cluster || reference.in_cluster, 0., 0., {}, {}};
       if (pair.partner < 0)
         return mode;
       const ModalQuantities found     = modal_quantities(method.lambda[pair.partner]);
@@ -47,7 +47,7 @@ namespace Squeal
         {
           if (reference.modes[j].frequency > maximum_frequency)
             continue;
-          const ComparedMode mode = compared(reference.modes[j], pairing.fine[j], mesh, method);
+          const ModeErrors mode = compared(reference.modes[j], pairing.fine[j], mesh, method);
           result.modes.push_back(mode);
           result.n_in_cluster += mode.in_cluster;
           result.n_lost += mode.number < 0;

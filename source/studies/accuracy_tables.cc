@@ -65,7 +65,7 @@ namespace Squeal
     struct ModeRow
     {
       const ComparedMethod *method;
-      const ComparedMode   *mode;
+      const ModeErrors     *mode;
     };
 
     /// Nothing where a mode has no counterpart.
@@ -121,23 +121,23 @@ namespace Squeal
   {
     std::vector<ModeRow> rows;
     for (const ComparedMethod &method : methods)
-      for (const ComparedMode &mode : method.modes)
+      for (const ModeErrors &mode : method.modes)
         rows.push_back({&method, &mode});
     using Row        = ModeRow;
-    const auto found = [](ErrorKinds ComparedMode::*error) {
+    const auto found = [](ErrorKinds ModeErrors::*error) {
       return [error](const Row &row) { return row.mode->number >= 0 ? std::make_optional(row.mode->*error) : std::nullopt; };
     };
     const Columns<Row> values = {
       {"label", "", [](const Row &row) { return to_string(row.mode->reference->label); }},
       {"counterpart", "", counterpart},
-      {"overlap", "-", if_found([](const ComparedMode &mode) { return mode.overlap; }), 4},
+      {"overlap", "-", if_found([](const ModeErrors &mode) { return mode.overlap; }), 4},
       {"extrapolated frequency", "Hz", [](const Row &row) { return row.mode->reference->frequency; }, 2},
-      {"frequency", "Hz", if_found([](const ComparedMode &mode) { return mode.frequency; }), 2},
+      {"frequency", "Hz", if_found([](const ModeErrors &mode) { return mode.frequency; }), 2},
       {"extrapolated divergence rate", "%", [](const Row &row) { return percent * row.mode->reference->divergence; }, 4},
-      {"divergence rate", "%", if_found([](const ComparedMode &mode) { return percent * mode.divergence; }), 4}};
+      {"divergence rate", "%", if_found([](const ModeErrors &mode) { return percent * mode.divergence; }), 4}};
     return Table(identity<Row>([](const Row &row) -> const ComparedMethod & { return *row.method; }) + values +
-                   kinds<Row>("frequency error", "%", found(&ComparedMode::frequency_error)) +
-                   kinds<Row>("divergence error", "percentage points", found(&ComparedMode::divergence_error)),
+                   kinds<Row>("frequency error", "%", found(&ModeErrors::frequency_error)) +
+                   kinds<Row>("divergence error", "percentage points", found(&ModeErrors::divergence_error)),
                  rows);
   }
 

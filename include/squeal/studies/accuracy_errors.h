@@ -16,7 +16,7 @@ namespace Squeal
   };
 
   /// A mode of the reference beside its counterpart by one mesh and method.
-  struct ComparedMode
+  struct ModeErrors
   {
     const ConvergedMode *reference;
     int                  number;           ///< of the mode on the mesh; -1 where it has no counterpart
@@ -31,14 +31,14 @@ namespace Squeal
   /// All modes of the band by one mesh and method, with their errors.
   struct ComparedMethod
   {
-    const SolvedMesh         *mesh;
-    const ModesByMethod      *method;
-    std::vector<ComparedMode> modes;
-    ErrorKinds                largest_frequency;  ///< [-]
-    double                    rms_frequency;      ///< of the total errors [-]
-    ErrorKinds                largest_divergence; ///< of modes outside of clusters [-]
-    int                       n_in_cluster, n_lost;
-    bool                      on_front = false; ///< none is faster and has a smaller largest frequency error
+    const SolvedMesh       *mesh;
+    const ModesByMethod    *method;
+    std::vector<ModeErrors> modes;
+    ErrorKinds              largest_frequency;  ///< [-]
+    double                  rms_frequency;      ///< of the total errors [-]
+    ErrorKinds              largest_divergence; ///< of modes outside of clusters [-]
+    int                     n_in_cluster, n_lost;
+    bool                    on_front = false; ///< none is faster and has a smaller largest frequency error
   };
 
   /// All meshes and methods against the modes of the reference up to a frequency [Hz].
