@@ -17,7 +17,8 @@ namespace Squeal
     /// Throws SolverError if there are other motions in the plane than turning, whose moment the drive takes.
     void refuse_unless_turning(const Model &model, const SecondOrderSystem &system, const MultiVector &sliding)
     {
-      MultiVector turning = view(rigid_motions(model, 0), 5, 1);
+      const MultiVector motions = rigid_motions(model, 0);
+      MultiVector       turning = view(motions, 5, 1);
       turning *= 1. / std::sqrt(column_products(turning, *system.mass * turning)[0]);
       const DenseMatrix turned = gram(sliding, *system.mass * turning);
       const double      others = sliding.n_columns() - turned.squaredNorm();

@@ -126,6 +126,7 @@ namespace Squeal
   MultiVector operator-(MultiVector X, const MultiVector &Y);
 
   MultiVector view(const MultiVector &X, int first, int n);
+  MultiVector view(const MultiVector &&, int, int) = delete; ///< a view of what ceases to be
 
   /// [X Y ...]: the columns of all, copied.
   MultiVector join(const std::vector<const MultiVector *> &parts);
