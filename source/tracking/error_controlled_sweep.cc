@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <map>
 
 namespace Squeal
 {
@@ -15,6 +16,32 @@ namespace Squeal
 
     /// Squares of principal axes below this times the tolerance are left out of the basis, see compressed_basis().
     constexpr double compression_factor = 10.;
+
+    /// Growths for one point in a row that may leave its error as it is: beyond them, rounding makes up the error. A growth takes the
+    /// modes that miss the tolerance with their residuals, and divides their errors by ten and more where residuals are right.
+    constexpr int max_growths_in_vain = 4;
+
+    /// What growths have achieved at each point.
+    class Achievements
+    {
+    public:
+      /// Whether growths for @p point have not halved its error, again and again.
+      bool none(const int point, const double error)
+      {
+        Since &since = points.try_emplace(point, Since{error, 0}).first->second;
+        if (error < 0.5 * since.error)
+          since = {error, 0};
+        return ++since.n_growths > max_growths_in_vain;
+      }
+
+    private:
+      struct Since
+      {
+        double error;
+        int    n_growths;
+      };
+      std::map<int, Since> points;
+    };
 
     /// Grows the basis by the modes of a point that miss the tolerance; returns why it cannot, or nothing.
     std::string grow(ChartModel           &model,
@@ -48,6 +75,7 @@ namespace Squeal
     {
       const double            tolerance = training_factor * options.tolerance;
       std::vector<ChartPoint> charts;
+      Achievements            achieved;
       bool                    may_grow  = true;
       int                     n_growths = 0;
       for (std::size_t t = 0; t < training.size();)
@@ -62,6 +90,8 @@ namespace Squeal
               charts.push_back(chart);
               ++t;
             }
+          else if (achieved.none(training[t], error))
+            may_grow = false;
           else
             {
               may_grow = grow(model, point, chart, tolerance, options.maximum_basis, nullptr).empty();
@@ -132,6 +162,7 @@ namespace Squeal
       for (std::size_t i = 0; i < points.size(); ++i)
         result.points[i] = store->find(points[i]);
 
+    Achievements achieved;
     for (;; ++result.n_growths)
       {
         std::vector<int>            left;
@@ -164,7 +195,9 @@ namespace Squeal
         });
         if (worst < 0)
           break;
-        result.why_stopped = grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis, store);
+        result.why_stopped = achieved.none(worst, worst_error) ?
+                               text("larger bases do not halve the estimated error ", worst_error, ", which rounding makes up") :
+                               grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis, store);
         if (!result.why_stopped.empty())
           break;
       }

@@ -184,3 +184,17 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   EXPECT_LE(result.worst_error, options.tolerance);
   EXPECT_THROW(sweep(model, {}, options), std::exception);
 }
+
+// Errors that rounding makes up do not fall, however large the basis gets
+TEST(ErrorControlledSweep, StopsWhereRoundingMakesUpTheError)
+{
+  const Chart                 chart(0.);
+  const auto                  points = chart.points();
+  ErrorControlledSweepOptions options;
+  options.tolerance     = 1e-16;
+  options.maximum_basis = static_cast<int>(chart.s.coupled.map().n());
+  ChartModel model      = chart.model();
+  const auto result     = sweep(model, points, options);
+  EXPECT_NE(result.why_stopped.find("rounding"), std::string::npos) << result.why_stopped;
+  EXPECT_LT(model.size(), options.maximum_basis / 2);
+}
