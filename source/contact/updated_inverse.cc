@@ -43,10 +43,11 @@ namespace Squeal
 
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
-    friction_coefficient  = mu;
-    const int         n_c = A->rank();
-    const DenseMatrix VX  = V ? replicate(*V * attachment_modes()) : DenseMatrix::Zero(n_c, n_c);
-    correction = regular_lu(DenseMatrix::Identity(n_c, n_c) - mu * VX, "stiffness with friction, condensed to the contact nodes");
+    friction_coefficient = mu;
+    const int n_c        = A->rank();
+    if (!VX)
+      VX = V ? replicate(*V * attachment_modes()) : DenseMatrix::Zero(n_c, n_c);
+    correction = regular_lu(DenseMatrix::Identity(n_c, n_c) - mu * *VX, "stiffness with friction, condensed to the contact nodes");
   }
 
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const

@@ -64,7 +64,8 @@ namespace Squeal
     std::unique_ptr<Factorization>       factor;
     std::shared_ptr<const LowRankFactor> A;
     std::shared_ptr<const SparseMatrix>  V;
-    mutable std::unique_ptr<MultiVector> X; ///< once it has been needed
+    mutable std::unique_ptr<MultiVector> X;  ///< once it has been needed
+    std::optional<DenseMatrix>           VX; ///< the same, n_c × n_c, on every process
     double                               friction_coefficient = 0.;
     std::optional<RealLU>                correction;
   };
