@@ -177,12 +177,12 @@ namespace Squeal
     }
 
     /// Replaces what this process has found by what process 0 has.
-    void agree(const MPI_Comm communicator, std::vector<PairedMode> &modes)
+    void agree_on_pairs(const MPI_Comm communicator, std::vector<PairedMode> &modes)
     {
       DenseMatrix numbers(3, modes.size());
       for (std::size_t i = 0; i < modes.size(); ++i)
         numbers.col(i) << modes[i].partner, modes[i].overlap, modes[i].in_cluster;
-      Squeal::agree(communicator, numbers);
+      agree(communicator, numbers);
       for (std::size_t i = 0; i < modes.size(); ++i)
         modes[i] = {static_cast<int>(numbers(0, i)), numbers(1, i), numbers(2, i) > 0.};
     }
@@ -213,8 +213,8 @@ namespace Squeal
           }
       }
     // Rounding may differ between processes
-    agree(coarse.real_part.communicator(), result.coarse);
-    agree(coarse.real_part.communicator(), result.fine);
+    agree_on_pairs(coarse.real_part.communicator(), result.coarse);
+    agree_on_pairs(coarse.real_part.communicator(), result.fine);
     return result;
   }
 } // namespace Squeal

@@ -9,7 +9,7 @@ namespace Squeal
   namespace
   {
     /// Surfaces that every extruded mesh has; those of the plan's curves follow.
-    enum Surface : unsigned int
+    enum ExtrudedSurface : unsigned int
     {
       disc_contact,
       pin_contact,

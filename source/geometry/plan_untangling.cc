@@ -13,12 +13,12 @@ namespace Squeal
     // Rows of faces around the bad ones that move along; a pin and its neighbour are fewer apart.
     constexpr int n_rings = 6;
 
-    constexpr int    max_sweeps       = 100; ///< ε has been least for a third of them
-    constexpr double epsilon_decrease = 0.9;
-    constexpr double smallest_epsilon = 1e-3;
-    constexpr double converged        = 1e-3; ///< relative decrease of a node's energy in a sweep
-    constexpr double first_turn       = 0.3;  ///< [rad]
-    constexpr double smallest_step    = 1e-3; ///< of a node [mean edge], of a part [rad]
+    constexpr int    max_untangling_sweeps = 100; ///< ε has been least for a third of them
+    constexpr double epsilon_decrease      = 0.9;
+    constexpr double smallest_epsilon      = 1e-3;
+    constexpr double converged             = 1e-3; ///< relative decrease of a node's energy in a sweep
+    constexpr double first_turn            = 0.3;  ///< [rad]
+    constexpr double smallest_step         = 1e-3; ///< of a node [mean edge], of a part [rad]
 
     bool is_bad(const Plan::Face &face, const std::vector<Plan::Point> &points)
     {
@@ -181,7 +181,7 @@ namespace Squeal
     const std::vector<Plan::Point> before = points;
     Region                         region(faces, fixed, parts, points);
     double                         epsilon = 1.;
-    for (int sweep = 0; sweep < max_sweeps; ++sweep)
+    for (int sweep = 0; sweep < max_untangling_sweeps; ++sweep)
       {
         if (region.sweep(epsilon) < converged && region.is_untangled())
           return;

@@ -12,7 +12,7 @@ namespace
   using namespace Squeal;
   using Complex = std::complex<double>;
 
-  DenseMatrix random_matrix(const int n, const unsigned int seed)
+  DenseMatrix random_entries(const int n, const unsigned int seed)
   {
     std::mt19937                           generator(seed);
     std::uniform_real_distribution<double> entry(-1., 1.);
@@ -27,9 +27,9 @@ namespace
   struct Pencil
   {
     explicit Pencil(const int n)
-      : M(DenseMatrix::Identity(n, n) + 0.1 / n * random_matrix(n, 1))
-      , C(0.1 / n * random_matrix(n, 2).leftCols(n / 4) * random_matrix(n, 2).leftCols(n / 4).transpose())
-      , K(random_matrix(n, 3))
+      : M(DenseMatrix::Identity(n, n) + 0.1 / n * random_entries(n, 1))
+      , C(0.1 / n * random_entries(n, 2).leftCols(n / 4) * random_entries(n, 2).leftCols(n / 4).transpose())
+      , K(random_entries(n, 3))
     {
       for (int i = 0; i < n; ++i)
         K(i, i) += std::pow(1. + i, 2);

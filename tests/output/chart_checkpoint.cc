@@ -1,3 +1,4 @@
+#include "files.h"
 #include "solutions.h"
 
 #include <squeal/base/conventions.h>
@@ -23,6 +24,7 @@
 #include <sstream>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 namespace fs = std::filesystem;
 
 namespace
@@ -33,14 +35,6 @@ namespace
   const std::string key    = "# squeal 1\nsubsection Operation\n  set Load = 300\nend\n";
 
   const double band = circular_frequency(1000.);
-
-  std::string content(const fs::path &file)
-  {
-    std::ifstream     stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
 
   template <typename T>
   bool same_bits(const std::vector<T> &a, const std::vector<T> &b)
@@ -508,7 +502,6 @@ TEST_F(ChartCheckpoints, SayThatTheDiskIsFull)
 
 TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
 {
-  using namespace Squeal::Testing;
   const Scene          s(mesh_of(skewed_pins), mounted(), operating());
   const UpdatedInverse inverse(s.coupled, 0., FactorizationLibrary::automatic);
   const SymmetricModes real = real_modes(s.coupled);

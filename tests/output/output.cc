@@ -1,3 +1,4 @@
+#include "files.h"
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
@@ -29,14 +30,6 @@ namespace
     std::ostringstream stream;
     table.write_csv(stream);
     return stream.str();
-  }
-
-  std::string content(const fs::path &file)
-  {
-    std::ifstream     stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
   }
 
   /// What a field file holds, without the date at its top.

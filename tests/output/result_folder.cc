@@ -1,3 +1,5 @@
+#include "files.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
@@ -14,18 +16,11 @@
 #include <sstream>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 namespace fs = std::filesystem;
 
 namespace
 {
-  std::string content(const fs::path &file)
-  {
-    std::ifstream     stream(file);
-    std::stringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
   void put(const fs::path &file, const std::string &text)
   {
     fs::create_directories(file.parent_path());
