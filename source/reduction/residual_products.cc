@@ -151,7 +151,12 @@ namespace Squeal
         H.middleCols(column, r) = model.projected(sparse[k].number);
       }
 
-    G -= H.transpose() * regular_lu(model.stiffness() + shift * shift * model.mass(), "stiffness of a reduced model").solve(H);
+    // Every vector by its own energy: those of motions of light bodies may be many powers of ten beyond those of modes of the band
+    const DenseMatrix     pencil = model.stiffness() + shift * shift * model.mass();
+    const Eigen::VectorXd scale  = pencil.diagonal().cwiseSqrt().cwiseInverse();
+    const RealLU          lu     = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
+    H                            = scale.asDiagonal() * H;
+    G -= H.transpose() * lu.solve(H);
     left_columns = G.leftCols(size - n_right);
     right_block  = G.bottomRightCorner(size - n_left, size - n_left);
   }

@@ -17,30 +17,27 @@ namespace Squeal
     /// Squares of principal axes below this times the tolerance are left out of the basis, see compressed_basis().
     constexpr double compression_factor = 10.;
 
-    /// Growths for one point in a row that may leave its error as it is: beyond them, rounding makes up the error. A growth takes the
+    /// Growths in a row that may leave the error of their point as it is: beyond them, rounding makes up the error. A growth takes the
     /// modes that miss the tolerance with their residuals, and divides their errors by ten and more where residuals are right.
     constexpr int max_growths_in_vain = 4;
 
-    /// What growths have achieved at each point.
-    class Achievements
+    /// Whether growths still achieve something.
+    class Achievement
     {
     public:
-      /// Whether growths for @p point have not halved its error, again and again.
-      bool none(const int point, const double error)
+      /// The error of a point before and after the basis was grown for it.
+      void observe(const double before, const double after)
       {
-        Since &since = points.try_emplace(point, Since{error, 0}).first->second;
-        if (error < 0.5 * since.error)
-          since = {error, 0};
-        return ++since.n_growths > max_growths_in_vain;
+        n_in_vain = after < 0.5 * before ? 0 : n_in_vain + 1;
+      }
+
+      bool is_none() const
+      {
+        return n_in_vain >= max_growths_in_vain;
       }
 
     private:
-      struct Since
-      {
-        double error;
-        int    n_growths;
-      };
-      std::map<int, Since> points;
+      int n_in_vain = 0;
     };
 
     /// Grows the basis by the modes of a point that miss the tolerance; returns why it cannot, or nothing.
@@ -75,7 +72,8 @@ namespace Squeal
     {
       const double            tolerance = training_factor * options.tolerance;
       std::vector<ChartPoint> charts;
-      Achievements            achieved;
+      Achievement             achievement;
+      double                  before    = 0.; ///< the error of this point before the last growth for it
       bool                    may_grow  = true;
       int                     n_growths = 0;
       for (std::size_t t = 0; t < training.size();)
@@ -84,16 +82,19 @@ namespace Squeal
           const ChartPoint      chart = evaluate(model, {point}, communicator).front();
           const double          error = model.largest_error(chart);
           report(error);
+          if (before > 0.)
+            achievement.observe(before, error);
+          may_grow = may_grow && !achievement.is_none();
+          before   = 0.;
           // Where the basis may not grow further, the points may still do
           if (error <= tolerance || !may_grow)
             {
               charts.push_back(chart);
               ++t;
             }
-          else if (achieved.none(training[t], error))
-            may_grow = false;
           else
             {
+              before   = error;
               may_grow = grow(model, point, chart, tolerance, options.maximum_basis, nullptr).empty();
               ++n_growths;
             }
@@ -162,7 +163,9 @@ namespace Squeal
       for (std::size_t i = 0; i < points.size(); ++i)
         result.points[i] = store->find(points[i]);
 
-    Achievements achieved;
+    Achievement achievement;
+    int         grown        = -1; // the point that the basis was grown for
+    double      error_before = 0.;
     for (;; ++result.n_growths)
       {
         std::vector<int>            left;
@@ -179,6 +182,8 @@ namespace Squeal
         double     worst_error = 0.;
         evaluate(model, points_left, communicator, [&](const int k, const ChartPoint &point) {
           const double error = model.largest_error(point);
+          if (left[k] == grown)
+            achievement.observe(error_before, error);
           if (error <= options.tolerance)
             {
               result.points[left[k]] = point;
@@ -195,7 +200,9 @@ namespace Squeal
         });
         if (worst < 0)
           break;
-        result.why_stopped = achieved.none(worst, worst_error) ?
+        grown              = worst;
+        error_before       = worst_error;
+        result.why_stopped = achievement.is_none() ?
                                text("larger bases do not halve the estimated error ", worst_error, ", which rounding makes up") :
                                grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis, store);
         if (!result.why_stopped.empty())

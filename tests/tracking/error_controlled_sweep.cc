@@ -188,9 +188,9 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
 // Errors that rounding makes up do not fall, however large the basis gets
 TEST(ErrorControlledSweep, StopsWhereRoundingMakesUpTheError)
 {
-  const Chart                 chart(0.);
-  const auto                  points = chart.points();
-  ErrorControlledSweepOptions options;
+  const Chart                       chart(0.);
+  const std::vector<OperatingPoint> points = {chart.at(0.8)};
+  ErrorControlledSweepOptions       options;
   options.tolerance     = 1e-16;
   options.maximum_basis = static_cast<int>(chart.s.coupled.map().n());
   ChartModel model      = chart.model();
