@@ -1,5 +1,7 @@
 """doc/accuracy.md"""
 
+import statistics
+
 import check_accuracy
 from reproduction.numbers import Number, entry
 
@@ -26,3 +28,44 @@ def goals(runs):
         for what, text, value in zip(("dofs", "dofs of the coarser mesh", "estimated f [%]", "estimated xi [points]", "found f [%]",
                                       "found xi [points]", "converged", "unstable", "stable", "undecided"), quoted, found):
             yield Number(f"Accuracy = {goal} %: {what}", text, value)
+
+
+# Of full order by element and mesh factor: dofs, largest and rms frequency errors [%], largest divergence error [points]
+DEFAULT_SCENE = {("trilinear", 1): ("8838", "9.17", "5.96", "0.134"),
+                 ("trilinear", 1.5): ("21480", "4.25", "2.92", "0.0865"),
+                 ("trilinear", 2): ("47040", "2.40", "1.68", "0.0414"),
+                 ("incompatible modes", 1): ("8838", "7.03", "4.32", "0.0728"),
+                 ("incompatible modes", 1.5): ("21480", "3.31", "2.04", "0.0811"),
+                 ("incompatible modes", 2): ("47040", "1.95", "1.18", "0.0445"),
+                 ("quadratic", 1): ("54600", "0.601", "0.324", "0.0406"),
+                 ("quadratic", 1.5): ("141792", "0.237", "0.121", "0.0252"),
+                 ("quadratic", 2): ("324108", "0.122", "0.0603", "0.0179")}
+# Of full order by element and mesh factor: largest and rms frequency errors [%], modes without counterpart
+ONE_PIN = {("trilinear", 0.5): ("16.4", "9.18", "2"),
+           ("trilinear", 1): ("6.46", "3.49", "1"),
+           ("trilinear", 1.5): ("2.35", "1.10", "1"),
+           ("incompatible modes", 0.5): ("7.56", "3.97", "0"),
+           ("incompatible modes", 1): ("2.02", "0.99", "0"),
+           ("incompatible modes", 1.5): ("0.97", "0.20", "0")}
+LARGEST, RMS = "frequency error [%]", "rms frequency error [%]"
+
+
+def compared(results, quoted, columns):
+    rows = {(row["element"], row["mesh factor [-]"]): row for row in results.table("accuracy.csv") if row["method"] == "full order"}
+    for key, texts in quoted.items():
+        for column, text in zip(columns, texts):
+            yield Number(f"{key[0]}, mesh factor {key[1]}: {column}", text, rows[key][column])
+
+
+@entry("accuracy", "Errors of every element on three meshes of the default scene (20 min)")
+def default_scene(runs):
+    results = runs("accuracy", "studies/accuracy.prm")
+    yield from compared(results, DEFAULT_SCENE, ("dofs [-]", LARGEST, RMS, "divergence error [percentage points]"))
+    orders = [row["order of frequency [-]"] for row in results.table("accuracy_orders.csv") if row["family"].startswith("quadratic")]
+    yield Number("modes whose frequency shows an order", "66", sum(isinstance(order, float) for order in orders))
+    yield Number("their order in the middle", "2.4", statistics.median(orders))
+
+
+@entry("accuracy", "Errors with one pin on each side")
+def one_pin(runs):
+    yield from compared(runs("accuracy_one_pin", "studies/accuracy_one_pin.prm"), ONE_PIN, (LARGEST, RMS, "modes without counterpart [-]"))
