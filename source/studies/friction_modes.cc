@@ -10,6 +10,7 @@
 #include <squeal/studies/friction_modes.h>
 
 #include <algorithm>
+#include <numeric>
 #include <cmath>
 
 namespace Squeal
@@ -161,12 +162,12 @@ namespace Squeal
     return counts + rest;
   }
 
-  void record_conditioning(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+  void record_conditioning(const FrictionlessModes &frictionless, const ComplexModes &modes, const double tolerance, Run &run)
   {
     const Conditioning conditioning =
-      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, friction.modes);
-    const auto   largest = [](const std::vector<double> &values) { return *std::max_element(values.begin(), values.end()); };
-    const double kappa   = largest(conditioning.modes);
+      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, modes);
+    const double kappa = std::accumulate(conditioning.modes.begin(), conditioning.modes.end(), 1.,
+                                         [](const double a, const double b) { return std::max(a, b); });
     run.measure("condition number of the stiffness [-]", conditioning.stiffness);
     run.measure("condition number of the mass [-]", conditioning.mass);
     run.measure("condition number of the span of the modes [-]", conditioning.span);
@@ -174,9 +175,7 @@ namespace Squeal
     run.measure("largest cancellation in the stiffness [-]", conditioning.largest_cancellation);
     run.measure("largest root of eps_res [-]", conditioning.largest_residual);
     run.measure("digits of the eigenvalues [-]", conditioning.digits());
-    const SolverParameters &solvers = run.parameters.solvers;
-    if (conditioning.largest_error() >
-        (solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance))
+    if (conditioning.largest_error() > tolerance)
       run.warn(text("the eigenvalues keep some ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
                     100. * conditioning.largest_error(), " % of omega are not told from zero (condition numbers: stiffness ",
                     conditioning.stiffness, ", eigenvalues up to ", kappa, "; cancellation in the stiffness ",

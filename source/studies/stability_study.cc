@@ -154,7 +154,9 @@ namespace Squeal
     const FrictionModes                friction      = friction_modes(frictionless, operation.friction_coefficient, run);
     const Linearisation               &linearisation = frictionless.linearisation;
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
-    record_conditioning(frictionless, friction, run);
+    const SolverParameters            &solvers       = parameters.solvers;
+    record_conditioning(frictionless, friction.modes,
+                        solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
     run.count("real eigenvalues", friction.modes.real_values.size());

@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/studies/friction_modes.h>
 #include <squeal/studies/sweep_model.h>
 #include <squeal/tracking/mode_links.h>
 
@@ -118,6 +119,25 @@ namespace Squeal
         }
       return result;
     }
+
+    /// The modes of a point in the band, at full order.
+    ComplexModes modes_in_band(const SweepModel &model, const ChartPoint &point)
+    {
+      ComplexModes     result;
+      std::vector<int> numbers;
+      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+        if (model.is_in_band(point.lambda[j]))
+          {
+            numbers.push_back(j);
+            result.lambda.push_back(point.lambda[j]);
+            result.energy_residuals.push_back(point.right_residuals[j]);
+            result.estimated_errors.push_back(point.errors[j]);
+          }
+      auto [re, im]         = model.shapes(point, numbers);
+      result.real_part      = std::make_shared<MultiVector>(std::move(re));
+      result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
+      return result;
+    }
   } // namespace
 
   void evaluate_points(SweepModel &model, ChartStore &store)
@@ -137,6 +157,10 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
+    // Of the last value: friction makes eigenvalues ill-conditioned
+    const auto last = std::find_if(sweep.points.rbegin(), sweep.points.rend(), [](const auto &point) { return point.has_value(); });
+    if (last != sweep.points.rend())
+      record_conditioning(model.frictionless, modes_in_band(model, **last), options.tolerance, run);
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
                              ": ", sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));

@@ -1,5 +1,6 @@
 """Runs that sweep the friction coefficient, held against runs at single friction coefficients."""
 
+import json
 import math
 import re
 import subprocess
@@ -121,6 +122,13 @@ class Sweep(SweepTest):
                          "Sweep/Last map value=4000", *MAP]
         cls.results = cls.sweep("results", *cls.overrides)
         cls.grid = grid_of(cls.results)
+
+    def test_says_how_many_digits_are_left(self):
+        quantities = json.loads((self.results / "run.json").read_text(encoding="utf-8"))["quantities"]
+        self.assertLess(6, quantities["digits of the eigenvalues [-]"])
+        self.assertLess(quantities["digits of the eigenvalues [-]"], 16)
+        self.assertLess(1, quantities["condition number of the stiffness [-]"])
+        self.assertLess(1, quantities["largest condition number of an eigenvalue [-]"])
 
     def test_files(self):
         names = {path.name for path in self.results.iterdir()}

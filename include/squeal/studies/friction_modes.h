@@ -32,10 +32,10 @@ namespace Squeal
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
 
   /**
-   * Keeps condition numbers and the digits that the eigenvalues keep (estimates/conditioning.h) in the run record, and warns where
-   * they are fewer than the tolerance of the solver asks for.
+   * Keeps condition numbers and the digits that the eigenvalues of @p modes keep (estimates/conditioning.h) in the run record, and warns
+   * where they are fewer than @p tolerance asks for, the relative error of eigenvalues that the parameters allow.
    */
-  void record_conditioning(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
+  void record_conditioning(const FrictionlessModes &frictionless, const ComplexModes &modes, double tolerance, Run &run);
 
   /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
