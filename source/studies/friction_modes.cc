@@ -10,8 +10,8 @@
 #include <squeal/studies/friction_modes.h>
 
 #include <algorithm>
-#include <numeric>
 #include <cmath>
+#include <numeric>
 
 namespace Squeal
 {

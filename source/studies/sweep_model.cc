@@ -157,10 +157,10 @@ namespace Squeal
                              " vectors, estimated error ", sweep.worst_error));
     run.count("basis vectors", model.reduced->size());
     run.measure("largest estimated error of lambda [-]", sweep.worst_error);
-    // Of the last value: friction makes eigenvalues ill-conditioned
+    // Of the last value: friction makes eigenvalues ill-conditioned. The basis leaves errors up to the tolerance, and rounding may add to them
     const auto last = std::find_if(sweep.points.rbegin(), sweep.points.rend(), [](const auto &point) { return point.has_value(); });
     if (last != sweep.points.rend())
-      record_conditioning(model.frictionless, modes_in_band(model, **last), options.tolerance, run);
+      record_conditioning(model.frictionless, modes_in_band(model, **last), 2. * options.tolerance, run);
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
                              ": ", sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
