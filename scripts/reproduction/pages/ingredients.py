@@ -50,3 +50,33 @@ def statements(runs):
     slope = rows["-0.01 s/m"]
     yield Number("more modes that grow with a slope", "34", slope["unstable modes tried [-]"] - slope["unstable modes here [-]"])
     yield Number("modes that half of the band loses", "49", rows["to 2500 Hz"]["modes without counterpart [-]"])
+
+
+# Frequency, divergence rate, unstable modes
+QUOTED_WITH_DAMPING = {("radial dissipation", "none"): ("0.43", "1.80", "5"),
+                       ("contact state", "equal load"): ("0.18", "0.69", "4"),
+                       ("friction slope", "none"): ("0.007", "0.046", "3"),
+                       ("Rayleigh damping", "none"): ("0.041", "0.56", "13"),
+                       ("modal damping", "0.001"): ("0.003", "0.101", "3"),
+                       ("rotation of the disc", "on"): ("0.106", "0.054", "5"),
+                       ("element", "incompatible modes"): ("1.36", "0.075", "4"),
+                       ("element", "quadratic"): ("3.43", "0.45", "4"),
+                       ("outlines", "true area"): ("0.83", "0.085", "4"),
+                       ("complex modes", "real modes alone"): ("0.67", "0.26", "4"),
+                       ("complex modes", "real modes to 7500 Hz"): ("0.67", "0.26", "4"),
+                       ("complex modes", "real modes + 1st order"): ("0.098", "0.076", "4"),
+                       ("band", "to 2500 Hz"): ("0", "0", "2")}
+CHANGES_WITH_DAMPING = {"Rayleigh damping", "rotation of the disc", "band"}
+
+
+@entry("ingredients", "The table of the scene with all damping")
+def with_all_damping(runs):
+    rows = {(row["ingredient"], row["tried"] if isinstance(row["tried"], str) else f"{row['tried']:g}"): row
+            for row in runs("ingredients_damped", "studies/ingredients.prm").table("ingredients.csv")}
+    for (ingredient, tried), (frequency, divergence, unstable) in QUOTED_WITH_DAMPING.items():
+        row = rows[ingredient, tried]
+        yield Number(f"{ingredient}: {tried}, frequency [%]", frequency, row[FREQUENCY])
+        yield Number(f"{ingredient}: {tried}, divergence rate [points]", divergence, row[DIVERGENCE])
+        yield Number(f"{ingredient}: {tried}, unstable modes", unstable, row["unstable modes tried [-]"])
+        yield Number("  verdict changes (1) or not (0)", "1" if ingredient in CHANGES_WITH_DAMPING else "0", row["verdict changed [-]"])
+    yield Number("unstable modes of the scene", "4", rows["friction slope", "none"]["unstable modes here [-]"])
