@@ -38,6 +38,51 @@ def ensure_display():
 
 
 def read(path):
+    """The grid of disc and pins in a field file, .h5 or .vtu, with vertices that the cells of a body share."""
+    return read_hdf5(path) if path.suffix == ".h5" else read_vtu(path)
+
+
+def read_hdf5(path):
+    """The grid of a .h5 file of a mode, with the mesh of the file that it names."""
+    try:
+        import h5py
+    except ImportError:
+        sys.exit("h5py is missing: apt-get install python3-h5py (or scripts/setup.sh)")
+    try:
+        with h5py.File(path) as file:
+            title = file.attrs["mode"]
+            fields = {name: values[()] for name, values in file.items() if isinstance(values, h5py.Dataset) and "reaction" not in name}
+            mesh = path.parent / file.attrs["mesh"]
+        with h5py.File(mesh) as file:
+            points, cells, component = (file[f"bodies/{name}"][()] for name in ("points", "cells", "component"))
+    except (KeyError, OSError) as error:
+        sys.exit(f"{path} and the mesh beside it cannot be read as a mode: {error}")
+    body = np.zeros(len(points))
+    body[cells] = component[:, np.newaxis]
+    grid, hexahedra = grid_of(points, 8 * np.arange(len(cells) + 1), cells.ravel())
+    grid.SetCells(vtk.VTK_HEXAHEDRON, hexahedra)
+    for name, values in {**fields, "component": body}.items():
+        add_array(grid, name, values)
+    words = vtk.vtkStringArray()
+    words.SetName("mode")
+    words.InsertNextValue(title)
+    grid.GetFieldData().AddArray(words)
+    return grid
+
+
+def grid_of(points, offsets, connectivity):
+    """An unstructured grid of these points, and the cells that it has still to be given with their types."""
+    grid = vtk.vtkUnstructuredGrid()
+    vertices = vtk.vtkPoints()
+    vertices.SetData(numpy_to_vtk(np.ascontiguousarray(points, dtype=float), deep=True))
+    grid.SetPoints(vertices)
+    cells = vtk.vtkCellArray()
+    cells.SetData(numpy_to_vtkIdTypeArray(offsets.astype(np.int64), deep=True),
+                  numpy_to_vtkIdTypeArray(connectivity.astype(np.int64), deep=True))
+    return grid, cells
+
+
+def read_vtu(path):
     """The grid of a .vtu file with the vertices of a body shared by its cells again.
 
     deal.II writes every cell with vertices of its own, and coincident vertices of disc and pins must stay apart:
@@ -63,13 +108,7 @@ def read(path):
     keys = np.column_stack([body, np.round(points / resolution)]).astype(np.int64)
     _, kept, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
 
-    merged = vtk.vtkUnstructuredGrid()
-    vertices = vtk.vtkPoints()
-    vertices.SetData(numpy_to_vtk(points[kept], deep=True))
-    merged.SetPoints(vertices)
-    cells = vtk.vtkCellArray()
-    cells.SetData(numpy_to_vtkIdTypeArray(offsets.astype(np.int64), deep=True),
-                  numpy_to_vtkIdTypeArray(number.reshape(-1)[connectivity].astype(np.int64), deep=True))
+    merged, cells = grid_of(points[kept], offsets, number.reshape(-1)[connectivity])
     merged.SetCells(grid.GetCellTypesArray(), cells)
     for i in range(grid.GetPointData().GetNumberOfArrays()):
         array = grid.GetPointData().GetArray(i)

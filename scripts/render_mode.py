@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Draws modes: the deformed bodies, coloured, over the outline of the undeformed ones.
 
-    scripts/render_mode.py MODE.vtu... [-o PICTURE.png] [--field FIELD] [--view VIEW] [--bodies all|moving]
+    scripts/render_mode.py MODE... [-o PICTURE.png] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
-MODE.vtu are mode files of a run: complex, real or component modes. Several of them come side by side in one picture with
+MODE are files of modes of a run, `modes/NAME.h5` or `modes/NAME.vtu`: complex, real or component modes. Several of them come side by side in one picture with
 one scale of colours. The bodies are displaced by the real part of the mode. Needs no screen: without one the script starts
 itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
@@ -302,8 +302,8 @@ def draw_several(modes, picture, view, width):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("modes", metavar="MODE.vtu", type=pathlib.Path, nargs="+")
-    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE.vtu)")
+    parser.add_argument("modes", metavar="MODE", type=pathlib.Path, nargs="+")
+    parser.add_argument("-o", "--output", metavar="PICTURE.png", type=pathlib.Path, help="(default: MODE.png beside the first MODE)")
     parser.add_argument("--field", default="displacement",
                         help="displacement (its real part), displacement_imag, amplitude, phase or another point field "
                              "(default: %(default)s)")

@@ -1,249 +1,38 @@
 #include <squeal/output/fields.h>
-
-#include <deal.II/base/data_out_base.h>
-#include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/grid/reference_cell.h>
-#include <deal.II/numerics/data_out.h>
+#include <squeal/output/vtu_writer.h>
+#include <squeal/output/xdmf_writer.h>
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <map>
-#include <sstream>
 
 namespace Squeal
 {
-  using namespace dealii;
-
   namespace
   {
-    using Interpretation = DataComponentInterpretation::DataComponentInterpretation;
-    const std::vector<Interpretation> vector_field(3, DataComponentInterpretation::component_is_part_of_vector);
-
     /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
     template <typename Number>
-    double largest_amplitude(const std::vector<Number> &displacement)
+    double largest_modulus(const std::vector<Number> &displacement)
     {
       double largest = 0.;
       for (const Number &u : displacement)
         largest = std::max<double>(largest, std::abs(u));
       return largest > 0. ? largest : 1.;
     }
-
-    /// A text in the field data of a file, as codes of its characters.
-    void write_text(std::ostream &stream, const char *name, const std::string &text)
-    {
-      stream << "<FieldData>\n<DataArray type=\"String\" Name=\"" << name << "\" NumberOfTuples=\"1\" format=\"ascii\">\n";
-      for (const char c : text)
-        stream << int(static_cast<unsigned char>(c)) << ' ';
-      stream << "0\n</DataArray>\n</FieldData>\n";
-    }
-
-    DataOutBase::VtkFlags compressed()
-    {
-      DataOutBase::VtkFlags flags;
-      flags.compression_level = DataOutBase::VtkFlags::best_speed;
-      return flags;
-    }
-
-    /// Fields on the bodies, of which every process has the cells that it owns.
-    class BodyOutput : public DataOut<3>
-    {
-    public:
-      /// Of one component, or of all bodies.
-      explicit BodyOutput(const Model &model, const std::optional<Component> component = {})
-        : model(model)
-      {
-        attach_dof_handler(model.dof_handler());
-        if (component)
-          set_cell_selection([component](const Triangulation<3>::cell_iterator &cell) {
-            return cell->is_locally_owned() && (cell->material_id() == 0) == (*component == Component::disc);
-          });
-      }
-
-      void add(const Vector<double> &displacement, const char *name)
-      {
-        add_data_vector(displacement, std::vector<std::string>(3, name), type_dof_data, vector_field);
-      }
-
-      /**
-       * Writes one file with the cells of all processes, and a @p title unless it is empty; all must call. Unlike deal.II's own, it tells why
-       * a file could not be written.
-       */
-      void write(const ResultFolder &folder, const std::string &name, const std::string &title = {})
-      {
-        build_patches(model.mapping(), model.degree());
-        std::ostringstream piece;
-        if (!get_patches().empty())
-          DataOutBase::write_vtu_main(get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), compressed(), piece);
-        // gather() compresses what it sends once more, which takes longer than all the rest
-        const std::vector<std::string> pieces = Utilities::MPI::n_mpi_processes(model.communicator()) == 1 ?
-                                                  std::vector<std::string>{piece.str()} :
-                                                  Utilities::MPI::gather(model.communicator(), piece.str());
-        folder.write(name, [&](std::ostream &stream) {
-          DataOutBase::write_vtu_header(stream, compressed());
-          if (!title.empty())
-            write_text(stream, "mode", title);
-          for (const std::string &text : pieces)
-            stream << text;
-          DataOutBase::write_vtu_footer(stream);
-        });
-      }
-
-    private:
-      const Model &model;
-    };
   } // namespace
 
-  FieldWriter::FieldWriter(const Model                     &model,
-                           const ContactInterface          &interface,
-                           const std::vector<unsigned int> &closed_pairs,
-                           const ResultFolder              &folder)
-    : model(model)
-    , interface(interface)
-    , folder(folder)
-    , components(model.triangulation().n_active_cells())
-    , closed(interface.size(), 0.)
+  double largest_amplitude(const std::vector<double> &displacement)
   {
-    for (const unsigned int c : closed_pairs)
-      closed[c] = 1.;
-    for (const auto &cell : model.triangulation().active_cell_iterators())
-      components(cell->active_cell_index()) = cell->material_id();
-
-    // Vertices of the pins' contact faces are contact nodes; nodes between them (degree 2) are not shown
-    std::map<unsigned int, unsigned int> pair_of_node;
-    for (unsigned int c = 0; c < interface.size(); ++c)
-      pair_of_node[interface[c].pin_node] = c;
-    const types::boundary_id id = model.surface_id(PhysicalNames::pin_contact);
-    for (const auto &cell : model.dof_handler().active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary() && face->boundary_id() == id)
-          {
-            contact_faces.emplace_back();
-            for (unsigned int v = 0; v < 4; ++v)
-              contact_faces.back()[v] = pair_of_node.at(model.node_of_dof(face->vertex_dof_index(v, 0)));
-          }
+    return largest_modulus(displacement);
   }
 
-  template <typename Number, typename Function>
-  Vector<double> FieldWriter::dof_vector(const std::vector<Number> &displacement, const Function &value) const
+  double largest_amplitude(const std::vector<std::complex<double>> &displacement)
   {
-    Vector<double> result(model.n_dofs());
-    for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
-      if (const int free = model.free_dof(dof); free >= 0)
-        result(dof) = value(displacement[free]);
-    return result;
+    return largest_modulus(displacement);
   }
 
-  void FieldWriter::write_mode(const ModeField &mode) const
-  {
-    using Complex      = std::complex<double>;
-    const double scale = 1. / largest_amplitude(mode.displacement);
-    const auto   re    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.real(); });
-    const auto   im    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.imag(); });
-    const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
-    const auto   arg   = dof_vector(mode.displacement, [](const Complex &u) { return std::arg(u); });
-
-    BodyOutput output(model);
-    output.add(re, "displacement_real");
-    output.add(im, "displacement_imag");
-    output.add(mod, "amplitude");
-    output.add(arg, "phase");
-    output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    output.write(folder, "modes/" + mode.name + ".vtu", mode.title);
-
-    std::vector<double> reactions_re, reactions_im;
-    for (const Complex &r : mode.reactions)
-      {
-        reactions_re.push_back(scale * r.real());
-        reactions_im.push_back(scale * r.imag());
-      }
-    write_contact("modes/" + mode.name + "_contact.vtu",
-                  {{&reactions_re, "normal_reaction_real"}, {&reactions_im, "normal_reaction_imag"}, {&closed, "closed"}});
-  }
-
-  void FieldWriter::write_mode(const RealModeField &mode) const
-  {
-    const double scale = 1. / largest_amplitude(mode.displacement);
-    const auto   u     = dof_vector(mode.displacement, [&](const double value) { return scale * value; });
-    const auto   mod   = dof_vector(mode.displacement, [&](const double value) { return scale * std::abs(value); });
-
-    BodyOutput output(model, mode.component);
-    output.add(u, "displacement");
-    output.add(mod, "amplitude");
-    output.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    output.write(folder, "modes/" + mode.name + ".vtu", mode.title);
-  }
-
-  void FieldWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes) const
-  {
-    std::vector<std::pair<double, std::string>> files;
-    for (const ListedMode &mode : modes)
-      {
-        const double least = files.empty() ? 0. : (1. + least_relative_step) * files.back().first + least_step;
-        files.emplace_back(std::max(mode.frequency, least), "modes/" + mode.name + ".vtu");
-      }
-    folder.write(name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, files); });
-  }
-
-  void FieldWriter::write_contact(const std::string                                                       &file,
-                                  const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const
-  {
-    std::vector<DataOutBase::Patch<2, 3>> patches(contact_faces.size());
-    std::vector<std::string>              names;
-    for (const auto &[values, name] : fields)
-      names.emplace_back(name);
-    for (std::size_t face = 0; face < patches.size(); ++face)
-      {
-        patches[face].patch_index    = face;
-        patches[face].reference_cell = ReferenceCells::Quadrilateral;
-        patches[face].data.reinit(fields.size(), 4);
-        for (unsigned int v = 0; v < 4; ++v)
-          {
-            const unsigned int pair   = contact_faces[face][v];
-            const auto &[x, y, z]     = model.nodes()[interface[pair].pin_node].position;
-            patches[face].vertices[v] = {x, y, z};
-            for (std::size_t f = 0; f < fields.size(); ++f)
-              patches[face].data(f, v) = (*fields[f].first)[pair];
-          }
-      }
-    folder.write(file, [&](std::ostream &stream) { DataOutBase::write_vtu(patches, names, {}, compressed(), stream); });
-  }
-
-  void FieldWriter::write_contact_state(const ContactField &state) const
-  {
-    // Clamped dofs follow their backplate
-    Vector<double>   u = dof_vector(state.displacement, [](const double value) { return value; });
-    std::vector<int> side(state.approach.size(), 0);
-    for (const ContactNode &node : interface)
-      side[node.pin] = node.side();
-    for (const auto dof : DoFTools::extract_dofs(model.dof_handler(), ComponentMask(std::vector<bool>{false, false, true})))
-      if (model.free_dof(dof) < 0)
-        {
-          const unsigned int component = model.nodes()[model.node_of_dof(dof)].component;
-          u(dof)                       = -side[component] * state.approach[component];
-        }
-
-    BodyOutput bodies(model);
-    bodies.add(u, "displacement");
-    bodies.add_data_vector(components, "component", DataOut<3>::type_cell_data);
-    bodies.write(folder, "sliding_state.vtu");
-
-    std::vector<double> pressure;
-    for (unsigned int c = 0; c < interface.size(); ++c)
-      pressure.push_back(-state.reactions[c] / interface[c].area);
-    write_contact("sliding_state_contact.vtu", {{&pressure, "pressure"},
-                                                {&state.reactions, "normal_reaction"},
-                                                {&state.gaps, "gap"},
-                                                {&closed, "closed"},
-                                                {&state.radial_damping, "c_b"},
-                                                {&state.sliding_damping, "c_t"}});
-  }
-
-  void FieldWriter::write_animation(const ModeField &mode, const AnimationOptions &options) const
+  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options)
   {
     const double       scale    = 1. / largest_amplitude(mode.displacement);
     const double       period   = 2. * M_PI / mode.lambda.imag();
@@ -253,21 +42,34 @@ namespace Squeal
     // When the amplitude is largest: scaled to this time, growth cannot overflow
     const double largest_at = growth > 0. ? options.periods * period : 0.;
 
-    std::vector<std::pair<double, std::string>> frames;
+    std::vector<AnimationFrame> frames;
     for (unsigned int frame = 0; frame < n_frames; ++frame)
       {
         const double time = period * frame / options.frames_per_period;
-        const auto   turn = std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time);
-        const auto   u    = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (turn * value).real(); });
-
-        BodyOutput output(model);
-        output.add(u, "displacement");
-
-        std::ostringstream name;
-        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame << ".vtu";
-        output.write(folder, "animations/" + name.str());
-        frames.emplace_back(time, name.str());
+        frames.push_back({time, std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time)});
       }
-    folder.write("animations/" + mode.name + ".pvd", [&](std::ostream &stream) { DataOutBase::write_pvd_record(stream, frames); });
+    return frames;
+  }
+
+  std::vector<double> distinct_times(const std::vector<ListedMode> &modes)
+  {
+    std::vector<double> times;
+    for (const ListedMode &mode : modes)
+      {
+        const double least = times.empty() ? 0. : (1. + least_relative_step) * times.back() + least_step;
+        times.push_back(std::max(mode.frequency, least));
+      }
+    return times;
+  }
+
+  std::unique_ptr<ModeFieldWriter> mode_field_writer(const FieldFormat                format,
+                                                     const Model                     &model,
+                                                     const ContactInterface          &interface,
+                                                     const std::vector<unsigned int> &closed,
+                                                     const ResultFolder              &folder)
+  {
+    if (format == FieldFormat::vtu)
+      return std::make_unique<VtuWriter>(model, interface, closed, folder);
+    return std::make_unique<XdmfWriter>(model, interface, closed, folder);
   }
 } // namespace Squeal

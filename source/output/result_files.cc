@@ -76,7 +76,7 @@ namespace Squeal
   bool is_name_of_result(const fs::path &name)
   {
     constexpr const char *folders[] = {"modes", "animations", "plots", "matrices"};
-    constexpr const char *endings[] = {".csv", ".vtu", ".pvd", ".dat", ".gp", ".svg", ".mtx", ".msh"};
+    constexpr const char *endings[] = {".csv", ".vtu", ".pvd", ".h5", ".xdmf", ".dat", ".gp", ".svg", ".mtx", ".msh"};
     constexpr const char *files[]   = {"parameters.prm", "run.json"};
     return contains(files, name) || (contains(endings, name.extension()) && (!name.has_parent_path() || contains(folders, *name.begin())));
   }

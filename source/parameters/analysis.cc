@@ -67,12 +67,15 @@ namespace Squeal
   void OutputParameters::declare(Declarations &declarations)
   {
     declarations.enter("Output");
-    declarations.add("Mode shapes", fields, "Complex modes of which VTU files are written.");
+    declarations.add("Mode shapes", fields, "Complex modes whose shapes are written.");
+    declarations.add(
+      "Field format", format,
+      "Files of shapes: XDMF with HDF5, which has the mesh once, in single precision and compressed, or VTU, in double precision.");
     declarations.add("Component mode shapes", component_fields,
-                     "Writes VTU files of the modes of the disc alone and of the pins alone, free and sliding.");
-    declarations.add("Real mode shapes", real_fields, "Writes VTU files of the coupled modes without friction.");
+                     "Writes the shapes of the modes of the disc alone and of the pins alone, free and sliding, too.");
+    declarations.add("Real mode shapes", real_fields, "Writes the shapes of the coupled modes without friction, too.");
     declarations.add("Animation frames", animation_frames,
-                     "Pictures per period in the animation (PVD) of an unstable mode; 0: none. Units: none.", {0, 1000});
+                     "Pictures per period in the animation of an unstable mode; 0: none. Units: none.", {0, 1000});
     declarations.add("Animation periods", animation_periods, "Periods that an animation shows. Units: none.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
                      "Shows the mode with its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");

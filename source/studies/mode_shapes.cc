@@ -40,7 +40,7 @@ namespace Squeal
       return text("; the fastest grows by a factor of ", std::exp(exponent * periods), ", and of e in ", 1. / exponent, " periods");
     }
 
-    void write_complex_modes(const Linearisation &linearisation, const FrictionModes &friction, const FieldWriter &writer, Run &run)
+    void write_complex_modes(const Linearisation &linearisation, const FrictionModes &friction, ModeFieldWriter &writer, Run &run)
     {
       const OutputParameters &output = run.parameters.output;
       const ComplexModes     &modes  = friction.modes;
@@ -74,7 +74,7 @@ namespace Squeal
                                output.animation_growth && highest > 0. ? growth_text(highest, output.animation_periods) : ""));
     }
 
-    void write_real_modes(const FrictionlessModes &modes, const FieldWriter &writer, Run &run)
+    void write_real_modes(const FrictionlessModes &modes, ModeFieldWriter &writer, Run &run)
     {
       std::vector<ListedMode> list;
       run.progress.begin("Real mode shapes");
@@ -91,7 +91,7 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    void write_component_modes(const FrictionlessModes &modes, const FieldWriter &writer, Run &run)
+    void write_component_modes(const FrictionlessModes &modes, ModeFieldWriter &writer, Run &run)
     {
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
@@ -126,14 +126,17 @@ namespace Squeal
     return {output.animation_frames, output.animation_periods, output.animation_growth};
   }
 
-  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const FieldWriter &writer, Run &run)
+  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
   {
-    const OutputParameters &output = run.parameters.output;
+    const OutputParameters &output        = run.parameters.output;
+    const Linearisation    &linearisation = frictionless.linearisation;
+    const Scene            &scene         = *linearisation.scene;
+    const auto              writer = mode_field_writer(output.format, *scene.model, scene.interface, linearisation.closed, run.folder());
     if (output.fields != FieldSelection::none)
-      write_complex_modes(frictionless.linearisation, friction, writer, run);
+      write_complex_modes(linearisation, friction, *writer, run);
     if (output.real_fields)
-      write_real_modes(frictionless, writer, run);
+      write_real_modes(frictionless, *writer, run);
     if (output.component_fields)
-      write_component_modes(frictionless, writer, run);
+      write_component_modes(frictionless, *writer, run);
   }
 } // namespace Squeal

@@ -46,14 +46,14 @@ namespace Squeal
       return p.study->no_mode_shapes == nullptr ? nullptr : p.study->no_mode_shapes(p);
     }
 
-    Reason no_animation(const Parameters &p)
+    Reason no_complex_shapes(const Parameters &p)
     {
       return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
     }
 
     Reason no_frames(const Parameters &p)
     {
-      return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_animation(p);
+      return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_complex_shapes(p);
     }
 
     /// What holds for all studies that have no rule of their own.
@@ -103,9 +103,14 @@ namespace Squeal
         {"Output/Mode shapes",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
+        {"Output/Field format",
+         [](const Parameters &p) {
+           const bool has_others = p.study->no_mode_shapes == nullptr && (p.output.real_fields || p.output.component_fields);
+           return has_others ? nullptr : no_complex_shapes(p);
+         }},
         {"Output/Animation frames",
          // Who wants none gets none
-         [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_animation(p); }},
+         [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},
         {"Output/Animation periods", no_frames},
         {"Output/Animation growth", no_frames}};
       return table;

@@ -62,7 +62,7 @@ namespace Squeal
       return unless(measures(p, BasisSource::snapshots), "the basis POD is not measured");
     }
 
-    Reason no_krylov(const Parameters &p)
+    Reason no_krylov_for_bases(const Parameters &p)
     {
       return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
     }
@@ -110,8 +110,8 @@ namespace Squeal
              [](const Parameters &p) { return unless(measures(p, BasisSource::residuals), "no residual-grown basis is measured"); }},
             {"Reduction/Snapshots", no_snapshots},
             {"Reduction/POD tolerance", no_snapshots},
-            {"Complex modes/Shift inverse", no_krylov},
-            {"Complex modes/Tolerance", no_krylov},
+            {"Complex modes/Shift inverse", no_krylov_for_bases},
+            {"Complex modes/Tolerance", no_krylov_for_bases},
             {"Complex modes/Maximum basis", [](const Parameters &p) {
                return unless(measures(p, BasisSource::residuals) || p.solves_by(ComplexSolver::residual_iteration),
                              "of the solver residual iteration");

@@ -1,4 +1,5 @@
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/output/vtu_writer.h>
 #include <squeal/studies/sliding_results.h>
 
 #include <cmath>
@@ -78,11 +79,15 @@ namespace Squeal
     run.progress.note("  steady sliding: " + uniqueness_note(state.uniqueness));
   }
 
-  void write_sliding_fields(const Scene &scene, const SlidingState &state, const OperationParameters &operation, const FieldWriter &writer)
+  void write_sliding_fields(const Linearisation &linearisation, Run &run)
   {
-    const DenseMatrix u = replicate(*state.total_displacement);
-    writer.write_contact_state({std::vector<double>(u.col(0).begin(), u.col(0).end()), state.approach, state.reactions, state.gaps,
-                                radial_dissipation(scene.interface, state.reactions, operation),
-                                sliding_dissipation(state.reactions, operation)});
+    const Scene               &scene     = *linearisation.scene;
+    const SlidingState        &state     = *linearisation.sliding;
+    const OperationParameters &operation = run.parameters.operation;
+    const DenseMatrix          u         = replicate(*state.total_displacement);
+    VtuWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
+      .write_contact_state({std::vector<double>(u.col(0).begin(), u.col(0).end()), state.approach, state.reactions, state.gaps,
+                            radial_dissipation(scene.interface, state.reactions, operation),
+                            sliding_dissipation(state.reactions, operation)});
   }
 } // namespace Squeal

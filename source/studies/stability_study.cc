@@ -1,7 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/output/fields.h>
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/mesh_estimate.h>
 #include <squeal/studies/mode_shapes.h>
@@ -178,10 +177,9 @@ namespace Squeal
     if (is_paper_scene(parameters))
       write_table_one(frictionless, friction, run);
 
-    const FieldWriter writer(*scene.model, scene.interface, linearisation.closed, run.folder());
     if (sliding && parameters.output.fields != FieldSelection::none)
-      write_sliding_fields(scene, *sliding, operation, writer);
-    write_mode_shapes(frictionless, friction, writer, run);
+      write_sliding_fields(linearisation, run);
+    write_mode_shapes(frictionless, friction, run);
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });

@@ -2,7 +2,7 @@
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/output/fields.h>
+#include <squeal/output/vtu_writer.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 #include <squeal/output/table.h>
@@ -254,7 +254,7 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
     {
       const DiscWithPin s(element);
       ResultFolder      folder(results, true);
-      const FieldWriter writer(s.model, s.interface, {}, folder);
+      VtuWriter         writer(s.model, s.interface, {}, folder);
       const ModeField   mode = s.mode({1., 1000.});
       writer.write_mode(mode);
       writer.write_animation(mode, {4});
@@ -290,8 +290,8 @@ TEST_F(ResultFolders, AnimationsWithGrowthAreLargestWhereTheModeIs)
   for (const auto &[name, lambda] : {std::make_pair("grows", std::complex<double>(50., 1000.)), {"decays", {-50., 1000.}}})
     for (const bool grows : {false, true})
       {
-        ResultFolder      folder(results, true);
-        const FieldWriter writer(s.model, s.interface, {}, folder);
+        ResultFolder folder(results, true);
+        VtuWriter    writer(s.model, s.interface, {}, folder);
         writer.write_animation(s.mode(lambda), {4, 3, grows});
         folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
         folder.commit();
@@ -316,7 +316,7 @@ TEST_F(ResultFolders, RealModesOfAllBodiesAndOfOne)
 {
   const DiscWithPin         s(Element::trilinear);
   ResultFolder              folder(results, true);
-  const FieldWriter         writer(s.model, s.interface, {}, folder);
+  VtuWriter                 writer(s.model, s.interface, {}, folder);
   const std::vector<double> displacement(s.model.free_map().n(), -3.);
   writer.write_mode({"real", "real mode A0-2", displacement, {}});
   writer.write_mode({"disc", "free disc A0-2", displacement, Component::disc});
@@ -339,7 +339,7 @@ TEST_F(ResultFolders, ListsOfModesHaveATimeForEach)
 {
   const DiscWithPin s(Element::trilinear);
   ResultFolder      folder(results, true);
-  const FieldWriter writer(s.model, s.interface, {}, folder);
+  VtuWriter         writer(s.model, s.interface, {}, folder);
   // Rigid-body modes, doublets equal to rounding, and one that is farther away
   const std::vector<double> frequencies = {0., 0., 500., 500., 500. * (1. + 1e-14), 500.1, 4999.};
   std::vector<ListedMode>   modes;

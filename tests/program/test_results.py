@@ -11,13 +11,14 @@ from program import COMPLEX_COLUMNS, SAME, ProgramTest, distance, eigenvalues, h
 from vtu_file import VtuFile
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
+VTU = "Output/Field format=VTU"
 
 
 class Results(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.results = cls.run_scene("results", "Output/Mode shapes=unstable")
+        cls.results = cls.run_scene("results", "Output/Mode shapes=unstable", VTU)
         cls.record = json.loads((cls.results / "run.json").read_text(encoding="utf-8"))
 
     def test_files(self):
@@ -119,15 +120,116 @@ class Results(ProgramTest):
                              [row["label"] for row in read_table(self.results / name)])
 
 
+# Of the complex modes the unstable ones, of the others all
+SHAPES = ("Output/Mode shapes=unstable", "Output/Component mode shapes=true", "Output/Real mode shapes=true",
+          "Output/Animation periods=2", "Output/Animation growth=true")
+
+
+class CompactShapes(ProgramTest):
+    """XDMF with HDF5 has the same fields as VTU, on shared vertices, in single precision."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        try:
+            import xdmf_file
+        except ImportError:
+            raise unittest.SkipTest("NumPy and h5py are missing") from None
+        cls.states = staticmethod(xdmf_file.states)
+        cls.compact = cls.run_scene("compact", *SHAPES)
+        cls.vtu = cls.run_scene("vtu", *SHAPES, VTU)
+
+    def assert_same(self, grid, file):
+        """Every vertex of the file's cells is one of the grid, with the same values; none of the grid is left over."""
+        vtu = VtuFile(file)
+        bodies = vtu.fields.get("component", [0] * len(vtu.points))
+        component = [0] * len(grid.points)
+        for cell, number in zip(grid.cells, grid.cell_fields["component"]):
+            for vertex in cell:
+                component[vertex] = number if "component" in vtu.fields else 0
+        places = {(number, *(round(1e6 * float(x)) for x in point)): i for i, (number, point) in enumerate(zip(component, grid.points))}
+        self.assertEqual(len(places), len(grid.points), "vertices are shared")
+        number_of = [places[(int(body), *(round(1e6 * x) for x in point))] for body, point in zip(bodies, vtu.points)]
+        self.assertEqual(set(number_of), set(range(len(grid.points))))
+        self.assertEqual(len(grid.cells), len(vtu.cell_types))
+        for name, values in grid.fields.items():
+            largest = abs(values).max() or 1
+            for i, value in zip(number_of, vtu.fields[name]):
+                if name == "amplitude":
+                    value = math.hypot(*value)
+                self.assertLess(abs(values[i] - value).max(), 1e-6 * largest, name)
+
+    def test_complex_modes(self):
+        files = sorted((self.vtu / "modes").glob("complex_*_contact.vtu"))
+        self.assertGreater(len(files), 0)
+        for contact in files:
+            name = contact.stem.removesuffix("_contact")
+            with self.subTest(name):
+                state, = self.states(self.compact / "modes" / f"{name}.xdmf")
+                self.assertEqual(list(state.grids), ["disc and pins", "contact faces"])
+                bodies, faces = state.grids.values()
+                self.assertEqual(set(bodies.fields), {"displacement_real", "displacement_imag", "amplitude"})
+                self.assertEqual(set(faces.fields), {"normal_reaction_real", "normal_reaction_imag", "closed"})
+                self.assert_same(bodies, self.vtu / "modes" / f"{name}.vtu")
+                self.assert_same(faces, contact)
+
+    def test_other_modes(self):
+        for kind in ("real", "component_disc", "component_pins_sliding", "component_pins_free"):
+            files = sorted((self.vtu / "modes").glob(f"{kind}_*.vtu"))
+            self.assertGreater(len(files), 0)
+            self.assertEqual([path.stem for path in sorted((self.compact / "modes").glob(f"{kind}_*.h5"))], [path.stem for path in files])
+            with self.subTest(kind):
+                state, = self.states(self.compact / "modes" / f"{files[-1].stem}.xdmf")
+                grid, = state.grids.values()
+                self.assertEqual(set(grid.fields), {"displacement", "amplitude"})
+                self.assert_same(grid, files[-1])
+
+    def test_lists(self):
+        lists = sorted(path.stem for path in self.vtu.glob("*.pvd"))
+        self.assertEqual(lists, ["component_modes_disc", "component_modes_pins_free", "component_modes_pins_sliding", "modes", "real_modes"])
+        record = json.loads((self.compact / "run.json").read_text(encoding="utf-8"))
+        for name in lists:
+            with self.subTest(name):
+                self.assertIn(f"{name}.xdmf", record["files [byte]"])
+                entries = xml.etree.ElementTree.parse(self.vtu / f"{name}.pvd").findall(".//DataSet")
+                states = self.states(self.compact / f"{name}.xdmf")
+                self.assertEqual(len(states), len(entries))
+                for state, entry in zip(states, entries):
+                    single, = self.states(self.compact / entry.get("file").replace(".vtu", ".xdmf"))
+                    self.assertEqual(state.title, single.title)
+                    self.assertAlmostEqual(state.time / float(entry.get("timestep")), 1, delta=1e-9)
+                    for grid, alone in zip(state.grids.values(), single.grids.values()):
+                        for field in grid.fields:
+                            self.assertTrue((grid.fields[field] == alone.fields[field]).all())
+                self.assertEqual(len({state.time for state in states}), len(states))
+
+    def test_animations(self):
+        files = sorted((self.vtu / "animations").glob("*.pvd"))
+        self.assertEqual([path.stem for path in sorted((self.compact / "animations").glob("*.xdmf"))], [path.stem for path in files])
+        frames = xml.etree.ElementTree.parse(files[0]).findall(".//DataSet")
+        states = self.states(self.compact / "animations" / f"{files[0].stem}.xdmf")
+        self.assertEqual(len(states), len(frames))
+        for state, frame in zip(states, frames):
+            self.assertAlmostEqual(state.time, float(frame.get("timestep")), delta=1e-12)
+        grid, = states[2].grids.values()
+        vtu = VtuFile(files[0].parent / frames[2].get("file"))
+        self.assertAlmostEqual(abs(grid.fields["displacement"]).max() / max(abs(u) for vector in vtu.fields["displacement"] for u in vector), 1,
+                               delta=1e-6)
+
+    def test_size(self):
+        """The mesh once, shared vertices, single precision."""
+        compact, vtu = (sum(path.stat().st_size for path in (folder / "modes").iterdir()) for folder in (self.compact, self.vtu))
+        self.assertLess(compact, vtu / 2)
+
+
 class Shapes(ProgramTest):
     """Fields of modes without friction, and animations with growth."""
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        # Trilinear, on a coarse mesh; of the complex modes the unstable ones
-        cls.results = cls.run_scene("results", "Output/Mode shapes=unstable", "Output/Component mode shapes=true",
-                                    "Output/Real mode shapes=true", "Output/Animation periods=2", "Output/Animation growth=true")
+        # Trilinear, on a coarse mesh
+        cls.results = cls.run_scene("results", *SHAPES, VTU)
 
     def fields_of(self, pattern):
         return {int(path.stem.split("_")[pattern.count("_")]): path for path in sorted((self.results / "modes").glob(pattern))}
@@ -213,7 +315,7 @@ class Shapes(ProgramTest):
         shutil.copytree(self.results, self.folder / "again")
         again = self.run_scene("again")
         self.addCleanup(shutil.rmtree, again)
-        self.assertEqual(list(again.glob("*.pvd")), [])
+        self.assertEqual([path for ending in ("pvd", "xdmf") for path in again.glob(f"*.{ending}")], [])
         self.assertFalse((again / "modes").exists())
 
 

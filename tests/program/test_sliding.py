@@ -15,7 +15,7 @@ from vtu_file import VtuFile
 STEADY = "Steady sliding/Contact state=steady sliding"
 CONSISTENT = "Operation/Radial dissipation=consistent"
 RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
-SHAPES = ["Output/Mode shapes=all", "Output/Animation frames=0"]
+SHAPES = ["Output/Mode shapes=all", "Output/Animation frames=0", "Output/Field format=VTU"]
 PINS = ["pin_top_1", "pin_top_2", "pin_bottom_1", "pin_bottom_2"]
 
 # Of the default parameters

@@ -94,6 +94,7 @@ namespace
                                                               {"Complex modes/Iteration tolerance", "1e-6"},
                                                               {"Complex modes/Maximum basis", "1000"},
                                                               {"Output/Mode shapes", "unstable"},
+                                                              {"Output/Field format", "VTU"},
                                                               {"Output/Component mode shapes", "true"},
                                                               {"Output/Real mode shapes", "true"},
                                                               {"Output/Animation frames", "3"},
@@ -201,11 +202,12 @@ TEST(ParameterUsage, OfStability)
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
             those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Shift", "Complex modes/Tolerance",
-                             "Output/Animation"},
+                             "Output/Field format", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
                             {"Output/Animation periods", "Output/Animation growth"})));
+  EXPECT_EQ(unused_alone({"Output/Mode shapes=none", "Output/Real mode shapes=true"}).count("Output/Field format"), 0u);
 }
 
 TEST(ParameterUsage, OfDissipation)

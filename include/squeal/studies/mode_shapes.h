@@ -14,9 +14,9 @@ namespace Squeal
   AnimationOptions animation_options(const OutputParameters &output);
 
   /**
-   * The fields that the parameters choose, as steps of the run: complex modes with animations of unstable ones, real
+   * The fields that the parameters choose, in their format, as steps of the run: complex modes with animations of unstable ones, real
    * coupled modes, component modes; and of each kind a list through which ParaView steps. Files bear the numbers of the rows of
    * `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
    */
-  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const FieldWriter &writer, Run &run);
+  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
 } // namespace Squeal

@@ -1,0 +1,297 @@
+#include <squeal/base/text.h>
+#include <squeal/output/hdf5_image.h>
+#include <squeal/output/xdmf_writer.h>
+
+#include <boost/property_tree/ptree.hpp>
+#include <boost/property_tree/xml_parser.hpp>
+
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+    using Grid    = XdmfWriter::Grid;
+    using State   = XdmfWriter::State;
+    using Tree    = boost::property_tree::ptree;
+
+    /// Names in files of meshes.
+    constexpr const char *body_group = "bodies", *contact_group = "contact", *closed_dataset = "contact/closed";
+
+    constexpr const char *body_grid = "disc and pins";
+
+    std::string mesh_file(const std::optional<Component> &component)
+    {
+      return component ? text("modes/mesh_", *component == Component::disc ? "disc" : "pins", ".h5") : "modes/mesh.h5";
+    }
+
+    // ---------------------------------------------------------------------------------------------------- values in HDF5
+
+    void add_mesh(Hdf5Image &image, const std::string &group, const FieldMesh &mesh, const Model &model)
+    {
+      std::vector<float> points;
+      for (const unsigned int node : mesh.nodes)
+        for (const double x : model.nodes()[node].position)
+          points.push_back(x);
+      image.add(group + "/points", points, 3);
+      image.add(group + "/cells", mesh.cells, mesh.corners);
+      image.add(group + "/component", mesh.components);
+    }
+
+    /// √Σ|u|² over the three displacements of each vertex, times a factor.
+    template <typename Number>
+    std::vector<float> amplitudes(const FieldMesh &mesh, const Model &model, const std::vector<Number> &displacement, const double scale)
+    {
+      std::vector<float> result;
+      result.reserve(mesh.nodes.size());
+      for (const unsigned int node : mesh.nodes)
+        {
+          double sum = 0.;
+          for (const int dof : model.nodes()[node].dofs)
+            sum += dof >= 0 ? std::norm(displacement[dof]) : 0.;
+          result.push_back(scale * std::sqrt(sum));
+        }
+      return result;
+    }
+
+    /// value(u) of the three displacements of each vertex, u = 0 where it is clamped.
+    template <typename Number, typename Function>
+    std::vector<float> vertex_values(const FieldMesh           &mesh,
+                                     const Model               &model,
+                                     const std::vector<Number> &displacement,
+                                     const Function            &value)
+    {
+      std::vector<float> result;
+      result.reserve(3 * mesh.nodes.size());
+      for (const unsigned int node : mesh.nodes)
+        for (const int dof : model.nodes()[node].dofs)
+          result.push_back(dof >= 0 ? value(displacement[dof]) : 0.);
+      return result;
+    }
+
+    /// A file of HDF5 whose fields are noted where they belong.
+    class FieldFile
+    {
+    public:
+      explicit FieldFile(std::string name)
+        : name(std::move(name))
+      {}
+
+      /// @param values one or three for each vertex
+      void add(Grid &grid, const std::string &field, const std::string &dataset, const std::vector<float> &values)
+      {
+        const unsigned int n_columns = values.size() / grid.mesh->nodes.size();
+        image.add(dataset, values, n_columns);
+        grid.fields.push_back({field, name, dataset, n_columns});
+      }
+
+      void write(const ResultFolder &folder, const std::string &title, const std::string &mesh)
+      {
+        image.describe("mode", title);
+        image.describe("mesh", std::filesystem::path(mesh).lexically_relative(std::filesystem::path(name).parent_path()));
+        folder.write(name, [&](std::ostream &stream) { stream << image.bytes(); });
+      }
+
+    private:
+      const std::string name;
+      Hdf5Image         image;
+    };
+
+    // ---------------------------------------------------------------------------------------------------- XDMF
+
+    Tree data_item(const std::string &reference, const std::size_t n_rows, const unsigned int n_columns, const bool is_integer)
+    {
+      Tree item;
+      item.put("<xmlattr>.Dimensions", n_columns == 1 ? std::to_string(n_rows) : text(n_rows, " ", n_columns));
+      item.put("<xmlattr>.NumberType", is_integer ? "Int" : "Float");
+      item.put("<xmlattr>.Precision", 4);
+      item.put("<xmlattr>.Format", "HDF");
+      item.put_value(reference);
+      return item;
+    }
+
+    Tree attribute(const std::string &name, const char *centre, const unsigned int n_columns, const Tree &item)
+    {
+      Tree result;
+      result.put("<xmlattr>.Name", name);
+      result.put("<xmlattr>.AttributeType", n_columns == 3 ? "Vector" : "Scalar");
+      result.put("<xmlattr>.Center", centre);
+      result.add_child("DataItem", item);
+      return result;
+    }
+
+    /// @param place of the XDMF file, from which files of HDF5 are seen
+    Tree uniform_grid(const Grid &grid, const std::filesystem::path &place)
+    {
+      const auto seen = [&](const std::string &file, const std::string &dataset) {
+        return std::filesystem::path(file).lexically_relative(place).string() + ":/" + dataset;
+      };
+      const FieldMesh &mesh = *grid.mesh;
+      Tree             topology, geometry, result;
+      topology.put("<xmlattr>.TopologyType", mesh.corners == 8 ? "Hexahedron" : "Quadrilateral");
+      topology.put("<xmlattr>.NumberOfElements", mesh.n_cells());
+      topology.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/cells"), mesh.n_cells(), mesh.corners, true));
+      geometry.put("<xmlattr>.GeometryType", "XYZ");
+      geometry.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/points"), mesh.nodes.size(), 3, false));
+      result.put("<xmlattr>.Name", grid.name);
+      result.put("<xmlattr>.GridType", "Uniform");
+      result.add_child("Topology", topology);
+      result.add_child("Geometry", geometry);
+      for (const auto &[name, file, dataset, n_columns] : grid.fields)
+        result.add_child("Attribute",
+                         attribute(name, "Node", n_columns, data_item(seen(file, dataset), mesh.nodes.size(), n_columns, false)));
+      result.add_child("Attribute", attribute("component", "Cell", 1,
+                                              data_item(seen(grid.mesh_file, grid.group + "/component"), mesh.n_cells(), 1, true)));
+      return result;
+    }
+
+    Tree collection(const std::string &name, const char *kind)
+    {
+      Tree result;
+      result.put("<xmlattr>.Name", name);
+      result.put("<xmlattr>.GridType", "Collection");
+      result.put("<xmlattr>.CollectionType", kind);
+      return result;
+    }
+
+    Tree grid_of(const State &state, const std::filesystem::path &place)
+    {
+      Tree result = collection(state.title, "Spatial");
+      for (const Grid &grid : state.grids)
+        result.add_child("Grid", uniform_grid(grid, place));
+      return result;
+    }
+
+    Tree grid_at(const double time, const State &state, const std::filesystem::path &place)
+    {
+      std::ostringstream value;
+      value << std::setprecision(15) << time;
+      Tree at, result = grid_of(state, place);
+      at.put("<xmlattr>.Value", value.str());
+      result.add_child("Time", at);
+      return result;
+    }
+
+    void write_document(const ResultFolder &folder, const std::string &name, const Tree &grid)
+    {
+      Tree document;
+      document.put("Xdmf.<xmlattr>.Version", "2.0");
+      document.add_child("Xdmf.Domain.Grid", grid);
+      folder.write(name, [&](std::ostream &stream) {
+        write_xml(stream, document, boost::property_tree::xml_writer_make_settings<std::string>(' ', 1));
+      });
+    }
+  } // namespace
+
+  XdmfWriter::XdmfWriter(const Model                     &model,
+                         const ContactInterface          &interface,
+                         const std::vector<unsigned int> &closed_pairs,
+                         const ResultFolder              &folder)
+    : model(model)
+    , folder(folder)
+    , contact_faces(contact_face_mesh(model, interface))
+    , closed(interface.size(), 0.)
+  {
+    for (const unsigned int c : closed_pairs)
+      closed[c] = 1.;
+  }
+
+  const FieldMesh &XdmfWriter::bodies(const std::optional<Component> &component)
+  {
+    const auto [place, is_new] = meshes.try_emplace(component);
+    FieldMesh &mesh            = place->second;
+    if (is_new)
+      {
+        mesh = body_mesh(model, component);
+        Hdf5Image image;
+        add_mesh(image, body_group, mesh, model);
+        if (!component && contact_faces.n_cells() > 0)
+          {
+            add_mesh(image, contact_group, contact_faces, model);
+            image.add(closed_dataset, closed);
+          }
+        folder.write(mesh_file(component), [&](std::ostream &stream) { stream << image.bytes(); });
+      }
+    return mesh;
+  }
+
+  void XdmfWriter::keep(const std::string &name, const State &state)
+  {
+    written[name] = state;
+    write_document(folder, "modes/" + name + ".xdmf", grid_of(state, "modes"));
+  }
+
+  void XdmfWriter::write_mode(const ModeField &mode)
+  {
+    const double scale = 1. / largest_amplitude(mode.displacement);
+    State        state{mode.title, {{body_grid, mesh_file({}), body_group, &bodies({}), {}}}};
+    FieldFile    file("modes/" + mode.name + ".h5");
+    const auto   add = [&](const char *name, const auto &value) {
+      file.add(state.grids.front(), name, name, vertex_values(bodies({}), model, mode.displacement, value));
+    };
+    add("displacement_real", [&](const Complex &u) { return scale * u.real(); });
+    add("displacement_imag", [&](const Complex &u) { return scale * u.imag(); });
+    file.add(state.grids.front(), "amplitude", "amplitude", amplitudes(bodies({}), model, mode.displacement, scale));
+
+    if (contact_faces.n_cells() > 0)
+      {
+        Grid               faces{"contact faces", mesh_file({}), contact_group, &contact_faces, {}};
+        std::vector<float> re, im;
+        for (const Complex &r : mode.reactions)
+          {
+            re.push_back(scale * r.real());
+            im.push_back(scale * r.imag());
+          }
+        file.add(faces, "normal_reaction_real", "normal_reaction_real", re);
+        file.add(faces, "normal_reaction_imag", "normal_reaction_imag", im);
+        faces.fields.push_back({"closed", mesh_file({}), closed_dataset, 1});
+        state.grids.push_back(faces);
+      }
+    file.write(folder, mode.title, mesh_file({}));
+    keep(mode.name, state);
+  }
+
+  void XdmfWriter::write_mode(const RealModeField &mode)
+  {
+    const double scale = 1. / largest_amplitude(mode.displacement);
+    State        state{mode.title, {{body_grid, mesh_file(mode.component), body_group, &bodies(mode.component), {}}}};
+    FieldFile    file("modes/" + mode.name + ".h5");
+    file.add(state.grids.front(), "displacement", "displacement",
+             vertex_values(bodies(mode.component), model, mode.displacement, [&](const double u) { return scale * u; }));
+    file.add(state.grids.front(), "amplitude", "amplitude", amplitudes(bodies(mode.component), model, mode.displacement, scale));
+    file.write(folder, mode.title, mesh_file(mode.component));
+    keep(mode.name, state);
+  }
+
+  void XdmfWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes)
+  {
+    const std::vector<double> times = distinct_times(modes);
+    Tree                      list  = collection(name, "Temporal");
+    for (std::size_t j = 0; j < modes.size(); ++j)
+      list.add_child("Grid", grid_at(times[j], written.at(modes[j].name), "."));
+    write_document(folder, name + ".xdmf", list);
+  }
+
+  void XdmfWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
+  {
+    const auto frames = animation_frames(mode, options);
+    Tree       list   = collection(mode.title, "Temporal");
+    FieldFile  file("animations/" + mode.name + ".h5");
+    for (std::size_t j = 0; j < frames.size(); ++j)
+      {
+        const AnimationFrame &frame = frames[j];
+        State                 state{text(mode.title, ", ", frame.time, " s"), {{body_grid, mesh_file({}), body_group, &bodies({}), {}}}};
+        std::ostringstream    dataset;
+        dataset << "displacement/" << std::setw(3) << std::setfill('0') << j;
+        file.add(state.grids.front(), "displacement", dataset.str(),
+                 vertex_values(bodies({}), model, mode.displacement, [&](const Complex &u) { return (frame.turn * u).real(); }));
+        list.add_child("Grid", grid_at(frame.time, state, "animations"));
+      }
+    file.write(folder, mode.title, mesh_file({}));
+    write_document(folder, "animations/" + mode.name + ".xdmf", list);
+  }
+} // namespace Squeal
