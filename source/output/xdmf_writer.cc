@@ -16,13 +16,12 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
     using Grid    = XdmfWriter::Grid;
-    using State   = XdmfWriter::State;
     using Tree    = boost::property_tree::ptree;
 
     /// Names in files of meshes.
     constexpr const char *body_group = "bodies", *contact_group = "contact", *closed_dataset = "contact/closed";
 
-    constexpr const char *body_grid = "disc and pins";
+    constexpr const char *contact_ending = "_contact.xdmf";
 
     std::string mesh_file(const std::optional<Component> &component)
     {
@@ -125,7 +124,7 @@ namespace Squeal
     }
 
     /// @param place of the XDMF file, from which files of HDF5 are seen
-    Tree uniform_grid(const Grid &grid, const std::filesystem::path &place)
+    Tree grid_tree(const Grid &grid, const std::filesystem::path &place)
     {
       const auto seen = [&](const std::string &file, const std::string &dataset) {
         return std::filesystem::path(file).lexically_relative(place).string() + ":/" + dataset;
@@ -137,7 +136,7 @@ namespace Squeal
       topology.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/cells"), mesh.n_cells(), mesh.corners, true));
       geometry.put("<xmlattr>.GeometryType", "XYZ");
       geometry.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/points"), mesh.nodes.size(), 3, false));
-      result.put("<xmlattr>.Name", grid.name);
+      result.put("<xmlattr>.Name", grid.title);
       result.put("<xmlattr>.GridType", "Uniform");
       result.add_child("Topology", topology);
       result.add_child("Geometry", geometry);
@@ -149,32 +148,36 @@ namespace Squeal
       return result;
     }
 
-    Tree collection(const std::string &name, const char *kind)
+    /// Grids through which ParaView steps.
+    class GridList
     {
-      Tree result;
-      result.put("<xmlattr>.Name", name);
-      result.put("<xmlattr>.GridType", "Collection");
-      result.put("<xmlattr>.CollectionType", kind);
-      return result;
-    }
+    public:
+      /// @param place of the file, from which files of HDF5 are seen
+      GridList(const std::string &name, std::filesystem::path place)
+        : place(std::move(place))
+      {
+        tree.put("<xmlattr>.Name", name);
+        tree.put("<xmlattr>.GridType", "Collection");
+        tree.put("<xmlattr>.CollectionType", "Temporal");
+      }
 
-    Tree grid_of(const State &state, const std::filesystem::path &place)
-    {
-      Tree result = collection(state.title, "Spatial");
-      for (const Grid &grid : state.grids)
-        result.add_child("Grid", uniform_grid(grid, place));
-      return result;
-    }
+      void add(const double time, const Grid &grid)
+      {
+        std::ostringstream value;
+        value << std::setprecision(15) << time;
+        Tree at, child = grid_tree(grid, place);
+        at.put("<xmlattr>.Value", value.str());
+        child.add_child("Time", at);
+        tree.add_child("Grid", child);
+        ++n;
+      }
 
-    Tree grid_at(const double time, const State &state, const std::filesystem::path &place)
-    {
-      std::ostringstream value;
-      value << std::setprecision(15) << time;
-      Tree at, result = grid_of(state, place);
-      at.put("<xmlattr>.Value", value.str());
-      result.add_child("Time", at);
-      return result;
-    }
+      Tree         tree;
+      unsigned int n = 0;
+
+    private:
+      const std::filesystem::path place;
+    };
 
     void write_document(const ResultFolder &folder, const std::string &name, const Tree &grid)
     {
@@ -219,27 +222,29 @@ namespace Squeal
     return mesh;
   }
 
-  void XdmfWriter::keep(const std::string &name, const State &state)
+  void XdmfWriter::keep(const std::string &name, const Shape &shape)
   {
-    written[name] = state;
-    write_document(folder, "modes/" + name + ".xdmf", grid_of(state, "modes"));
+    written[name] = shape;
+    write_document(folder, "modes/" + name + ".xdmf", grid_tree(shape.bodies, "modes"));
+    if (shape.contact_faces)
+      write_document(folder, "modes/" + name + contact_ending, grid_tree(*shape.contact_faces, "modes"));
   }
 
   void XdmfWriter::write_mode(const ModeField &mode)
   {
     const double scale = 1. / largest_amplitude(mode.displacement);
-    State        state{mode.title, {{body_grid, mesh_file({}), body_group, &bodies({}), {}}}};
+    Shape        shape{{mode.title, mesh_file({}), body_group, &bodies({}), {}}, {}};
     FieldFile    file("modes/" + mode.name + ".h5");
     const auto   add = [&](const char *name, const auto &value) {
-      file.add(state.grids.front(), name, name, vertex_values(bodies({}), model, mode.displacement, value));
+      file.add(shape.bodies, name, name, vertex_values(bodies({}), model, mode.displacement, value));
     };
     add("displacement_real", [&](const Complex &u) { return scale * u.real(); });
     add("displacement_imag", [&](const Complex &u) { return scale * u.imag(); });
-    file.add(state.grids.front(), "amplitude", "amplitude", amplitudes(bodies({}), model, mode.displacement, scale));
+    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(bodies({}), model, mode.displacement, scale));
 
     if (contact_faces.n_cells() > 0)
       {
-        Grid               faces{"contact faces", mesh_file({}), contact_group, &contact_faces, {}};
+        Grid               faces{mode.title, mesh_file({}), contact_group, &contact_faces, {}};
         std::vector<float> re, im;
         for (const Complex &r : mode.reactions)
           {
@@ -249,49 +254,57 @@ namespace Squeal
         file.add(faces, "normal_reaction_real", "normal_reaction_real", re);
         file.add(faces, "normal_reaction_imag", "normal_reaction_imag", im);
         faces.fields.push_back({"closed", mesh_file({}), closed_dataset, 1});
-        state.grids.push_back(faces);
+        shape.contact_faces = faces;
       }
     file.write(folder, mode.title, mesh_file({}));
-    keep(mode.name, state);
+    keep(mode.name, shape);
   }
 
   void XdmfWriter::write_mode(const RealModeField &mode)
   {
-    const double scale = 1. / largest_amplitude(mode.displacement);
-    State        state{mode.title, {{body_grid, mesh_file(mode.component), body_group, &bodies(mode.component), {}}}};
-    FieldFile    file("modes/" + mode.name + ".h5");
-    file.add(state.grids.front(), "displacement", "displacement",
-             vertex_values(bodies(mode.component), model, mode.displacement, [&](const double u) { return scale * u; }));
-    file.add(state.grids.front(), "amplitude", "amplitude", amplitudes(bodies(mode.component), model, mode.displacement, scale));
+    const double     scale = 1. / largest_amplitude(mode.displacement);
+    const FieldMesh &mesh  = bodies(mode.component);
+    Shape            shape{{mode.title, mesh_file(mode.component), body_group, &mesh, {}}, {}};
+    FieldFile        file("modes/" + mode.name + ".h5");
+    file.add(shape.bodies, "displacement", "displacement",
+             vertex_values(mesh, model, mode.displacement, [&](const double u) { return scale * u; }));
+    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(mesh, model, mode.displacement, scale));
     file.write(folder, mode.title, mesh_file(mode.component));
-    keep(mode.name, state);
+    keep(mode.name, shape);
   }
 
   void XdmfWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes)
   {
     const std::vector<double> times = distinct_times(modes);
-    Tree                      list  = collection(name, "Temporal");
+    GridList                  bodies(name, "."), faces(name, ".");
     for (std::size_t j = 0; j < modes.size(); ++j)
-      list.add_child("Grid", grid_at(times[j], written.at(modes[j].name), "."));
-    write_document(folder, name + ".xdmf", list);
+      {
+        const Shape &shape = written.at(modes[j].name);
+        bodies.add(times[j], shape.bodies);
+        if (shape.contact_faces)
+          faces.add(times[j], *shape.contact_faces);
+      }
+    write_document(folder, name + ".xdmf", bodies.tree);
+    if (faces.n > 0)
+      write_document(folder, name + contact_ending, faces.tree);
   }
 
   void XdmfWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
   {
     const auto frames = animation_frames(mode, options);
-    Tree       list   = collection(mode.title, "Temporal");
+    GridList   list(mode.title, "animations");
     FieldFile  file("animations/" + mode.name + ".h5");
     for (std::size_t j = 0; j < frames.size(); ++j)
       {
         const AnimationFrame &frame = frames[j];
-        State                 state{text(mode.title, ", ", frame.time, " s"), {{body_grid, mesh_file({}), body_group, &bodies({}), {}}}};
+        Grid                  grid{text(mode.title, ", ", frame.time, " s"), mesh_file({}), body_group, &bodies({}), {}};
         std::ostringstream    dataset;
         dataset << "displacement/" << std::setw(3) << std::setfill('0') << j;
-        file.add(state.grids.front(), "displacement", dataset.str(),
+        file.add(grid, "displacement", dataset.str(),
                  vertex_values(bodies({}), model, mode.displacement, [&](const Complex &u) { return (frame.turn * u).real(); }));
-        list.add_child("Grid", grid_at(frame.time, state, "animations"));
+        list.add(frame.time, grid);
       }
     file.write(folder, mode.title, mesh_file({}));
-    write_document(folder, "animations/" + mode.name + ".xdmf", list);
+    write_document(folder, "animations/" + mode.name + ".xdmf", list.tree);
   }
 } // namespace Squeal

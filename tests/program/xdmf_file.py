@@ -11,33 +11,20 @@ CORNERS = {"Hexahedron": 8, "Quadrilateral": 4}
 
 @dataclasses.dataclass
 class Grid:
-    """Points n x 3, cells m x 8 or m x 4, fields on points and on cells."""
+    """Points n x 3, cells m x 8 or m x 4, fields on points and on cells; the time at which a list shows them."""
 
+    title: str
+    time: float
     points: np.ndarray
     cells: np.ndarray
     fields: dict
     cell_fields: dict
 
 
-@dataclasses.dataclass
-class State:
-    """Grids by their names, and the time at which a list shows them."""
-
-    title: str
-    time: float
-    grids: dict
-
-
-def states(path):
+def grids(path):
     """Of a list all, of a single mode the one that it has."""
     root = xml.etree.ElementTree.parse(path).find("Domain/Grid")
-    return [state_of(grid, path) for grid in (root.findall("Grid") if root.get("CollectionType") == "Temporal" else [root])]
-
-
-def state_of(element, path):
-    time = element.find("Time")
-    return State(element.get("Name"), float("nan") if time is None else float(time.get("Value")),
-                 {grid.get("Name"): grid_of(grid, path) for grid in element.findall("Grid")})
+    return [grid_of(grid, path) for grid in (root.findall("Grid") if root.get("CollectionType") == "Temporal" else [root])]
 
 
 def grid_of(element, path):
@@ -45,7 +32,9 @@ def grid_of(element, path):
     cells = values_of(topology.find("DataItem"), path)
     if cells.shape != (int(topology.get("NumberOfElements")), CORNERS[topology.get("TopologyType")]):
         raise ValueError(f"cells of the shape {cells.shape} in {path}")
-    grid = Grid(values_of(element.find("Geometry/DataItem"), path), cells, {}, {})
+    time = element.find("Time")
+    grid = Grid(element.get("Name"), float("nan") if time is None else float(time.get("Value")),
+                values_of(element.find("Geometry/DataItem"), path), cells, {}, {})
     for attribute in element.findall("Attribute"):
         values = values_of(attribute.find("DataItem"), path)
         if (values.ndim == 2 and values.shape[1] == 3) != (attribute.get("AttributeType") == "Vector"):

@@ -11,9 +11,10 @@ namespace Squeal
    * Writes fields as XDMF, which describes what the files of HDF5 beside it hold. All processes must call.
    *
    * Meshes are written once, with shared vertices: `modes/mesh.h5` has the bodies and the contact faces, `modes/mesh_disc.h5` and
-   * `modes/mesh_pins.h5` one component each. A mode is `modes/NAME.h5` with the fields, in single precision and compressed, and
-   * `modes/NAME.xdmf`. The amplitude is the root of the sum of |u|² over the components. Lists and animations are `NAME.xdmf` that refer to the same files, and `animations/NAME.h5`. The title of a mode is the
-   * name of its grid, and the attribute `mode` of its file.
+   * `modes/mesh_pins.h5` one component each. A mode is `modes/NAME.h5` with the fields, in single precision and compressed, described by
+   * `modes/NAME.xdmf`, and by `modes/NAME_contact.xdmf` for the contact faces. Lists, which come in such pairs too, and animations are
+   * `NAME.xdmf` that refer to the same files, and to `animations/NAME.h5`. The amplitude is the root of the sum of |u|² over the
+   * components. The title of a mode is the name of its grid, and the attribute `mode` of its file.
    */
   class XdmfWriter : public ModeFieldWriter
   {
@@ -39,18 +40,18 @@ namespace Squeal
     /// Cells with fields.
     struct Grid
     {
-      std::string        name;      ///< "disc and pins", "contact faces"
+      std::string        title;
       std::string        mesh_file; ///< of HDF5
       std::string        group;     ///< of that file
       const FieldMesh   *mesh;
       std::vector<Field> fields;
     };
 
-    /// Grids that are shown together.
-    struct State
+    /// A mode that has been written.
+    struct Shape
     {
-      std::string       title;
-      std::vector<Grid> grids;
+      Grid                bodies;
+      std::optional<Grid> contact_faces;
     };
 
   private:
@@ -58,13 +59,13 @@ namespace Squeal
     const FieldMesh &bodies(const std::optional<Component> &component);
 
     /// Writes the description of a mode, and keeps it for lists.
-    void keep(const std::string &name, const State &state);
+    void keep(const std::string &name, const Shape &shape);
 
     const Model                                  &model;
     const ResultFolder                           &folder;
     const FieldMesh                               contact_faces;
     std::vector<float>                            closed; ///< 1 for pairs in contact
     std::map<std::optional<Component>, FieldMesh> meshes;
-    std::map<std::string, State>                  written; ///< modes by their names
+    std::map<std::string, Shape>                  written; ///< modes by their names
   };
 } // namespace Squeal
