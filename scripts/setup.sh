@@ -4,6 +4,7 @@
 #
 #   scripts/setup.sh              what building, running and testing need
 #   scripts/setup.sh pictures     also what scripts/render_*.py need
+#   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.
@@ -19,6 +20,8 @@ packages=(g++ cmake ninja-build git
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev
           libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-h5py)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
+# Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
+packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
 packages_peers=(python3-petsc4py python3-slepc4py)
 
 complain() { printf '%s\n' "$*" >&2; }
@@ -169,9 +172,14 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
   additional=()
   for group in "$@"; do
     case $group in
-      pictures) additional+=("${packages_pictures[@]}") ;;
+      pictures)
+        if [[ -z $(missing_packages python3-paraview) ]]; then
+          packages_pictures=("${packages_pictures[@]/python3-vtk9/python3-paraview}")
+        fi
+        additional+=("${packages_pictures[@]}") ;;
+      paraview) additional+=("${packages_paraview[@]}") ;;
       peers) additional+=("${packages_peers[@]}") ;;
-      *) complain "usage: scripts/setup.sh [pictures] [peers]"; exit 2 ;;
+      *) complain "usage: scripts/setup.sh [pictures] [paraview] [peers]"; exit 2 ;;
     esac
   done
   install_packages "${packages[@]}" "${additional[@]}"

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/modes/verdict.h>
 #include <squeal/studies/mode_shapes.h>
 
 #include <algorithm>
@@ -118,7 +119,8 @@ namespace Squeal
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda)
   {
     const ModalQuantities mode = modal_quantities(lambda);
-    return text(to_string(label), ", ", decimal_text(mode.frequency), " Hz, divergence rate ", 100. * mode.divergence_rate, " %");
+    return text(to_string(label), ", ", decimal_text(mode.frequency), " Hz, divergence rate ", 100. * mode.divergence_rate, " %",
+                verdict_of(lambda) == Verdict::unstable ? ", unstable" : "");
   }
 
   AnimationOptions animation_options(const OutputParameters &output)

@@ -208,10 +208,12 @@ class InterruptedSweeps(ProgramTest):
         cls.reference = cls.run_scene("reference", *cls.SETTINGS)
         cls.duration = time.monotonic() - start
 
-    def assert_as_the_reference(self, output):
+    def assert_as_the_reference(self, output, is_killed=False):
+        """The same tables, and nothing beside the folder, but for what a killed run leaves for the next one to clear away."""
         for name in self.TABLES:
             self.assertEqual(read_table(self.folder / output / name), read_table(self.reference / name), name)
-        self.assertEqual([path.name for path in self.folder.glob(f"{output}.*")], [])
+        if not is_killed:
+            self.assertEqual([path.name for path in self.folder.glob(f"{output}.*")], [])
 
     def test_signals_at_random_moments(self):
         numbers, n_ended = random.Random(6), 0
@@ -228,8 +230,10 @@ class InterruptedSweeps(ProgramTest):
                 n_ended += 1
                 self.assertIn(process.returncode, (-ending, 128 + ending), message)
                 self.assertNotIn("error", message)
-                self.assertFalse((self.folder / "resumed").exists())
-            self.assert_as_the_reference("resumed")
+                # One that comes when the results are in their place finds them complete
+                if (self.folder / "resumed").exists():
+                    break
+            self.assert_as_the_reference("resumed", is_killed=process.returncode == -signal.SIGKILL)
             shutil.rmtree(self.folder / "resumed")
 
     def test_disks_that_are_full(self):

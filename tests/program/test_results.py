@@ -3,7 +3,9 @@
 import json
 import math
 import re
+import pathlib
 import shutil
+import subprocess
 import unittest
 import xml.etree.ElementTree
 
@@ -12,6 +14,7 @@ from vtu_file import VtuFile
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 VTU = "Output/Field format=VTU"
+PARAVIEW_MODES = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "paraview_modes.py"
 
 
 class Results(ProgramTest):
@@ -215,6 +218,23 @@ class CompactShapes(ProgramTest):
         vtu = VtuFile(files[0].parent / frames[2].get("file"))
         self.assertAlmostEqual(abs(grid.fields["displacement"]).max() / max(abs(u) for vector in vtu.fields["displacement"] for u in vector), 1,
                                delta=1e-6)
+
+    @unittest.skipUnless(shutil.which("pvpython") and shutil.which("xvfb-run"), "ParaView is not installed")
+    def test_paraview(self):
+        """A picture, a film and a session of the leading mode; the session opens again with its times."""
+        rows = read_table(self.compact / "complex_modes.csv")
+        leader = max(range(len(rows)), key=lambda i: float(rows[i]["growth rate [1/s]"]))
+        picture, film, session = (self.folder / name for name in ("pictures", "mode.gif", "mode.pvsm"))
+        mode = ("--mode", str(leader + 1), "--width", "320")
+        for arguments in ((*mode, "--pictures", picture), (*mode, "--view", "faces", "--pictures", self.folder / "faces"),
+                          (*mode, "--film", film, "--periods", "1"), (*mode, "--state", session)):
+            process = subprocess.run([PARAVIEW_MODES, self.compact, *arguments], capture_output=True, text=True, check=False)
+            self.assertEqual(process.returncode, 0, process.stderr[-2000:])
+        path, = picture.iterdir()
+        self.assertTrue(path.name.startswith(f"complex_{leader + 1:03d}_"))
+        self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(film.read_bytes()[:6], b"GIF89a")
+        self.assertIn("ProgrammableFilter", session.read_text(encoding="utf-8"))
 
     def test_size(self):
         """The mesh once, shared vertices, single precision."""

@@ -7,7 +7,7 @@
 
 namespace Squeal
 {
-  /// What a mode file says of a complex mode: "A0-4 +, 2353 Hz, divergence rate 0.6798 %".
+  /// What a mode file says of a complex mode: "A0-4 +, 2353 Hz, divergence rate 0.6798 %, unstable".
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda);
 
   /// How the parameters want modes to be animated.

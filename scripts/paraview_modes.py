@@ -1,0 +1,150 @@
+#!/usr/bin/env pvpython
+"""Shows modes of a run in ParaView, as a session to open there, as pictures, or as a film.
+
+    scripts/paraview_modes.py RESULTS --state FILE.pvsm                   all modes, to be opened with: paraview FILE.pvsm
+    scripts/paraview_modes.py RESULTS --mode A0-4 --state FILE.pvsm       a mode that moves
+    scripts/paraview_modes.py RESULTS [--mode MODE] --pictures FOLDER     a picture of each mode, or of those chosen
+    scripts/paraview_modes.py RESULTS --mode MODE --film FILE.gif         the motion, with its growth
+
+Of all modes, the buttons for the time step through them by frequency [Hz], warped by the real part. Of one mode they play
+--periods of Re(phi e^(lambda t)), so that a growing mode grows; the largest displacement of all is drawn as --size of the disc's radius.
+MODE is a row of complex_modes.csv, counted from 1, or a label; of several modes with that label the one that grows most.
+Disc and pins have the colours of the amplitude; the title says mode, frequency, damping ratio and verdict. Views are iso, top, side
+and below; and faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces.
+
+Needs shapes as XDMF (Output/Field format), and Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview);
+without a screen it starts itself again under xvfb-run.
+"""
+
+import argparse
+import csv
+import math
+import os
+import pathlib
+import re
+import shutil
+import sys
+
+from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_one, write_film
+
+
+class ModesError(Exception):
+    """What the user reads: the reason and what to change."""
+
+
+def rows_of(results):
+    """Rows of complex_modes.csv."""
+    try:
+        with open(results / "complex_modes.csv", newline="", encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+    except OSError:
+        raise ModesError(f"{results} holds no complex_modes.csv: name the folder of a stability run") from None
+
+
+def title_of(row):
+    """"A0-4 +,  2353 Hz,  damping ratio -1.36 %,  unstable"."""
+    verdict = row.get("verdict") or ("unstable" if row["unstable [-]"] == "1" else "not unstable")
+    ratio = float(row["effective damping ratio -2R/omega [%]"])
+    return f"{row['label']},  {float(row['frequency [Hz]']):.1f} Hz,  damping ratio {ratio:.3g} %,  {verdict}"
+
+
+def files_of(results):
+    """Files of shapes by rows of complex_modes.csv."""
+    found = {int(match[1]): path for path in sorted((results / "modes").glob("complex_*.xdmf"))
+             if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
+    if not found:
+        raise ModesError(f"{results} holds no shapes of complex modes as XDMF: run again with Output/Mode shapes = all and "
+                         "Output/Field format = XDMF")
+    return found
+
+
+def chosen(name, rows, files):
+    """Number of the row that the user means."""
+    if name.isdigit():
+        number = int(name)
+        if not 1 <= number <= len(rows):
+            raise ModesError(f"--mode {name}: complex_modes.csv has rows 1 to {len(rows)}")
+    else:
+        own = [number for number, row in enumerate(rows, start=1) if name in (row["label"], row["label"].split(" ")[0])]
+        if not own:
+            raise ModesError(f"--mode {name}: no mode has that label; there are {', '.join(sorted({row['label'] for row in rows}))}")
+        number = max(own, key=lambda one: float(rows[one - 1]["growth rate [1/s]"]))
+    if number not in files:
+        raise ModesError(f"--mode {name}: the shape of row {number} was not written; run again with Output/Mode shapes = all")
+    return number
+
+
+def ensure_display():
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return
+    if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):
+        sys.exit("There is no X display, and xvfb-run is missing: apt-get install xvfb xauth (or scripts/setup.sh paraview)")
+    os.environ["SQUEAL_RENDER_UNDER_XVFB"] = "1"
+    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24 -noreset", "pvpython", *sys.argv])
+
+
+def parsed():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", metavar="RESULTS", type=pathlib.Path)
+    parser.add_argument("--mode", action="append", metavar="MODE", help="a row of complex_modes.csv or a label; for pictures several times")
+    parser.add_argument("--state", type=pathlib.Path, metavar="FILE.pvsm")
+    parser.add_argument("--pictures", type=pathlib.Path, metavar="FOLDER")
+    parser.add_argument("--film", type=pathlib.Path, metavar="FILE.gif")
+    parser.add_argument("--view", choices=tuple(VIEWS), default="iso", help="(default: %(default)s)")
+    parser.add_argument("--size", type=float, default=0.08, help="of the largest displacement, over the radius of the disc (default: %(default)s)")
+    parser.add_argument("--periods", type=int, default=2, help="of a mode that moves (default: %(default)s)")
+    parser.add_argument("--width", type=int, default=WIDTH, help="of pictures [pixels] (default: %(default)s)")
+    arguments = parser.parse_args()
+    if not (arguments.state or arguments.pictures or arguments.film):
+        parser.error("nothing to do: give --state, --pictures or --film")
+    if arguments.film and len(arguments.mode or ()) != 1:
+        parser.error("--film shows one mode: give --mode")
+    if arguments.state and len(arguments.mode or ()) > 1:
+        parser.error("--state shows all modes, or one")
+    if arguments.view == "faces" and (arguments.film or arguments.state and arguments.mode):
+        parser.error("--view faces is of modes that do not move")
+    if arguments.periods < 1 or arguments.width < 1 or not arguments.size > 0:
+        parser.error("--periods, --width and --size are positive")
+    return arguments
+
+
+def main():
+    arguments = parsed()
+    results = arguments.results.resolve()
+    try:
+        rows, files = rows_of(results), files_of(results)
+        numbers = [chosen(name, rows, files) for name in arguments.mode or ()]
+        ensure_display()
+        try:
+            from paraview import simple
+        except ImportError:
+            raise ModesError("ParaView is missing: apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
+        simple._DisableFirstRenderCameraReset()
+        titles = {number: title_of(rows[number - 1]) for number in files}
+        moving = len(numbers) == 1 and (arguments.state or arguments.film)
+        if moving:
+            number, = numbers
+            scene, times = scene_of_one(simple, results, files[number], rows[number - 1], titles[number], arguments)
+            if arguments.film:
+                write_film(scene, times[:-1] if float(rows[number - 1]["growth rate [1/s]"]) == 0 else times, arguments.film)
+                print(arguments.film)
+        else:
+            scene, times = scene_of_all(simple, results, titles, files, arguments)
+        if arguments.state:
+            simple.SaveState(str(arguments.state))
+            print(arguments.state)
+        if arguments.pictures:
+            if moving:
+                simple.ResetSession()
+                scene, times = scene_of_all(simple, results, titles, files, arguments)
+            arguments.pictures.mkdir(parents=True, exist_ok=True)
+            for number in numbers or sorted(files):
+                path = arguments.pictures / f"{files[number].stem}.png"
+                scene.save(path, times[number])
+                print(path)
+    except (ModesError, ImportError) as error:
+        sys.exit(f"error: {error}")
+
+
+if __name__ == "__main__":
+    main()
