@@ -44,13 +44,13 @@ namespace Squeal
     }
 
     /// As many as a Table has on disk.
-    constexpr int significant_digits = 12;
+    constexpr int digits_of_numbers = 12;
 
     /// Rows of `points.csv`.
     std::string csv_rows(const int line, const ChartPoint &point, const double largest_circular_frequency)
     {
       std::ostringstream text;
-      text << std::setprecision(significant_digits);
+      text << std::setprecision(digits_of_numbers);
       for (std::size_t j = 0; j < point.lambda.size(); ++j)
         if (point.lambda[j].imag() <= largest_circular_frequency)
           {

@@ -149,8 +149,12 @@ namespace Squeal
         reactions_re.push_back(scale * r.real());
         reactions_im.push_back(scale * r.imag());
       }
-    write_contact("modes/" + mode.name + "_contact.vtu",
-                  {{&reactions_re, "normal_reaction_real"}, {&reactions_im, "normal_reaction_imag"}, {&closed, "closed"}});
+    std::vector<std::pair<const std::vector<double> *, const char *>> fields = {{&reactions_re, "normal_reaction_real"},
+                                                                                {&reactions_im, "normal_reaction_imag"},
+                                                                                {&closed, "closed"}};
+    if (!mode.energy_input.empty())
+      fields.emplace_back(&mode.energy_input, "energy_input");
+    write_contact("modes/" + mode.name + "_contact.vtu", fields);
   }
 
   void VtuWriter::write_mode(const RealModeField &mode)

@@ -253,6 +253,8 @@ namespace Squeal
           }
         file.add(faces, "normal_reaction_real", "normal_reaction_real", re);
         file.add(faces, "normal_reaction_imag", "normal_reaction_imag", im);
+        if (!mode.energy_input.empty())
+          file.add(faces, "energy_input", "energy_input", {mode.energy_input.begin(), mode.energy_input.end()});
         faces.fields.push_back({"closed", mesh_file({}), closed_dataset, 1});
         shape.contact_faces = faces;
       }

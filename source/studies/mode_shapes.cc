@@ -41,7 +41,11 @@ namespace Squeal
       return text("; the fastest grows by a factor of ", std::exp(exponent * periods), ", and of e in ", 1. / exponent, " periods");
     }
 
-    void write_complex_modes(const Linearisation &linearisation, const FrictionModes &friction, ModeFieldWriter &writer, Run &run)
+    void write_complex_modes(const Linearisation &linearisation,
+                             const FrictionModes &friction,
+                             const PowerBalances &balances,
+                             ModeFieldWriter     &writer,
+                             Run                 &run)
     {
       const OutputParameters &output = run.parameters.output;
       const ComplexModes     &modes  = friction.modes;
@@ -60,6 +64,8 @@ namespace Squeal
           ModeField field  = mode_field(linearisation, file_name("complex", j, label), modes.lambda[j], view(*modes.real_part, column, 1),
                                         view(*modes.imaginary_part, column, 1));
           field.title      = mode_title(label, modes.lambda[j]);
+          if (const auto balance = balances.find(column); balance != balances.end())
+            field.energy_input = energy_input(linearisation, balance->second);
           writer.write_mode(field);
           list.push_back({field.name, frequency});
           if (friction.unstable[j] && output.animation_frames > 0)
@@ -128,14 +134,14 @@ namespace Squeal
     return {output.animation_frames, output.animation_periods, output.animation_growth};
   }
 
-  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
+  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run)
   {
     const OutputParameters &output        = run.parameters.output;
     const Linearisation    &linearisation = frictionless.linearisation;
     const Scene            &scene         = *linearisation.scene;
     const auto              writer = mode_field_writer(output.format, *scene.model, scene.interface, linearisation.closed, run.folder());
     if (output.fields != FieldSelection::none)
-      write_complex_modes(linearisation, friction, *writer, run);
+      write_complex_modes(linearisation, friction, balances, *writer, run);
     if (output.real_fields)
       write_real_modes(frictionless, *writer, run);
     if (output.component_fields)

@@ -174,12 +174,14 @@ namespace Squeal
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     if (!friction.modes.real_values.empty())
       run.store_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
+    const PowerBalances balances = power_balances(linearisation, friction, run);
+    write_power_table(linearisation, friction, balances, run);
     if (is_paper_scene(parameters))
       write_table_one(frictionless, friction, run);
 
     if (sliding && parameters.output.fields != FieldSelection::none)
       write_sliding_fields(linearisation, run);
-    write_mode_shapes(frictionless, friction, run);
+    write_mode_shapes(frictionless, friction, balances, run);
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });

@@ -92,7 +92,7 @@ class Results(ProgramTest):
             self.assertEqual(len(fields), 2)
             volume, contact = sorted(fields, key=lambda path: path.name.endswith("_contact.vtu"))
             self.assertEqual(arrays(volume), {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
-            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag", "closed"})
+            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag", "closed", "energy_input"})
             self.assertEqual([set(VtuFile(path).cell_types) for path in (volume, contact)], [{12}, {9}])
 
             animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
@@ -106,6 +106,23 @@ class Results(ProgramTest):
                 self.assertEqual(arrays(animation.parent / frame.get("file")), {"displacement"})
         self.assertEqual(len(list((self.results / "modes").iterdir())), 2 * len(unstable))
         self.assertEqual(len(list((self.results / "animations").glob("*.pvd"))), len(unstable))
+
+    def test_energy(self):
+        """Of each growing mode all bodies together add up to its divergence rate; pins have friction, the disc has none by itself."""
+        rows = read_table(self.results / "energy.csv")
+        modes = read_table(self.results / "complex_modes.csv")
+        growing = [number for number, row in enumerate(modes, start=1) if row["unstable [-]"] == "1"]
+        self.assertEqual(sorted({int(row["mode [-]"]) for row in rows}), growing)
+        for number in growing:
+            own = [row for row in rows if int(row["mode [-]"]) == number]
+            self.assertEqual([row["body"] for row in own], ["disc", "pin_top_1", "pin_top_2", "pin_bottom_1", "pin_bottom_2"])
+            rate = float(modes[number - 1]["divergence rate [%]"])
+            self.assertAlmostEqual(sum(float(row["all of it [%]"]) for row in own), rate, delta=1e-8 * max(rate, 1e-4))
+            self.assertEqual((own[0]["friction [%]"], float(own[0]["damping [%]"])), ("", 0))
+            for row in own[1:]:
+                self.assertAlmostEqual(float(row["friction into the disc [%]"]) + float(row["friction into the pin [%]"]),
+                                       float(row["friction [%]"]), delta=1e-9 * rate)
+        self.assertLess(self.record["quantities"]["largest difference of a divergence rate from what its powers add up to [-]"], 1e-10)
 
     def test_parameters_repeat_the_run(self):
         again = self.run_scene("again", file="results/parameters.prm")
@@ -172,7 +189,7 @@ class CompactShapes(ProgramTest):
                 faces, = self.grids(self.compact / "modes" / f"{name}_contact.xdmf")
                 self.assertEqual(bodies.title, faces.title)
                 self.assertEqual(set(bodies.fields), {"displacement_real", "displacement_imag", "amplitude"})
-                self.assertEqual(set(faces.fields), {"normal_reaction_real", "normal_reaction_imag", "closed"})
+                self.assertEqual(set(faces.fields), {"normal_reaction_real", "normal_reaction_imag", "closed", "energy_input"})
                 self.assert_same(bodies, self.vtu / "modes" / f"{name}.vtu")
                 self.assert_same(faces, contact)
 

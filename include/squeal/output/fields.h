@@ -21,6 +21,7 @@ namespace Squeal
     std::vector<std::complex<double>> displacement; ///< on the free dofs
     std::vector<std::complex<double>> reactions;    ///< r_n of each pair of contact nodes [N per unit amplitude]; compression negative
     std::string                       title = {};   ///< what its files say of the mode
+    std::vector<double> energy_input        = {};   ///< what each pair adds to the divergence rate, over its area [1/m²]; empty: not known
   };
 
   /// A mode without friction, of the coupled bodies or of one component, as the field writer needs it.
@@ -68,8 +69,8 @@ namespace Squeal
    * Writes shapes of modes for ParaView. All processes must call.
    *
    * On the bodies are `displacement_real`, `displacement_imag` and `amplitude`, scaled so that the largest modulus of a displacement is one, with the
-   * cell field `component`; on the contact faces `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, and `closed` (1: the
-   * node belongs to S_0).
+   * cell field `component`; on the contact faces `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, `closed` (1: the
+   * node belongs to S_0) and, where it is known, `energy_input` [1/m²].
    */
   class ModeFieldWriter
   {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/output/fields.h>
-#include <squeal/studies/friction_modes.h>
+#include <squeal/studies/power_results.h>
 
 #include <string>
 
@@ -15,8 +15,8 @@ namespace Squeal
 
   /**
    * The fields that the parameters choose, in their format, as steps of the run: complex modes with animations of unstable ones, real
-   * coupled modes, component modes; and of each kind a list through which ParaView steps. Files bear the numbers of the rows of
+   * coupled modes, component modes; where the energy of growing ones enters; and of each kind a list through which ParaView steps. Files bear the numbers of the rows of
    * `complex_modes.csv`, `real_modes.csv` and `component_modes.csv`.
    */
-  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run);
+  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run);
 } // namespace Squeal
