@@ -10,7 +10,8 @@ Of all modes, the buttons for the time step through them by frequency [Hz], warp
 --periods of Re(phi e^(lambda t)), so that a growing mode grows; the largest displacement of all is drawn as --size of the disc's radius.
 MODE is a row of complex_modes.csv, counted from 1, or a label; of several modes with that label the one that grows most.
 Disc and pins have the colours of the amplitude; the title says mode, frequency, damping ratio and verdict. Views are iso, top, side
-and below; and faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces.
+and below; faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces; and
+energy: the same faces with what they add to the divergence rate of a growing mode.
 
 Needs shapes as XDMF (Output/Field format), and Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview);
 without a screen it starts itself again under xvfb-run.
@@ -25,7 +26,7 @@ import re
 import shutil
 import sys
 
-from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_one, write_film
+from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_energy, scene_of_one, write_film
 
 
 class ModesError(Exception):
@@ -101,8 +102,8 @@ def parsed():
         parser.error("--film shows one mode: give --mode")
     if arguments.state and len(arguments.mode or ()) > 1:
         parser.error("--state shows all modes, or one")
-    if arguments.view == "faces" and (arguments.film or arguments.state and arguments.mode):
-        parser.error("--view faces is of modes that do not move")
+    if arguments.view in ("faces", "energy") and (arguments.film or arguments.state and (arguments.mode or arguments.view == "energy")):
+        parser.error(f"--view {arguments.view} is of modes that do not move: use --pictures")
     if arguments.periods < 1 or arguments.width < 1 or not arguments.size > 0:
         parser.error("--periods, --width and --size are positive")
     return arguments
@@ -121,6 +122,17 @@ def main():
             raise ModesError("ParaView is missing: apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
         simple._DisableFirstRenderCameraReset()
         titles = {number: title_of(rows[number - 1]) for number in files}
+        if arguments.view == "energy":
+            growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
+            if set(numbers) - set(growing) or not growing:
+                raise ModesError("--view energy is of growing modes: name one with --mode" if growing or numbers else "no mode grows")
+            arguments.pictures.mkdir(parents=True, exist_ok=True)
+            for number in growing:
+                path = arguments.pictures / f"{files[number].stem}_energy.png"
+                scene_of_energy(simple, results, files[number], titles[number], arguments).save(path)
+                print(path)
+                simple.ResetSession()
+            return
         moving = len(numbers) == 1 and (arguments.state or arguments.film)
         if moving:
             number, = numbers

@@ -8,7 +8,7 @@ import pathlib
 import tempfile
 
 VIEWS = {"iso": ((0.62, -0.62, 0.62), (0, 0, 1)), "top": ((0, 0, 1), (0, 1, 0)), "side": ((1, -0.08, 0.12), (0, 0, 1)),
-         "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye, and up
+         "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0)), "energy": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye, and up
 WIDTH, ASPECT = 1600, 0.625  # of pictures [pixels], height over width
 INK, GREY, EDGES = (0.13, 0.13, 0.15), (0.6, 0.6, 0.62), (0.35, 0.35, 0.38)
 CLOSER = 1.25  # than with a sphere about all in sight
@@ -91,9 +91,12 @@ class Scene:
         self.simple.ColorBy(shown, None)
         shown.AmbientColor = shown.DiffuseColor = GREY
 
-    def show_faces(self, bodies, faces):
-        """The upper pins' contact faces in the colours of the normal reaction, and the edges of these pins at rest."""
+    def show_faces(self, bodies, faces, field, caption):
+        """The upper pins' contact faces in the colours of a field, and the edges of these pins at rest."""
         simple = self.simple
+        faces.UpdatePipeline(max(faces.TimestepValues, default=0))
+        if field not in faces.PointData.keys():
+            raise ValueError(f"{faces.FileName[0]} has no field {field}: that is known of growing modes")
         bounds = faces.GetDataInformation().GetBounds()
         middle = [0, 0, (bounds[4] + bounds[5]) / 2]
         pins = simple.Threshold(Input=bodies)
@@ -107,10 +110,10 @@ class Scene:
         shown.Representation = "Surface With Edges"
         shown.EdgeColor = EDGES
         shown.Ambient, shown.Diffuse = 1, 0  # a face that looks away from the light has its colours
-        simple.ColorBy(shown, ("POINTS", "normal_reaction_real"))
-        low, high = faces.PointData["normal_reaction_real"].GetRange(0)
+        simple.ColorBy(shown, ("POINTS", field))
+        low, high = faces.PointData[field].GetRange(0)
         limit = max(abs(low), abs(high)) or 1
-        self.colours("normal_reaction_real", RED_BLUE, -limit, limit, shown, "normal reaction, real part [N]; red: less pressure", "%.1e")
+        self.colours(field, RED_BLUE, -limit, limit, shown, caption, "%.1e")
 
     def colours(self, field, anchors, low, high, shown, caption, number_format):
         table = self.simple.GetColorTransferFunction(field)
@@ -145,7 +148,7 @@ class Scene:
         self.view.CameraPosition = [c + distance * d / length for c, d in zip(centre, toward)]
         self.view.CameraViewUp = up
         self.view.ResetCamera(True)
-        self.view.GetActiveCamera().Dolly(CLOSER)
+        self.view.GetActiveCamera().Dolly(0.9 if self.view_name in ("faces", "energy") else CLOSER)
 
     def save(self, path, time=None):
         if time is not None:
@@ -158,13 +161,25 @@ def scene_of_all(simple, results, titles, files, arguments):
     scene = Scene(simple, results, arguments.view, arguments.width)
     reader = scene.open(results / "modes.xdmf")
     if arguments.view == "faces":
-        scene.show_faces(reader, scene.open(results / "modes_contact.xdmf"))
+        scene.show_faces(reader, scene.open(results / "modes_contact.xdmf"), "normal_reaction_real",
+                         "normal reaction, real part [N]; red: less pressure")
     else:
         scene.show_bodies(reader, "displacement_real", scene.scale(reader, arguments.size))
     scene.show_title(reader, [titles[number] for number in sorted(files)])
     simple.GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
     scene.look()
     return scene, dict(zip(sorted(files), reader.TimestepValues))
+
+
+def scene_of_energy(simple, results, file, title, arguments):
+    """Where the energy of a growing mode enters."""
+    scene = Scene(simple, results, arguments.view, arguments.width)
+    reader = scene.open(file)
+    scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.xdmf")), "energy_input",
+                     "what friction and damping add to the divergence rate, over the area [1/m2]; red feeds")
+    scene.show_title(reader, [title])
+    scene.look()
+    return scene
 
 
 def scene_of_one(simple, results, file, row, title, arguments):

@@ -251,6 +251,11 @@ class CompactShapes(ProgramTest):
         self.assertTrue(path.name.startswith(f"complex_{leader + 1:03d}_"))
         self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
         self.assertEqual(film.read_bytes()[:6], b"GIF89a")
+        energy = self.folder / "energy"
+        process = subprocess.run([PARAVIEW_MODES, self.compact, "--view", "energy", "--width", "320", "--pictures", energy], capture_output=True,
+                                 text=True, check=False)
+        self.assertEqual(process.returncode, 0, process.stderr[-2000:])
+        self.assertEqual(len(list(energy.iterdir())), sum(row["unstable [-]"] == "1" for row in rows))
         self.assertIn("ProgrammableFilter", session.read_text(encoding="utf-8"))
 
     def test_size(self):
