@@ -19,7 +19,6 @@ without a screen it starts itself again under xvfb-run.
 
 import argparse
 import csv
-import math
 import os
 import pathlib
 import re
@@ -109,52 +108,67 @@ def parsed():
     return arguments
 
 
+def write_energy_pictures(simple, results, numbers, rows, files, titles, arguments):
+    """Of the modes chosen, or of all that grow and have shapes."""
+    growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
+    if not growing or set(numbers) - set(growing):
+        raise ModesError("--view energy is of growing modes" + (": name one with --mode" if numbers else ", and none grows"))
+    arguments.pictures.mkdir(parents=True, exist_ok=True)
+    for number in growing:
+        path = arguments.pictures / f"{files[number].stem}_energy.png"
+        scene_of_energy(simple, results, files[number], titles[number], arguments).save(path)
+        print(path)
+        simple.ResetSession()
+
+
+def write_pictures(simple, results, numbers, files, titles, arguments):
+    """Of the modes chosen, or of all that have shapes."""
+    scene, times = scene_of_all(simple, results, titles, files, arguments)
+    arguments.pictures.mkdir(parents=True, exist_ok=True)
+    for number in numbers or sorted(files):
+        path = arguments.pictures / f"{files[number].stem}.png"
+        scene.save(path, times[number])
+        print(path)
+
+
+def write_session_and_film(simple, results, numbers, rows, files, titles, arguments):
+    """Of one mode that moves, or a session of all."""
+    if numbers:
+        number, = numbers
+        scene, times = scene_of_one(simple, results, files[number], rows[number - 1], titles[number], arguments)
+        if arguments.film:
+            is_steady = float(rows[number - 1]["growth rate [1/s]"]) == 0
+            write_film(scene, times[:-1] if is_steady else times, arguments.film)
+            print(arguments.film)
+    else:
+        scene_of_all(simple, results, titles, files, arguments)
+    if arguments.state:
+        simple.SaveState(str(arguments.state))
+        print(arguments.state)
+    simple.ResetSession()
+
+
 def main():
     arguments = parsed()
     results = arguments.results.resolve()
     try:
         rows, files = rows_of(results), files_of(results)
         numbers = [chosen(name, rows, files) for name in arguments.mode or ()]
+        titles = {number: title_of(rows[number - 1]) for number in files}
         ensure_display()
         try:
             from paraview import simple
         except ImportError:
             raise ModesError("ParaView is missing: apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
         simple._DisableFirstRenderCameraReset()
-        titles = {number: title_of(rows[number - 1]) for number in files}
-        if arguments.view == "energy":
-            growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
-            if set(numbers) - set(growing) or not growing:
-                raise ModesError("--view energy is of growing modes: name one with --mode" if growing or numbers else "no mode grows")
-            arguments.pictures.mkdir(parents=True, exist_ok=True)
-            for number in growing:
-                path = arguments.pictures / f"{files[number].stem}_energy.png"
-                scene_of_energy(simple, results, files[number], titles[number], arguments).save(path)
-                print(path)
-                simple.ResetSession()
-            return
-        moving = len(numbers) == 1 and (arguments.state or arguments.film)
-        if moving:
-            number, = numbers
-            scene, times = scene_of_one(simple, results, files[number], rows[number - 1], titles[number], arguments)
-            if arguments.film:
-                write_film(scene, times[:-1] if float(rows[number - 1]["growth rate [1/s]"]) == 0 else times, arguments.film)
-                print(arguments.film)
-        else:
-            scene, times = scene_of_all(simple, results, titles, files, arguments)
-        if arguments.state:
-            simple.SaveState(str(arguments.state))
-            print(arguments.state)
+        if arguments.state or arguments.film:
+            write_session_and_film(simple, results, numbers, rows, files, titles, arguments)
         if arguments.pictures:
-            if moving:
-                simple.ResetSession()
-                scene, times = scene_of_all(simple, results, titles, files, arguments)
-            arguments.pictures.mkdir(parents=True, exist_ok=True)
-            for number in numbers or sorted(files):
-                path = arguments.pictures / f"{files[number].stem}.png"
-                scene.save(path, times[number])
-                print(path)
-    except (ModesError, ImportError) as error:
+            if arguments.view == "energy":
+                write_energy_pictures(simple, results, numbers, rows, files, titles, arguments)
+            else:
+                write_pictures(simple, results, numbers, files, titles, arguments)
+    except (ModesError, ImportError, ValueError) as error:
         sys.exit(f"error: {error}")
 
 

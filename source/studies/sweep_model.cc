@@ -163,6 +163,7 @@ namespace Squeal
       record_conditioning(model.frictionless, modes_in_band(model, **last), 2. * options.tolerance, run);
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
-                             ": ", sweep.why_stopped, "; what is written meets it. Raise Sweep/Maximum basis or Sweep/Tolerance"));
+                             ": ", sweep.why_stopped,
+                             "; what is written meets it. Raise Sweep/Tolerance, or Sweep/Maximum basis if that is in the way"));
   }
 } // namespace Squeal
