@@ -1,8 +1,12 @@
 """What the program says: of wrong values and files, of parameters that a run does not use, and of its results."""
 
+import os
+import pathlib
 import re
+import subprocess
+import sys
 
-from program import ProgramTest, read_table
+from program import EXECUTABLE, ProgramTest, read_table
 
 # The default disc and pins on a mesh of some thousand dofs
 COARSE = ["Geometry/Nodes per pin face=7", "Geometry/Element size=0.04", "Geometry/Pin layers=2", "Geometry/Disc layers=2",
@@ -28,6 +32,13 @@ class Words(ProgramTest):
         process = self.call("scene.prm", "--output", output, *settings)
         self.assertEqual((process.returncode, process.stderr), (0, ""))
         return process.stdout
+
+    def test_reference_of_parameters(self):
+        """doc/parameters.md is what the program says."""
+        script = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "parameter_reference.py"
+        process = subprocess.run([sys.executable, "-B", script, "--check"], capture_output=True, text=True, check=False,
+                                 env={**os.environ, "SQUEAL": str(EXECUTABLE)})
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
 
     # ------------------------------------------------------------------ values
 

@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Writes doc/parameters.md from what the program says of its parameters.
+
+    scripts/parameter_reference.py            # writes the page
+    scripts/parameter_reference.py --check    # says whether it is as it would be written; exit status 1 if not
+
+The environment variable SQUEAL names the program (default: build/release/squeal).
+"""
+
+import argparse
+import dataclasses
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+SOURCE = pathlib.Path(__file__).resolve().parents[1]
+PAGE = SOURCE / "doc" / "parameters.md"
+SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal"))
+TITLE = ("# Listing of Parameters", "# ---------------------")  # deal.II's
+ACCEPTS, UNITS = " Accepts ", " Units: "
+HEAD = """# Parameters
+
+Every parameter of a `.prm` file with its default, as `squeal --print-parameters` prints them; after `PRM --print-parameters` the values are those of
+a run. `--set "Section/Name=value"` overrides one. This page is written by `scripts/parameter_reference.py`.
+"""
+
+
+@dataclasses.dataclass
+class Parameter:
+    section: str
+    name: str
+    default: str
+    meaning: str
+    unit: str
+    accepts: str
+
+
+def parameter(section, name, default, words):
+    """Words are the meaning, then the units, then what is accepted."""
+    text, _, accepts = " ".join(words).partition(ACCEPTS)
+    meaning, _, unit = text.partition(UNITS)
+    unit = unit.rstrip(".")
+    return Parameter(section, name, default, meaning, "" if unit == "none" else unit, accepts.rstrip("."))
+
+
+def parameters(listing):
+    """Those in what the program prints, in its order."""
+    section, words, found = "", [], []
+    for line in map(str.strip, listing.splitlines()):
+        if line.startswith("subsection "):
+            section, words = line.removeprefix("subsection "), []
+        elif line in TITLE:
+            words = []
+        elif line.startswith("#"):
+            words.append(line.lstrip("# "))
+        elif match := re.match(r"set (.*?)\s*=\s*(.*)$", line):
+            found.append(parameter(section, match[1], match[2], words))
+            words = []
+        elif not line:
+            words = []
+    return found
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def page(listing):
+    text, section = HEAD, None
+    for one in parameters(listing):
+        if one.section != section:
+            section = one.section
+            text += f"\n## {section or 'Without a section'}\n\n| parameter | default | unit | meaning | accepts |\n|---|---|---|---|---|\n"
+        default = f"`{one.default}`" if one.default else ""
+        text += f"| {cell(one.name)} | {cell(default)} | {cell(one.unit)} | {cell(one.meaning)} | {cell(one.accepts)} |\n"
+    return text
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--check", action="store_true", help="writes nothing")
+    arguments = parser.parse_args()
+    written = page(subprocess.run([SQUEAL, "--print-parameters"], capture_output=True, text=True, check=True).stdout)
+    if not arguments.check:
+        PAGE.write_text(written, encoding="utf-8")
+    elif not PAGE.exists() or PAGE.read_text(encoding="utf-8") != written:
+        sys.exit(f"{PAGE.relative_to(SOURCE)} is not what the program says of its parameters: call scripts/parameter_reference.py")
+
+
+if __name__ == "__main__":
+    main()
