@@ -3,7 +3,8 @@
 #
 #   scripts/run.sh [PRM]... [-- OPTION...]
 #
-# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots. Options after
+# Without PRM, runs prm/disc_pins.prm. Results of x.prm go to results/x, plots of them to results/x/plots, and a page for the browser
+# with all of it to results/x/report.html. Options after
 # -- are handed to squeal:
 #
 #   scripts/run.sh prm/disc_pins.prm -- --set "Operation/Friction coefficient=0.3"
@@ -35,12 +36,13 @@ options=("$@")
 # What tells the results of one run from those of another; nothing where there are none.
 state_of() { stat --format '%i %y' "$1/run.json" 2>/dev/null || true; }
 
-# Plots only add to the results: where they cannot be drawn, the run has succeeded all the same.
+# Plots and report only add to the results: where they cannot be made, the run has succeeded all the same.
 draw_plots()
 {
   local python
   if python=$(command -v /usr/bin/python3 || command -v python3); then
     "$python" scripts/plot_results.py "$1" || true
+    "$python" scripts/report.py "$1" || true
   else
     complain "No plots: Python is missing. Install python3-matplotlib, then: scripts/plot_results.py $1"
   fi

@@ -18,7 +18,8 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev
-          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-h5py)
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-h5py
+          python3-plotly libjs-three libjs-jquery libjs-jquery-datatables)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 # Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)

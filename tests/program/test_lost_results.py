@@ -378,7 +378,7 @@ class FullDisks(LostResults):
         shutil.copytree(self.results, disk / "results")
         before = contents(disk)
         process = self.start(str(disk / "results"), LONG[0])
-        self.assert_not_written(process, "modes/", "No space left on device", "copy")
+        self.assert_not_written(process, str(disk / "results") + "/", "No space left on device", "copy")
         self.assertEqual(contents(disk), before)
 
     def test_mounted_folder(self):

@@ -1,0 +1,1 @@
+"""What scripts/report.py writes into its page."""
