@@ -18,7 +18,7 @@ from extremes import oracle, scaling
 from extremes.cases import BASE, RIGHT
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal"))
+SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal")).resolve()
 
 # Largest relative difference of an eigenvalue from the oracle's
 TOLERANCE = 1e-6

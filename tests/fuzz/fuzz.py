@@ -27,7 +27,7 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-os.environ.setdefault("SQUEAL", str(HERE.parents[1] / "build/release/squeal"))
+os.environ["SQUEAL"] = os.path.abspath(os.environ.get("SQUEAL", HERE.parents[1] / "build/release/squeal"))
 sys.path.insert(0, str(HERE.parent / "program"))
 
 from inputs import Case, Inputs, settings  # noqa: E402 (found by the line before)

@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import unittest
 
-EXECUTABLE = os.environ["SQUEAL"]
+EXECUTABLE = os.path.abspath(os.environ["SQUEAL"])
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 
