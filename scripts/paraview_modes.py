@@ -108,7 +108,7 @@ def parsed():
     return arguments
 
 
-def write_energy_pictures(simple, results, numbers, rows, files, titles, arguments):
+def write_energy_pictures(simple, numbers, rows, files, titles, arguments):
     """Of the modes chosen, or of all that grow and have shapes."""
     growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
     if not growing or set(numbers) - set(growing):
@@ -116,7 +116,7 @@ def write_energy_pictures(simple, results, numbers, rows, files, titles, argumen
     arguments.pictures.mkdir(parents=True, exist_ok=True)
     for number in growing:
         path = arguments.pictures / f"{files[number].stem}_energy.png"
-        scene_of_energy(simple, results, files[number], titles[number], arguments).save(path)
+        scene_of_energy(simple, files[number], titles[number], arguments).save(path)
         print(path)
         simple.ResetSession()
 
@@ -135,7 +135,7 @@ def write_session_and_film(simple, results, numbers, rows, files, titles, argume
     """Of one mode that moves, or a session of all."""
     if numbers:
         number, = numbers
-        scene, times = scene_of_one(simple, results, files[number], rows[number - 1], titles[number], arguments)
+        scene, times = scene_of_one(simple, files[number], rows[number - 1], titles[number], arguments)
         if arguments.film:
             is_steady = float(rows[number - 1]["growth rate [1/s]"]) == 0
             write_film(scene, times[:-1] if is_steady else times, arguments.film)
@@ -165,7 +165,7 @@ def main():
             write_session_and_film(simple, results, numbers, rows, files, titles, arguments)
         if arguments.pictures:
             if arguments.view == "energy":
-                write_energy_pictures(simple, results, numbers, rows, files, titles, arguments)
+                write_energy_pictures(simple, numbers, rows, files, titles, arguments)
             else:
                 write_pictures(simple, results, numbers, files, titles, arguments)
     except (ModesError, ImportError, ValueError) as error:

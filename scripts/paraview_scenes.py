@@ -45,8 +45,8 @@ information.Set(output.DATA_TIME_STEP(), time)
 class Scene:
     """Pipelines and a view in ParaView; `simple` is its module."""
 
-    def __init__(self, simple, results, view, width):
-        self.simple, self.results, self.view_name = simple, results, view
+    def __init__(self, simple, view, width):
+        self.simple, self.view_name = simple, view
         self.view = simple.CreateRenderView()
         self.view.ViewSize = [width, round(ASPECT * width)]
         self.view.OrientationAxesVisibility = 0
@@ -158,7 +158,7 @@ class Scene:
 
 def scene_of_all(simple, results, titles, files, arguments):
     """Modes by frequency, and the time at which each is shown, by rows of complex_modes.csv."""
-    scene = Scene(simple, results, arguments.view, arguments.width)
+    scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(results / "modes.xdmf")
     if arguments.view == "faces":
         scene.show_faces(reader, scene.open(results / "modes_contact.xdmf"), "normal_reaction_real",
@@ -171,9 +171,9 @@ def scene_of_all(simple, results, titles, files, arguments):
     return scene, dict(zip(sorted(files), reader.TimestepValues))
 
 
-def scene_of_energy(simple, results, file, title, arguments):
+def scene_of_energy(simple, file, title, arguments):
     """Where the energy of a growing mode enters."""
-    scene = Scene(simple, results, arguments.view, arguments.width)
+    scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(file)
     scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.xdmf")), "energy_input",
                      "what friction and damping add to the divergence rate, over the area [1/m2]; red feeds")
@@ -182,11 +182,11 @@ def scene_of_energy(simple, results, file, title, arguments):
     return scene
 
 
-def scene_of_one(simple, results, file, row, title, arguments):
+def scene_of_one(simple, file, row, title, arguments):
     """The motion of a mode, and its times."""
     growth, omega = float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])
     period = 2 * math.pi / omega
-    scene = Scene(simple, results, arguments.view, arguments.width)
+    scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(file)
     moving = simple.ProgrammableFilter(Input=reader)
     moving.RequestInformationScript = TIMES.format(period=period, frames=FRAMES, periods=arguments.periods)

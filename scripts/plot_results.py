@@ -56,18 +56,18 @@ def replace(path, content):
 
 
 def make_way(path):
-    """Renames a file of the user of which a picture needs the name; returns what to say."""
+    """Renames a file of the user whose name is needed; returns what to say."""
     kept = path.with_name(path.name + ".kept")
     number = 1
     while kept.exists():
         number += 1
         kept = path.with_name(f"{path.name}.kept-{number}")
     path.rename(kept)
-    return f"note: {path} is no picture of this run and is {kept.name} now"
+    return f"note: {path} is no file of this run and is {kept.name} now"
 
 
 def enlist(results, pictures):
-    """Adds pictures to the files of the run in run.json; returns what to say.
+    """Adds pictures, or a report, to the files of the run in run.json; returns what to say.
 
     Runs of earlier versions have no list there, and none is begun: the program knows their files by their names.
     """

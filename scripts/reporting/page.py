@@ -77,7 +77,7 @@ def body(content):
                              '<select id="energy-mode"></select>; together they are the divergence rate.</p>'
                              '<div class="chart" id="chart-energy"></div>', "energy"))
     for picture in content["pictures"]:
-        parts.append(section(picture["name"].capitalize(), f'<img src="{picture["source"]}" alt="{html.escape(picture["name"])}">', "picture"))
+        parts.append(section(picture["name"].capitalize(), f'<img src="{picture["source"]}" alt="{html.escape(picture["name"])}">', "plot-" + picture["name"].replace(" ", "-")))
     parts.append(section("Tables", "".join(table(entry) for entry in content["tables"]) +
                          "<p>Here with six digits; the files have twelve.</p>", "tables"))
     parts.append(section("What was checked, and how accurate it is",

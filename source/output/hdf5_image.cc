@@ -12,7 +12,7 @@ namespace Squeal
     /// Rows that are compressed together: a reader that wants a few need not expand all.
     constexpr hsize_t rows_of_chunk = 1 << 16;
 
-    /// Of 1 to 9; higher ones take several times as long for a few per cent.
+    /// Of 1 to 9; with higher ones shapes of modes get smaller by half a per cent at most, and take up to two and a half times as long.
     constexpr unsigned int compression_level = 1;
 
     /// By how much the image grows at a time [byte].
