@@ -33,6 +33,7 @@ Decides whether a disc rubbed by friction pins squeals.
   PRM                        parameter file
   --set "Section/Name=value" overrides a parameter; may be repeated
   --output DIR               result folder (default: results/<name of PRM>)
+  --designs LIST             only these designs of Study = geometry, as in 3,7-9
   --dry-run                  reads, checks, meshes, prints counts, and stops
   --print-parameters         prints every parameter with its value and meaning
   --version                  prints the version
@@ -71,6 +72,10 @@ Decides whether a disc rubbed by friction pins squeals.
     options.revision = revision;
     options.output   = line.output.value_or("results/" + std::filesystem::path(line.parameter_file).stem().string());
     options.dry_run  = line.dry_run;
+    options.again    = {line.parameter_file};
+    for (const std::string &text : line.overrides)
+      options.again.push_back("--set=" + text);
+    options.designs = line.designs;
     progress.note("squeal " + std::string(version) + ", " + line.parameter_file);
     Run run(parameters, options, MPI_COMM_WORLD, progress, screen, interruption);
     if (const std::string note = unused_parameters_note(parameters); !note.empty())

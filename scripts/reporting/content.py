@@ -8,7 +8,8 @@ from reporting import shapes
 UNSTABLE, STABLE, PALE = "#b2182b", "#2166ac", "#b9c2cc"
 WEAK = 0.01  # divergence rate [%] up to which growth is called weak
 RATE, DAMPING, FREQUENCY = "divergence rate [%]", "effective damping ratio -2R/omega [%]", "frequency [Hz]"
-TITLES = {"complex_modes": "Modes with friction", "real_modes": "Modes without friction", "component_modes": "Modes of disc and pins alone",
+TITLES = {"designs": "Designs", "design_thresholds": "Where modes of designs begin and cease to grow", "design_modes": "Modes of designs",
+          "complex_modes": "Modes with friction", "real_modes": "Modes without friction", "component_modes": "Modes of disc and pins alone",
           "thresholds": "Where modes begin and cease to grow", "energy": "Where the energy of growing modes enters",
           "real_eigenvalues": "Eigenvalues that do not oscillate", "sliding_pins": "Pins in steady sliding", "table1": "Beside the paper's Table 1"}
 LARGEST_TABLE = 2500  # rows
@@ -37,6 +38,8 @@ def verdict(results):
         return sweep_verdict(results)
     if results.has("complex_modes"):
         return modes_verdict(results)
+    if results.has("designs"):
+        return designs_verdict(results)
     return "none", f"Results of Study = {results.parameter('Study')}: see the tables."
 
 
@@ -73,7 +76,80 @@ def sweep_verdict(results):
                         f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at μ = {number(worst['mu [-]']):g}.")
 
 
+ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
+
+
+def variables_of(table):
+    return table.columns[1:table.columns.index("outcome")]
+
+
+def design_text(row, variables):
+    return "design " + row["design [-]"] + " (" + "; ".join(f"{name.split('/')[-1]} = {row[name]}" for name in variables) + ")"
+
+
+def designs_verdict(results):
+    table = results.table("designs")
+    solved = [row for row in table.rows if row["outcome"] == "solved"]
+    left = len(table) - len(solved)
+    outcome = f"{len(solved)} of {len(table)} designs solved" + (f", {left} refused or failed" if left else "")
+    if not solved:
+        return "none", outcome + "."
+    end = float(results.parameter("Sweep/Last friction coefficient"))
+    quiet = [row for row in solved if not row[ONSET]]
+    best = max(solved, key=lambda row: (number(row[ONSET] or "inf"), -number(row[LARGEST] or "0")))
+    name = design_text(best, variables_of(table))
+    if quiet:
+        return "stable", f"{len(quiet)} of {len(solved)} designs stay below a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}."
+    return "unstable", (f"All {len(solved)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, from "
+                        f"μ = {digits(number(best[ONSET]), 3)} on ({best['label at 0.01 %']}), with {digits(number(best[LARGEST] or '0'), 3)} % at most."
+                        + (f" {outcome}." if left else ""))
+
+
 # ------------------------------------------------------------------------------------------------------------------------ charts
+
+
+def designs_chart(results):
+    """Onset over growth: what lies to the right and low is quiet."""
+    table = results.table("designs")
+    variables, end = variables_of(table), float(results.parameter("Sweep/Last friction coefficient"))
+    rows = [row for row in table.rows if row["outcome"] == "solved"]
+    traces = []
+    for label in sorted({row["label of largest"] or "none" for row in rows}):
+        own = [row for row in rows if (row["label of largest"] or "none") == label]
+        traces.append({"type": "scatter", "mode": "markers", "name": label, "x": [short(row[ONSET] or end) for row in own],
+                       "y": [short(row[LARGEST] or "0") for row in own], "marker": {"size": 10},
+                       "customdata": ["<br>".join([f"<b>design {row['design [-]']}</b>", *(f"{name}: {row[name]}" for name in variables),
+                                                   f"from μ = {digits(number(row[ONSET]))} on ({row['label at 0.01 %']})" if row[ONSET] else
+                                                   f"quiet up to μ = {end:g}",
+                                                   f"{digits(number(row[LARGEST] or '0'))} % at most ({row['label of largest']} at "
+                                                   f"{digits(number(row['frequency of largest [Hz]']), 5)} Hz)" if row[LARGEST] else "no mode grows"])
+                                      for row in own], "hovertemplate": "%{customdata}<extra></extra>"})
+    return {"id": "designs_chart", "title": "Designs: where squeal begins, and how fast it grows",
+            "caption": f"Each point is a design, named by the mode that grows fastest; what lies to the right and low is quiet. At μ = {end:g} the "
+                       "study ends.", "data": traces, "layout": layout("μ from which on a divergence rate exceeds 0.01 %", "largest divergence rate [%]")}
+
+
+def variables_chart(results):
+    """Every design as a line through its values; ranges of an axis can be chosen with the mouse."""
+    table = results.table("designs")
+    rows = [row for row in table.rows if row["outcome"] == "solved"]
+    end = float(results.parameter("Sweep/Last friction coefficient"))
+    dimensions = []
+    for name in variables_of(table):
+        texts = [row[name] for row in rows]
+        try:
+            dimensions.append({"label": name.split("/")[-1], "values": [float(text) for text in texts]})
+        except ValueError:
+            names = list(dict.fromkeys(texts))
+            dimensions.append({"label": name.split("/")[-1], "values": [names.index(text) for text in texts], "tickvals": list(range(len(names))),
+                               "ticktext": names})
+    onset = [number(row[ONSET] or end) for row in rows]
+    dimensions += [{"label": "μ of 0.01 %", "values": onset},
+                   {"label": "largest rate [%]", "values": [number(row[LARGEST] or "0") for row in rows]}]
+    return {"id": "variables_chart", "title": "Which values make a design quiet",
+            "caption": "Each line is a design; drag along an axis to choose a range. Colour is the μ from which on it squeals.",
+            "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": onset, "colorscale": "Viridis", "showscale": True}}],
+            "layout": layout("", "", margin={"l": 70, "r": 60, "t": 50, "b": 30})}
 
 
 def layout(x, y, **more):
@@ -206,6 +282,8 @@ def charts(results):
         if results.has("branches_without_dissipation"):
             found.append(branch_chart(results, "branches_without_dissipation", "The same without radial dissipation"))
         found += filter(None, [bifurcation_chart(results)])
+    if results.has("designs") and any(row["outcome"] == "solved" for row in results.table("designs").rows):
+        found += [designs_chart(results), variables_chart(results)]
     return found
 
 
@@ -226,7 +304,7 @@ def tables(results):
 
 def pictures(results):
     """Plots of the run that no chart replaces, as data."""
-    skipped = ("complex_plane", "overview")
+    skipped = ("complex_plane", "overview", "designs")
     return [{"name": path.stem.replace("_", " "), "source": "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()}
             for path in sorted((results.folder / "plots").glob("*.svg")) if not path.stem.startswith(skipped)]
 
@@ -250,6 +328,11 @@ def checks(results):
                  "largest difference of a divergence rate from what its powers add up to [-]"):
         if name in quantities:
             found.append((name.removesuffix(" [-]"), digits(quantities[name], 3)))
+    if results.has("designs"):
+        rows = [row for row in results.table("designs").rows if row["outcome"] == "solved"]
+        found.append(("designs of which all modes were found that were counted", f"{sum(row['complete [-]'] == '1' for row in rows)} of {len(rows)}"))
+        for column, text in (("estimated error of lambda [-]", "largest estimated error of λ"), ("eps_res [-]", "largest residual of a mode, eq. (16)")):
+            found.append((text, digits(max((number(row[column]) for row in rows), default=0), 2)))
     for name in ("dofs", "contact nodes", "modes converged on the mesh"):
         if name in counts:
             found.append((name, str(counts[name])))

@@ -25,8 +25,10 @@ namespace Squeal
                                                                         {"--version", &line.version},
                                                                         {"--help", &line.help},
                                                                         {"-h", &line.help}};
-    std::vector<std::string>                                outputs, files;
-    const std::map<std::string, std::vector<std::string> *> with_value = {{"--set", &line.overrides}, {"--output", &outputs}};
+    std::vector<std::string>                                outputs, designs, files;
+    const std::map<std::string, std::vector<std::string> *> with_value = {{"--set", &line.overrides},
+                                                                          {"--output", &outputs},
+                                                                          {"--designs", &designs}};
 
     bool options_end = false;
     for (std::size_t i = 0; i < words.size(); ++i)
@@ -66,10 +68,14 @@ namespace Squeal
       refuse("more than one parameter file", files[1], "give one; scripts/run.sh runs several in turn");
     if (outputs.size() > 1)
       refuse("more than one result folder", outputs[1], "give --output once");
+    if (designs.size() > 1)
+      refuse("more than one list of designs", designs[1], "give --designs once, as in --designs 3,7-9");
     if (!files.empty())
       line.parameter_file = files.front();
     if (!outputs.empty())
       line.output = outputs.front();
+    if (!designs.empty())
+      line.designs = designs.front();
     return line;
   }
 } // namespace Squeal

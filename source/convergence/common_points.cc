@@ -12,8 +12,6 @@ namespace Squeal
 
   namespace
   {
-    constexpr unsigned int points_per_direction = 2;
-
     /// Where every row of E is: body, number of the point there, direction.
     struct Row
     {
@@ -29,6 +27,22 @@ namespace Squeal
             rows.push_back({body, point, direction});
       return rows;
     }
+
+    /// Unit vector along a component of the displacement of a point.
+    Tensor<1, 3> unit_vector(const Point<3> &point, const unsigned int direction, const Directions directions)
+    {
+      Tensor<1, 3> result;
+      const double radius = std::hypot(point[0], point[1]);
+      if (directions == Directions::cartesian || direction == 2 || radius == 0.)
+        result[direction] = 1.;
+      else
+        {
+          const double cosine = point[0] / radius, sine = point[1] / radius;
+          result[0] = direction == 0 ? cosine : -sine;
+          result[1] = direction == 0 ? sine : cosine;
+        }
+      return result;
+    }
   } // namespace
 
   int CommonPoints::n() const
@@ -39,7 +53,7 @@ namespace Squeal
     return static_cast<int>(sum);
   }
 
-  CommonPoints common_points(const Model &model, const MaterialParameters &materials)
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials, const unsigned int points_per_direction)
   {
     CommonPoints        result;
     std::vector<double> densities;
@@ -63,7 +77,7 @@ namespace Squeal
     return result;
   }
 
-  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model)
+  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model, const Directions directions)
   {
     const PointLocation       location(model);
     std::vector<unsigned int> numbers; // of the bodies in this mesh
@@ -81,11 +95,13 @@ namespace Squeal
       const CommonPoints::Body &body = points.bodies[row.body];
       if (is_new(place))
         found = location.find(numbers[row.body], body.points[row.point]);
-      const double factor = std::sqrt(body.masses[row.point]);
+      const Tensor<1, 3> factors = std::sqrt(body.masses[row.point]) * unit_vector(body.points[row.point], row.direction, directions);
       found.cell->get_dof_indices(cell_dofs);
-      for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
-        if (const int dof = model.free_dof(cell_dofs[fe.component_to_system_index(row.direction, i)]); dof >= 0)
-          entries.emplace_back(dof, factor * fe.base_element(0).shape_value(i, found.reference));
+      for (unsigned int component = 0; component < 3; ++component)
+        if (factors[component] != 0.)
+          for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
+            if (const int dof = model.free_dof(cell_dofs[fe.component_to_system_index(component, i)]); dof >= 0)
+              entries.emplace_back(dof, factors[component] * fe.base_element(0).shape_value(i, found.reference));
     });
   }
 

@@ -19,7 +19,7 @@ namespace Squeal
     constexpr unsigned int n_candidates = 16;
 
     /// How far reference coordinates of a point inside may be beyond [0, 1] by rounding.
-    constexpr double rounding = 1e-10;
+    constexpr double beyond_by_rounding = 1e-10;
 
     /// Reference coordinates of a point, also of one outside; nothing where the iteration for them fails.
     std::optional<Point<3>> reference_coordinates(const Mapping<3>                          &mapping,
@@ -72,7 +72,7 @@ namespace Squeal
         if (!reference)
           continue;
         const Point<3> inside = GeometryInfo<3>::project_to_unit_cell(*reference);
-        if (inside.distance(*reference) < rounding)
+        if (inside.distance(*reference) < beyond_by_rounding)
           return {cell, inside};
         const double from_cell = model.mapping().transform_unit_to_real_cell(cell, inside).distance(point);
         if (from_cell < distance)

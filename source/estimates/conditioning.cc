@@ -19,7 +19,7 @@ namespace Squeal
     constexpr double negligible = 1e-14;
 
     /// λ closer than this part of them are one multiple eigenvalue.
-    constexpr double cluster_width = 1e-7;
+    constexpr double width_of_clusters = 1e-7;
 
     using Operator = std::function<MultiVector(const MultiVector &)>;
 
@@ -145,7 +145,7 @@ namespace Squeal
         {
           std::vector<int> members;
           for (int j = i; j < k; ++j)
-            if (!done[j] && std::abs(lambda[i] - lambda[j]) <= cluster_width * std::abs(lambda[i]))
+            if (!done[j] && std::abs(lambda[i] - lambda[j]) <= width_of_clusters * std::abs(lambda[i]))
               members.push_back(j);
           for (const int j : members)
             done[j] = true;

@@ -16,7 +16,7 @@ namespace Squeal
 {
   namespace
   {
-    constexpr unsigned int no_node = static_cast<unsigned int>(-1);
+    constexpr unsigned int not_numbered = static_cast<unsigned int>(-1);
 
     /// Elements of the groups of one dimension by their tags, which write_msh() gives in the order of the mesh: nodes and index of the group.
     template <std::size_t n_nodes>
@@ -84,12 +84,12 @@ namespace Squeal
         }
 
     // Nodes of the hexahedra in the order of Gmsh's
-    std::vector<unsigned int> new_index(mesh.points.size(), no_node);
+    std::vector<unsigned int> new_index(mesh.points.size(), not_numbered);
     for (const auto &[tag, hexahedron] : hexahedra)
       for (const unsigned int node : hexahedron.first)
         new_index[node] = 0;
     for (std::size_t node = 0; node < new_index.size(); ++node)
-      if (new_index[node] != no_node)
+      if (new_index[node] != not_numbered)
         {
           new_index[node] = result.points.size();
           result.points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
@@ -109,7 +109,7 @@ namespace Squeal
       {
         auto &[nodes, surface] = quadrilateral;
         for (unsigned int &node : nodes)
-          if ((node = new_index[node]) == no_node)
+          if ((node = new_index[node]) == not_numbered)
             throw MeshError("Surface '" + result.surface_names[surface] + "' has a face that is not a face of any hexahedron", where,
                             "name only outer faces of the disc and the pins");
         result.quadrilaterals.push_back({nodes, surface});

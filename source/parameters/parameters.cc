@@ -185,6 +185,7 @@ namespace Squeal
     sweep.declare(declarations);
     ingredients.declare(declarations);
     accuracy.declare(declarations);
+    designs.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -221,6 +222,20 @@ namespace Squeal
         parameters.replaced.push_back(path);
     parameters.check();
     return parameters;
+  }
+
+  void Parameters::set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value)
+  {
+    Declarations declarations;
+    declare(declarations);
+    check_name({path, "", where}, known_names(declarations));
+    const DeclaredParameter *parameter = declarations.find(path);
+    if (parameter == nullptr)
+      throw ParameterError(in_quotes(path) + " is a section", where, "name a parameter in it");
+    const std::string value = new_value(parameter->print());
+    if (path == "Geometry/File")
+      geometry.set_file(value, geometry.directory);
+    assign(*parameter, {path, value, where});
   }
 
   void Parameters::print(std::ostream &stream, const bool with_documentation) const

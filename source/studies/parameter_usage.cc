@@ -119,10 +119,12 @@ namespace Squeal
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
+      const auto has = [&path](const Study &study) {
+        return std::any_of(study.own_parameters.begin(), study.own_parameters.end(), [&](const char *own) { return concerns(own, path); });
+      };
       for (const Study *other : studies())
-        for (const char *own : other->own_parameters)
-          if (other != parameters.study && concerns(own, path))
-            return std::string("of Study = ") + other->name;
+        if (has(*other) && !has(*parameters.study))
+          return std::string("of Study = ") + other->name;
       for (const auto *table : {&parameters.study->rules, &general_rules()})
         for (const UsageRule &rule : *table)
           if (concerns(rule.path, path))

@@ -21,6 +21,7 @@ namespace Squeal
     , screen(screen)
     , is_dry(options.dry_run)
     , is_root(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    , options(options)
     , record{options.command,
              static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator)),
              set_blas_threads(parameters.solvers.blas_threads),
@@ -41,6 +42,7 @@ namespace Squeal
     , screen(whole.screen)
     , is_dry(true)
     , is_root(whole.is_root)
+    , options(whole.options)
   {}
 
   void Run::keep_geometry()

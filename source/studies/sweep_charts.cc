@@ -1,9 +1,11 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/text.h>
+#include <squeal/base/version.h>
 #include <squeal/studies/sweep_charts.h>
 
 #include <algorithm>
 #include <set>
+#include <sstream>
 
 namespace Squeal
 {
@@ -142,6 +144,22 @@ namespace Squeal
         progress.note(text("  note: at ", n, " points the number of modes is not the expected one, see counts.csv"));
     }
   } // namespace
+
+  std::string sweep_identity(const Run &run, const Scene &scene)
+  {
+    // What only adds to the results does not change them
+    Parameters parameters        = run.parameters;
+    parameters.output            = {};
+    parameters.sweep.mode_shapes = {};
+    parameters.sweep.planes      = {};
+    parameters.sweep.counts      = {};
+    std::ostringstream stream;
+    stream << "# squeal " << version << '\n';
+    parameters.print(stream, false);
+    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().n() << " dofs, nodes " << std::hex
+           << checksum(scene.mesh) << '\n';
+    return stream.str();
+  }
 
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
   {

@@ -1,6 +1,5 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/version.h>
 #include <squeal/output/table.h>
 #include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/sweep_results.h>
@@ -18,23 +17,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Everything on which the results of a sweep depend: the version of the program, the parameters, the mesh.
-    std::string identity(const Run &run, const Scene &scene)
-    {
-      // What only adds to the results does not change them
-      Parameters parameters        = run.parameters;
-      parameters.output            = {};
-      parameters.sweep.mode_shapes = {};
-      parameters.sweep.planes      = {};
-      parameters.sweep.counts      = {};
-      std::ostringstream stream;
-      stream << "# squeal " << version << '\n';
-      parameters.print(stream, false);
-      stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().n() << " dofs, nodes " << std::hex
-             << checksum(scene.mesh) << '\n';
-      return stream.str();
-    }
-
     /// Throws ParameterError where nothing depends on what a map varies.
     void check_map(const Parameters &parameters)
     {
@@ -262,7 +244,7 @@ namespace Squeal
     const Parameters &parameters = run.parameters;
     const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), identity(run, scene), run.communicator, omega_max);
+    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), sweep_identity(run, scene), run.communicator, omega_max);
     if (checkpoint.n_found() > 0)
       run.progress.note(text("  an interrupted sweep goes on: ", checkpoint.n_found(), " operating points are known"));
     assemble_scene(scene, run);

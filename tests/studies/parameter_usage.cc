@@ -26,6 +26,15 @@ namespace
     return parameters;
   }
 
+  /// What a study needs to be told, since it has no default.
+  std::vector<std::string> run_of(const Study &study)
+  {
+    std::vector<std::string> overrides = {std::string("Study=") + study.name};
+    if (overrides.front() == "Study=geometry")
+      overrides.emplace_back("Designs/Variables=Geometry/Pin height = 0.03, 0.04");
+    return overrides;
+  }
+
   std::set<std::string> unused(const std::vector<std::string> &overrides)
   {
     std::set<std::string> paths;
@@ -84,6 +93,12 @@ namespace
                                                               {"Accuracy study/Grown tolerance", "1e-5"},
                                                               {"Accuracy study/Largest number of dofs", "1e6"},
                                                               {"Accuracy study/Band margin", "0.2"},
+                                                              {"Designs/Plan", "one at a time"},
+                                                              {"Designs/Variables", "Geometry/Pin height = 0.03, 0.032"},
+                                                              {"Designs/File", "designs.csv"},
+                                                              {"Designs/Number of designs", "5"},
+                                                              {"Designs/Seed", "2"},
+                                                              {"Designs/Processes", "3"},
                                                               {"Ingredients/Frequency tolerance", "2"},
                                                               {"Ingredients/Divergence tolerance", "0.1"},
                                                               {"Ingredients/Trial friction slope", "-0.01"},
@@ -172,7 +187,7 @@ TEST(ParameterUsage, EveryParameterIsAccountedFor)
 TEST(ParameterUsage, NothingIsUnusedByDefault)
 {
   for (const Study *study : studies())
-    EXPECT_EQ(unused({std::string("Study=") + study->name}), std::set<std::string>()) << study->name;
+    EXPECT_EQ(unused(run_of(*study)), std::set<std::string>()) << study->name;
 }
 
 TEST(ParameterUsage, EveryStudyIsFoundByItsName)
@@ -181,17 +196,18 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
   std::set<std::string> names;
   for (const Study *study : studies())
     {
-      EXPECT_EQ(parameters_of({std::string("Study=") + study->name}).study, study) << study->name;
+      EXPECT_EQ(parameters_of(run_of(*study)).study, study) << study->name;
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "ingredients", "paper", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
-  const std::vector<std::string> others = {"Reduction/",           "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration",
-                                           "Complex modes/Maximum"};
+  const std::vector<std::string> others = {
+    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Iteration", "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -201,8 +217,8 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Shift", "Complex modes/Tolerance",
-                             "Output/Field format", "Output/Animation"},
+            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Shift",
+                             "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
@@ -213,14 +229,14 @@ TEST(ParameterUsage, OfStability)
 TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Steady sliding/Contact", "Complex modes/Iteration",
-                      "Complex modes/Maximum", "Output/"}));
+            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Steady sliding/Contact",
+                      "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
   const std::vector<std::string> always = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
+    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
@@ -231,7 +247,8 @@ TEST(ParameterUsage, OfAccuracy)
 {
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
-  const std::vector<std::string> others = joined({"Reduction/", "Sweep/", "Ingredients/", "Output/", "Complex modes/Iteration"}, steady);
+  const std::vector<std::string> others =
+    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Output/", "Complex modes/Iteration"}, steady);
   EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
             those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
@@ -240,7 +257,7 @@ TEST(ParameterUsage, OfAccuracy)
 TEST(ParameterUsage, OfIngredients)
 {
   // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Output/"}));
 }
 
 TEST(ParameterUsage, OfReduction)
@@ -248,6 +265,7 @@ TEST(ParameterUsage, OfReduction)
   const std::vector<std::string> always = {"Sweep/",
                                            "Ingredients/",
                                            "Accuracy study/",
+                                           "Designs/",
                                            "Output/",
                                            "Steady sliding/Control",
                                            "Steady sliding/Displacement",
@@ -266,9 +284,9 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {
-    "Reduction/",   "Ingredients/",     "Accuracy study/", "Complex modes/", "Operation/Friction coefficient",
-    "Output/Write", "Output/Component", "Output/Real"};
+  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Accuracy study/",
+                                           "Designs/",     "Complex modes/",   "Operation/Friction coefficient",
+                                           "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),
@@ -318,4 +336,20 @@ TEST(ParameterUsage, TheNoteNamesAllWithTheirReasons)
 {
   EXPECT_EQ(unused_parameters_note(parameters_of({"Operation/Load per side=500", "Sweep/Tolerance=1e-5"})),
             "  note: not used here: Operation/Load per side (no contact damping), Sweep/Tolerance (of Study = sweep)");
+}
+
+TEST(ParameterUsage, OfDesigns)
+{
+  const std::vector<std::string> run =
+    run_of(*Parameters::read("/dev/null", {"Study=geometry", "Designs/Variables=Geometry/Pin height=1, 2"}).study);
+  const std::vector<std::string> always = {
+    "Reduction/", "Ingredients/",    "Accuracy study/",   "Complex modes/",     "Operation/Friction coefficient",
+    "Output/",    "Sweep/Compare",   "Sweep/Mode shapes", "Sweep/Complex",      "Sweep/Count",
+    "Sweep/Map",  "Sweep/First map", "Sweep/Last map",    "Sweep/Number of map"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
+  const std::vector<std::string> idle   = {"Operation/Load", "Operation/Rotation speed"};
+  EXPECT_EQ(unused_alone(run), those_of(joined(joined(joined(always, steady), idle), {"Designs/Number", "Designs/Seed", "Designs/File"})));
+  EXPECT_EQ(unused_alone(joined(run, {"Designs/Plan=Sobol sequence", "Steady sliding/Contact state=steady sliding"})),
+            those_of(joined(always, {"Designs/File", "Operation/Rotation speed"})));
 }

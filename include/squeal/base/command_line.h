@@ -12,6 +12,7 @@ namespace Squeal
     std::string                parameter_file; ///< empty: none
     std::vector<std::string>   overrides;      ///< of the form Section/Name=value, in their order
     std::optional<std::string> output;         ///< result folder
+    std::string                designs;        ///< numbers of designs, such as "3, 7-9"; empty: all
     bool                       dry_run = false, print_parameters = false, version = false, help = false;
   };
 

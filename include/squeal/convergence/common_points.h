@@ -23,17 +23,36 @@ namespace Squeal
       std::string                   name;
       std::vector<dealii::Point<3>> points; ///< [m]
       std::vector<double>           masses; ///< [kg]
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &name &points &masses;
+      }
     };
     std::vector<Body> bodies;
 
     int n() const;
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &bodies;
+    }
+  };
+
+  /// Components of displacements.
+  enum class Directions
+  {
+    cartesian,  ///< x, y, z
+    cylindrical ///< radial, circumferential, z about the disc's axis: they follow a pin that stands at another angle
   };
 
   /**
-   * The points of Gauss' rule with two points per direction in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest
+   * The points of Gauss' rule in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest
    * mesh serve all finer ones. The same on every process.
    */
-  CommonPoints common_points(const Model &model, const MaterialParameters &materials);
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int points_per_direction = 2);
 
   /**
    * E, 3 n_q × n: the displacement at common points times √m_q from free dofs of a mesh, so that (E u)ᵀ E v is the mass
@@ -42,7 +61,9 @@ namespace Squeal
    *
    * Throws MeshError if the mesh lacks a body.
    */
-  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model);
+  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points,
+                                                       const Model        &model,
+                                                       Directions          directions = Directions::cartesian);
 
   /// Modes by their displacements at common points, each component times √m_q: 3 n_q × k.
   struct ModesAtPoints

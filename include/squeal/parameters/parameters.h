@@ -4,6 +4,7 @@
 #include <squeal/parameters/accuracy_goal.h>
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/damping.h>
+#include <squeal/parameters/designs.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/ingredients.h>
 #include <squeal/parameters/materials.h>
@@ -13,6 +14,7 @@
 #include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
 
+#include <functional>
 #include <iosfwd>
 #include <string>
 #include <vector>
@@ -35,6 +37,7 @@ namespace Squeal
     SweepParameters          sweep;
     IngredientsParameters    ingredients;
     AccuracyStudyParameters  accuracy;
+    DesignParameters         designs;
     SolverParameters         solvers;
     OutputParameters         output;
 
@@ -48,6 +51,12 @@ namespace Squeal
      * nearest known one, a refused value with what the parameter accepts.
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
+
+    /**
+     * Gives the parameter of a path another value, from the one that it has, without checking how it goes with others. Throws
+     * ParameterError, naming @p where, if there is no such parameter or if it refuses the value.
+     */
+    void set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value);
 
     /// Every parameter with its value, and with its documentation and what it accepts, as a parameter file.
     void print(std::ostream &stream, bool with_documentation) const;

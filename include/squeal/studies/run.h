@@ -12,6 +12,7 @@
 #include <iosfwd>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace Squeal
 {
@@ -22,6 +23,9 @@ namespace Squeal
     std::string revision; ///< of the program's sources
     std::string output;   ///< result folder
     bool        dry_run = false;
+
+    std::vector<std::string> again;   ///< words of the command line that give another process these parameters
+    std::string              designs; ///< numbers of designs that are wanted, as in "3, 7-9"; empty: all
   };
 
   /// What every study has at hand: its question, its processes, and where its answers go.
@@ -49,6 +53,7 @@ namespace Squeal
     Progress         &progress;
     std::ostream     &screen;
     const bool        is_dry, is_root;
+    const RunOptions  options;
 
     /// Folder of the results; a dry run has none.
     const ResultFolder &folder() const

@@ -17,6 +17,9 @@ namespace Squeal
     std::vector<ModeLabel> labels; ///< one for each branch
   };
 
+  /// Everything on which the results of a sweep depend: the version of the program, the parameters, the mesh.
+  std::string sweep_identity(const Run &run, const Scene &scene);
+
   /// Where the results of a phase of the work on a contact set are kept.
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
 

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace Squeal
+{
+  /// Cores that this process may use, as the system and whoever started it leave them.
+  unsigned int n_usable_cores();
+
+  /**
+   * This program once more, in a process of its own: whatever happens to it leaves this one alone. It knows nothing of the MPI job that
+   * this process belongs to, and is told to end (SIGTERM) when this process ends in whatever way.
+   */
+  class WorkerProcess
+  {
+  public:
+    /**
+     * Starts it.
+     *
+     * @param arguments behind the name of the program
+     * @param log       file that takes what it prints
+     *
+     * Throws FileError if it cannot be started.
+     */
+    WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log);
+
+    /// Tells it to end, and waits until it has.
+    ~WorkerProcess();
+
+    WorkerProcess(const WorkerProcess &)            = delete;
+    WorkerProcess &operator=(const WorkerProcess &) = delete;
+
+    /// How it ended: "" for success, "exit status 1", "killed by SIGSEGV"; nothing while it runs.
+    std::optional<std::string> end();
+
+  private:
+    pid_t                      process = 0;
+    std::optional<std::string> how_it_ended;
+  };
+} // namespace Squeal

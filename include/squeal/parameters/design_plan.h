@@ -1,0 +1,42 @@
+#pragma once
+
+#include <squeal/parameters/parameters.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Designs by the values of their variables.
+  struct DesignPlan
+  {
+    std::vector<std::string>              names;   ///< of variables: "Section/Name", "Section/Name[k]", several joined by "+"
+    std::vector<std::vector<std::string>> designs; ///< a value of each variable; empty: as the scene has it
+  };
+
+  /**
+   * The designs that the section `Designs` asks for. The same on every process and machine for the same parameters.
+   *
+   * Latin hypercube (M. D. McKay, R. J. Beckman, W. J. Conover 1979): of n equal parts of every range each has one sample, at a random
+   * place. Sobol's sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
+   * 1976) unless the seed is 0. A list of n values is a range of n equal parts.
+   *
+   * Throws ParameterError where the variables or the file are not as the section says, FileError if the file cannot be read.
+   */
+  DesignPlan design_plan(const Parameters &parameters);
+
+  /**
+   * The scene of a design, unchecked: @p parameters with the values of the variables. Throws ParameterError where there is no such
+   * parameter, naming the nearest, or where it refuses a value.
+   */
+  Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
+
+  /// The value that a variable has in a scene: that of the first of its parameters. Throws ParameterError as with_design() does.
+  std::string current_value(const Parameters &parameters, const std::string &name);
+
+  /// The k-th number of @p text, counted from one; digits of names are no numbers. Throws ParameterError if there are fewer.
+  std::string number_of(const std::string &text, unsigned int k);
+
+  /// @p text with another k-th number, counted from one; digits of names are no numbers. Throws ParameterError if there are fewer.
+  std::string with_number(const std::string &text, unsigned int k, const std::string &value);
+} // namespace Squeal

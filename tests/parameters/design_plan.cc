@@ -1,0 +1,216 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/design_plan.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+using namespace Squeal;
+
+namespace
+{
+  namespace fs = std::filesystem;
+
+  using Values = std::vector<std::string>;
+
+  DesignPlan plan_of(const DesignChoice choice, const std::string &variables, const unsigned int n = 20, const unsigned int seed = 1)
+  {
+    Parameters parameters;
+    parameters.designs.choice    = choice;
+    parameters.designs.variables = variables;
+    parameters.designs.n_samples = n;
+    parameters.designs.seed      = seed;
+    return design_plan(parameters);
+  }
+
+  /// Samples of one variable, as numbers.
+  std::vector<double> column(const DesignPlan &plan, const std::size_t variable)
+  {
+    std::vector<double> result;
+    for (const Values &design : plan.designs)
+      result.push_back(*parse_number(design[variable]));
+    return result;
+  }
+
+  void expect_refusal(const std::string &variables, const std::string &what, const DesignChoice choice = DesignChoice::full_grid)
+  {
+    try
+      {
+        plan_of(choice, variables);
+        FAIL() << variables;
+      }
+    catch (const ParameterError &error)
+      {
+        EXPECT_NE(error.reason.find(what), std::string::npos) << error.reason;
+        EXPECT_EQ(error.where, "parameter Designs/Variables");
+      }
+  }
+
+  /// A file that vanishes.
+  struct Csv
+  {
+    explicit Csv(const std::string &text)
+      : path(fs::temp_directory_path() / ("squeal_designs_" + std::to_string(getpid()) + ".csv"))
+    {
+      std::ofstream(path.string()) << text;
+      parameters.designs.choice = DesignChoice::file;
+      parameters.designs.file   = path.string();
+    }
+    ~Csv()
+    {
+      fs::remove(path);
+    }
+
+    const fs::path path;
+    Parameters     parameters;
+  };
+} // namespace
+
+TEST(DesignPlan, FullGridHasEveryCombination)
+{
+  const DesignPlan plan =
+    plan_of(DesignChoice::full_grid, "Geometry/Pin height = 0.03 to 0.04 in 3; Geometry/Disc thickness = 0.044, 0.046");
+  EXPECT_EQ(plan.names, (Values{"Geometry/Pin height", "Geometry/Disc thickness"}));
+  EXPECT_EQ(plan.designs, (std::vector<Values>{{"0.03", "0.044"},
+                                               {"0.03", "0.046"},
+                                               {"0.035", "0.044"},
+                                               {"0.035", "0.046"},
+                                               {"0.04", "0.044"},
+                                               {"0.04", "0.046"}}));
+}
+
+TEST(DesignPlan, LevelsByRatioAndValuesWithCommas)
+{
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "Disc material/Young modulus = 1e9 to 1e11 in 3 by ratio").designs,
+            (std::vector<Values>{{"1e+09"}, {"1e+10"}, {"1e+11"}}));
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "Geometry/Top pin angles = -10, 0, 10 | -20, 0, 20").designs,
+            (std::vector<Values>{{"-10, 0, 10"}, {"-20, 0, 20"}}));
+}
+
+TEST(DesignPlan, OneAtATimeBeginsWithTheSceneAsItIs)
+{
+  EXPECT_EQ(plan_of(DesignChoice::one_at_a_time, "A/x = 1, 2; B/y = 3").designs,
+            (std::vector<Values>{{"", ""}, {"1", ""}, {"2", ""}, {"", "3"}}));
+}
+
+TEST(DesignPlan, LatinHypercubeMeetsEveryPartOnce)
+{
+  constexpr int    n    = 40;
+  const DesignPlan plan = plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6; B/y = 1 to 100 by ratio; C/z = red, green", n, 7);
+  ASSERT_EQ(plan.designs.size(), n);
+  std::set<int> parts_x, parts_y;
+  for (const double x : column(plan, 0))
+    parts_x.insert(static_cast<int>((x - 2.) / 4. * n));
+  for (const double y : column(plan, 1))
+    parts_y.insert(static_cast<int>(std::log10(y) / 2. * n));
+  EXPECT_EQ(parts_x.size(), n);
+  EXPECT_EQ(parts_y.size(), n);
+  EXPECT_EQ(std::count_if(plan.designs.begin(), plan.designs.end(), [](const Values &design) { return design[2] == "red"; }), n / 2);
+
+  // Equal seeds give equal designs, other seeds others
+  EXPECT_EQ(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
+            plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs);
+  EXPECT_NE(plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 7).designs,
+            plan_of(DesignChoice::latin_hypercube, "A/x = 2 to 6", n, 8).designs);
+}
+
+TEST(DesignPlan, SobolSequenceFillsTheRanges)
+{
+  // The first points of the sequence in two dimensions, without the origin
+  EXPECT_EQ(plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 3, 0).designs,
+            (std::vector<Values>{{"0.5", "0.5"}, {"0.75", "0.25"}, {"0.25", "0.75"}}));
+  // Shifted ones are as even: every sixteenth of the range has two to six of 64
+  for (const unsigned int seed : {1u, 2u})
+    {
+      const DesignPlan plan = plan_of(DesignChoice::sobol, "A/x = 0 to 1; B/y = 0 to 1", 64, seed);
+      for (const std::size_t variable : {0, 1})
+        {
+          std::vector<int> counts(16, 0);
+          for (const double x : column(plan, variable))
+            {
+              ASSERT_GE(x, 0.);
+              ASSERT_LT(x, 1.);
+              ++counts[static_cast<int>(16. * x)];
+            }
+          EXPECT_GE(*std::min_element(counts.begin(), counts.end()), 2);
+          EXPECT_LE(*std::max_element(counts.begin(), counts.end()), 6);
+        }
+    }
+}
+
+TEST(DesignPlan, RefusesWhatItDoesNotUnderstand)
+{
+  expect_refusal("", "no parameter varies");
+  expect_refusal("Geometry/Pin height", "has no `=`");
+  expect_refusal("Geometry/Pin height = ", "has no values");
+  expect_refusal("= 1, 2", "names no parameter");
+  expect_refusal("Geometry/Pin height = 1 to 2", "has no levels");
+  expect_refusal("Geometry/Pin height = 2 to 1 in 3", "does not ascend");
+  expect_refusal("Geometry/Pin height = 1 to x in 3", "`x` in");
+  expect_refusal("Geometry/Pin height = 1 to 2 in 1", "number of levels");
+  expect_refusal("Geometry/Pin height = -1 to 2 in 3 by ratio", "no ratios");
+  expect_refusal("Geometry/Pin height = 1; Geometry/Pin height = 2", "varies twice");
+  expect_refusal("A/a = 0 to 1 in 1000; A/b = 0 to 1 in 1000", "1e+06 designs");
+}
+
+TEST(DesignPlan, ReadsAFile)
+{
+  const Csv        file("\xEF\xBB\xBFGeometry/Pin height,\"Geometry/Top pin angles\"\r\n0.03,\"-10, 10\"\n\n0.04,\"-20, 20\"\n");
+  const DesignPlan plan = design_plan(file.parameters);
+  EXPECT_EQ(plan.names, (Values{"Geometry/Pin height", "Geometry/Top pin angles"}));
+  EXPECT_EQ(plan.designs, (std::vector<Values>{{"0.03", "-10, 10"}, {"0.04", "-20, 20"}}));
+}
+
+TEST(DesignPlan, RefusesFilesThatAreNoTables)
+{
+  EXPECT_THROW(design_plan(Csv("A/x,B/y\n1\n").parameters), ParameterError);
+  EXPECT_THROW(design_plan(Csv("A/x,\n1,2\n").parameters), ParameterError);
+  EXPECT_THROW(design_plan(Csv("A/x\n").parameters), ParameterError);
+  Parameters parameters;
+  parameters.designs.choice = DesignChoice::file;
+  EXPECT_THROW(design_plan(parameters), ParameterError);
+  parameters.designs.file = "/nonexistent/designs.csv";
+  EXPECT_THROW(design_plan(parameters), FileError);
+}
+
+TEST(WithDesign, ChangesParametersNumbersOfThemAndSeveralAtOnce)
+{
+  const Parameters scene;
+  const Parameters design = with_design(scene,
+                                        {"Geometry/Pin height", "Geometry/Top pin radii[2] + Geometry/Bottom pin radii[2]",
+                                         "Mounts/Elastic mounts[3]", "Disc material/Density"},
+                                        {"0.04", "0.2", "2e10", ""});
+  EXPECT_EQ(design.geometry.pin_height, 0.04);
+  EXPECT_EQ(design.geometry.top.radii[1], 0.2);
+  EXPECT_EQ(design.geometry.bottom.radii[1], 0.2);
+  EXPECT_EQ(design.geometry.top.radii[0], scene.geometry.top.radii[0]);
+  EXPECT_EQ(design.materials.mounts[0].axial, 2e10);
+  EXPECT_EQ(design.materials.mounts[0].tangential, scene.materials.mounts[0].tangential);
+  EXPECT_EQ(design.materials.disc.density, scene.materials.disc.density);
+  EXPECT_EQ(current_value(scene, "Mounts/Elastic mounts[3]"), "1.88e+10");
+  EXPECT_EQ(current_value(scene, "Geometry/Pin height"), "0.0318");
+}
+
+TEST(WithDesign, RefusesUnknownNamesAndValues)
+{
+  const Parameters scene;
+  EXPECT_THROW(with_design(scene, {"Geometry/Pin hight"}, {"0.04"}), ParameterError);
+  EXPECT_THROW(with_design(scene, {"Geometry/"}, {"0.04"}), ParameterError);
+  EXPECT_THROW(with_design(scene, {"Geometry/Pin height"}, {"-1"}), ParameterError);
+  EXPECT_THROW(with_design(scene, {"Mounts/Elastic mounts[4]"}, {"1"}), ParameterError);
+  EXPECT_THROW(with_design(scene, {"Mounts/Elastic mounts[0]"}, {"1"}), ParameterError);
+}
+
+TEST(WithNumber, LeavesDigitsOfNamesAlone)
+{
+  EXPECT_EQ(with_number("pin_top_1: 2e9, 0.25", 1, "3e9"), "pin_top_1: 3e9, 0.25");
+  EXPECT_EQ(with_number("-18.4, 0, 18.4", 1, "-20"), "-20, 0, 18.4");
+  EXPECT_EQ(number_of("surface2: .5, +1e-3", 2), "+1e-3");
+  EXPECT_THROW(number_of("surface2: none", 1), ParameterError);
+}

@@ -1,0 +1,199 @@
+"""Studies of designs, held against single runs of the same designs, interrupted and resumed, and told of designs that make no sense."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+from program import EXECUTABLE, ProgramTest, read_table
+
+STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
+VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, -1"
+TABLES = ["designs.csv", "design_thresholds.csv", "design_modes.csv"]
+TIME = "time [s]"
+
+
+def tables(folder):
+    """All tables but the times, which no two runs share."""
+    return {name: [{key: value for key, value in row.items() if key != TIME} for row in read_table(folder / name)] for name in TABLES}
+
+
+class DesignsTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.study = cls.run_scene("study", *STUDY, VARIABLES)
+
+    def test_every_design_has_its_row(self):
+        rows = read_table(self.study / "designs.csv")
+        self.assertEqual([int(row["design [-]"]) for row in rows], [1, 2, 3, 4, 5, 6])
+        self.assertEqual([row["Geometry/Pin height"] for row in rows], ["0.030"] * 3 + ["0.034"] * 3)
+        self.assertEqual([row["outcome"] for row in rows], ["solved", "solved", "refused"] * 2)
+        for row in rows:
+            if row["outcome"] == "refused":
+                self.assertIn("Pin material/Young modulus must be >= 0 Pa, not -1", row["reason"])
+                self.assertEqual(row["modes [-]"], "")
+            else:
+                self.assertEqual(row["modes [-]"], row["modes counted [-]"])
+                self.assertEqual(row["complete [-]"], "1")
+                self.assertLess(float(row["estimated error of lambda [-]"]), 1e-6)
+        self.assertFalse((self.folder / "study.checkpoint").exists())
+
+    def test_designs_are_those_of_single_runs(self):
+        for row in read_table(self.study / "designs.csv"):
+            number = row["design [-]"]
+            if row["outcome"] != "solved":
+                self.assertFalse((self.study / "designs" / f"{number}.prm").exists())
+                continue
+            single = self.run_scene(f"single_{number}", file=str(self.study / "designs" / f"{number}.prm"))
+            mine = [t for t in read_table(self.study / "design_thresholds.csv") if t["design [-]"] == number]
+            others = read_table(single / "thresholds.csv")
+            self.assertEqual(len(mine), len(others))
+            self.assertGreater(len(mine), 0)
+            for one, other in zip(mine, others):
+                self.assertEqual((one["event"], one["mechanism"]), (other["event"], other["mechanism"]))
+                self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
+                                     float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
+            branches = read_table(single / "branches.csv")
+            growing = [b for b in branches if b["growing [-]"] == "1"]
+            largest = max(float(b["divergence rate [%]"]) for b in growing)
+            self.assertAlmostEqual(float(row["largest divergence rate [%]"]), largest, delta=1e-3 * largest)
+            last = max(float(b["mu [-]"]) for b in branches)
+            self.assertEqual(int(row["unstable modes [-]"]),
+                             sum(b["verdict"] == "unstable" and float(b["mu [-]"]) == last for b in branches))
+            weak = float(row["mu of 0.01 % [-]"])
+            below = [float(b["divergence rate [%]"]) for b in branches if float(b["mu [-]"]) < weak - 1e-5]
+            self.assertLessEqual(max(below), 0.01)
+            self.assertTrue(any(float(b["divergence rate [%]"]) > 0.01 for b in branches))
+
+    def test_modes_have_the_names_of_the_scene(self):
+        scene = self.run_scene("scene")
+        known = {row["label"] for row in read_table(scene / "real_modes.csv")}
+        modes = read_table(self.study / "design_modes.csv")
+        for number in ("1", "2", "4", "5"):
+            mine = [mode for mode in modes if mode["design [-]"] == number]
+            of_disc = [mode for mode in mine if re.match("[ARC][0-9]", mode["label"])]
+            self.assertGreater(len(of_disc), 8)
+            for mode in of_disc:
+                self.assertIn(mode["label"], known | {"unnamed"})
+            # Another modulus or height of some pins leaves the shapes of most disc modes as they are
+            clear = [mode for mode in of_disc if float(mode["overlap with reference [-]"] or 0) > 0.9]
+            self.assertGreater(len(clear), 0.7 * len(of_disc))
+            self.assertEqual(len({mode["label"] for mode in clear}), len(clear))
+
+    def test_one_design_alone_is_the_same(self):
+        one = self.run_scene_of_designs("one", "2")
+        self.assertEqual(tables(one)["designs.csv"], [tables(self.study)["designs.csv"][1]])
+        two = self.run_scene_of_designs("two", "1, 5-5")
+        self.assertEqual(tables(two)["designs.csv"], [tables(self.study)["designs.csv"][i] for i in (0, 4)])
+
+    def run_scene_of_designs(self, output, designs):
+        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
+        process = self.call("scene.prm", "--output", output, "--designs", designs, *settings)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return self.folder / output
+
+    def test_unknown_designs_are_refused(self):
+        for designs, what in (("7", "names no designs"), ("0", "names no designs"), ("2-1", "names no designs"), ("x", "names no designs"),
+                              (",", "names no design")):
+            settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
+            process = self.call("scene.prm", "--output", "none", "--designs", designs, *settings)
+            self.assertEqual(process.returncode, 1)
+            self.assertIn(what, process.stderr)
+            self.assertFalse((self.folder / "none").exists())
+
+    def test_several_processes(self):
+        # Of modes with one λ, as of equal pins, rounding chooses the shapes, and with them the overlaps
+        found, expected = (tables(folder) for folder in (self.run_scene("parallel", *STUDY, VARIABLES, n_processes=2), self.study))
+        for rows in (*found.values(), *expected.values()):
+            for row in rows:
+                row.pop("overlap with reference [-]", None)
+        self.assertEqual(found, expected)
+
+    def test_killed_and_resumed(self):
+        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
+        command = [EXECUTABLE, "scene.prm", "--output", "killed", *settings]
+        kept = self.folder / "killed.checkpoint"
+        for number, how in ((1, signal.SIGKILL), (2, signal.SIGTERM), (3, signal.SIGKILL)):
+            process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            deadline = time.monotonic() + 300
+            while len(list(kept.glob("design-*/design.result"))) < number and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            process.send_signal(how)
+            process.wait()
+            self.assertNotEqual(process.returncode, 0)
+            self.assertFalse((self.folder / "killed").exists())
+        # Its processes end with it
+        deadline = time.monotonic() + 60
+        while self.processes_of("killed.checkpoint") and time.monotonic() < deadline:
+            time.sleep(0.1)
+        self.assertEqual(self.processes_of("killed.checkpoint"), [])
+        known = {path.parent.name: path.read_bytes() for path in kept.glob("design-*/design.result")}
+        self.assertGreaterEqual(len(known), 3)
+
+        # Another study does not go on with it
+        other = self.call("scene.prm", "--output", "killed", *settings, "--set", "Sweep/Tolerance=1e-5")
+        self.assertEqual(other.returncode, 1)
+        self.assertIn("an unfinished study of other designs", other.stderr)
+
+        process = self.call("scene.prm", "--output", "killed", *settings)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertIn(f"{len(known)} of 6 designs are known", process.stdout)
+        self.assertEqual(tables(self.folder / "killed"), tables(self.study))
+        self.assertFalse(kept.exists())
+
+    @staticmethod
+    def processes_of(words):
+        """Processes with these words in their command line."""
+        found = []
+        for entry in os.listdir("/proc"):
+            if entry.isdigit():
+                try:
+                    with open(f"/proc/{entry}/cmdline", "rb") as file:
+                        if words.encode() in file.read():
+                            found.append(entry)
+                except OSError:
+                    pass
+        return found
+
+    def test_crashes_are_rows(self):
+        """A process that is killed from outside takes nothing along but its design."""
+        settings = [word for text in (*STUDY, VARIABLES, "Designs/Processes=1") for word in ("--set", text)]
+        process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "crash", *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True)
+        victims, deadline = [], time.monotonic() + 300
+        while not victims and time.monotonic() < deadline:
+            victims = [int(number) for number in self.processes_of("crash.checkpoint/design-2")]
+            time.sleep(0.01)
+        for victim in victims:
+            os.kill(victim, signal.SIGKILL)
+        errors = process.communicate(timeout=300)[1]
+        self.assertEqual(process.returncode, 0, errors)
+        rows = read_table(self.folder / "crash" / "designs.csv")
+        self.assertEqual([row["outcome"] for row in rows], ["solved", "failed", "refused", "solved", "solved", "refused"])
+        self.assertIn("killed by SIGKILL", rows[1]["reason"])
+
+    def test_geometries_that_cannot_be_meshed_are_rows(self):
+        folder = self.run_scene("meshes", *STUDY, "Designs/Variables=Geometry/Pin diameter = 0.052, 0.2")
+        rows = read_table(folder / "designs.csv")
+        self.assertEqual([row["outcome"] for row in rows], ["solved", "refused"])
+        self.assertNotEqual(rows[1]["reason"], "")
+
+    def test_designs_of_a_file(self):
+        (self.folder / "designs.csv").write_text('Geometry/Pin height,"Geometry/Top pin angles + Geometry/Bottom pin angles"\n0.030,"-12, 12"\n',
+                                                 encoding="utf-8")
+        rows = read_table(self.run_scene("file", *STUDY, "Designs/Plan=file", "Designs/File=designs.csv") / "designs.csv")
+        self.assertEqual([row["Geometry/Top pin angles + Geometry/Bottom pin angles"] for row in rows], ["-12, 12"])
+        self.assertEqual([row["outcome"] for row in rows], ["solved"])
+
+    def test_folders_of_other_things_are_left_alone(self):
+        (self.folder / "mine.checkpoint").mkdir()
+        (self.folder / "mine.checkpoint" / "letter.txt").write_text("keep me", encoding="utf-8")
+        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
+        process = self.call("scene.prm", "--output", "mine", *settings)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("not those of an unfinished study", process.stderr)
+        self.assertEqual((self.folder / "mine.checkpoint" / "letter.txt").read_text(encoding="utf-8"), "keep me")
+        shutil.rmtree(self.folder / "mine.checkpoint")
