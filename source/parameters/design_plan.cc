@@ -16,7 +16,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iomanip>
 #include <numeric>
+#include <sstream>
 
 namespace Squeal
 {
@@ -31,22 +33,13 @@ namespace Squeal
     constexpr const char *where_variables = "parameter Designs/Variables";
     constexpr const char *how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
 
-    /// A parameter that varies: a list of values, or a range.
-    struct Variable
+    /// A value that people can read: six digits tell designs apart.
+    std::string rounded(const double value)
     {
-      std::string              name;
-      std::vector<std::string> levels;
-      double                   first = 0., last = 0.; ///< of a range
-      bool                     is_range = false, by_ratio = false;
-
-      /// The value at a part t in [0, 1) of the range, or of the list.
-      std::string at(const double t) const
-      {
-        if (is_range)
-          return exact_text(by_ratio ? first * std::pow(last / first, t) : first + t * (last - first));
-        return levels[std::min(levels.size() - 1, static_cast<std::size_t>(t * static_cast<double>(levels.size())))];
-      }
-    };
+      std::ostringstream stream;
+      stream << std::setprecision(6) << value;
+      return exact_text(std::stod(stream.str()));
+    }
 
     [[noreturn]] void refuse(const std::string &what, const std::string &change = how_to_write)
     {
@@ -62,7 +55,7 @@ namespace Squeal
     }
 
     /// "0.03 to 0.05 in 5 by ratio"
-    void parse_range(const std::string &text, const std::string &entry, Variable &variable)
+    void parse_range(const std::string &text, const std::string &entry, DesignVariable &variable)
     {
       std::string       rest  = single_spaced(text);
       const std::string ratio = " by ratio";
@@ -89,9 +82,9 @@ namespace Squeal
         variable.levels.push_back(i + 1 < n ? variable.at(i / (n - 1.)) : exact_text(variable.last));
     }
 
-    std::vector<Variable> parse_variables(const std::string &text)
+    std::vector<DesignVariable> parse_variables(const std::string &text)
     {
-      std::vector<Variable> result;
+      std::vector<DesignVariable> result;
       for (const std::string &entry : split_string_list(text, ';'))
         {
           if (entry.empty())
@@ -99,11 +92,11 @@ namespace Squeal
           const auto equals = entry.find('=');
           if (equals == std::string::npos)
             refuse(in_quotes(entry) + " has no `=`");
-          Variable          variable{single_spaced(entry.substr(0, equals)), {}};
+          DesignVariable    variable{single_spaced(entry.substr(0, equals)), {}};
           const std::string values = trim(entry.substr(equals + 1));
           if (variable.name.empty())
             refuse(in_quotes(entry) + " names no parameter");
-          if (std::any_of(result.begin(), result.end(), [&](const Variable &other) { return other.name == variable.name; }))
+          if (std::any_of(result.begin(), result.end(), [&](const DesignVariable &other) { return other.name == variable.name; }))
             refuse(in_quotes(variable.name) + " varies twice", "give each parameter once");
           if ((' ' + single_spaced(values)).find(" to ") != std::string::npos)
             parse_range(values, entry, variable);
@@ -121,23 +114,23 @@ namespace Squeal
       return result;
     }
 
-    void check_levels(const std::vector<Variable> &variables)
+    void check_levels(const std::vector<DesignVariable> &variables)
     {
-      for (const Variable &variable : variables)
+      for (const DesignVariable &variable : variables)
         if (variable.levels.empty())
           refuse("the range of " + in_quotes(variable.name) + " has no levels",
                  "write `in n` behind it; or set Designs/Plan = Latin hypercube or Sobol sequence, which sample ranges");
     }
 
-    std::vector<std::vector<std::string>> full_grid(const std::vector<Variable> &variables)
+    std::vector<std::vector<std::string>> full_grid(const std::vector<DesignVariable> &variables)
     {
       double n = 1.;
-      for (const Variable &variable : variables)
+      for (const DesignVariable &variable : variables)
         n *= static_cast<double>(variable.levels.size());
       if (n > most_designs)
         refuse(text("the full grid has ", n, " designs"), "take fewer levels, or a Latin hypercube");
       std::vector<std::vector<std::string>> result = {{}};
-      for (const Variable &variable : variables)
+      for (const DesignVariable &variable : variables)
         {
           std::vector<std::vector<std::string>> longer;
           for (const auto &values : result)
@@ -151,7 +144,7 @@ namespace Squeal
       return result;
     }
 
-    std::vector<std::vector<std::string>> one_at_a_time(const std::vector<Variable> &variables)
+    std::vector<std::vector<std::string>> one_at_a_time(const std::vector<DesignVariable> &variables)
     {
       const std::vector<std::string>        as_it_is(variables.size());
       std::vector<std::vector<std::string>> result = {as_it_is};
@@ -184,18 +177,7 @@ namespace Squeal
             }
           return result;
         }
-      std::vector<double> shift(dimension, 0.);
-      if (designs.seed > 0)
-        for (double &component : shift)
-          component = uniform(generator);
-      boost::random::sobol sequence(dimension);
-      for (std::vector<double> &sample : result)
-        for (std::size_t v = 0; v < dimension; ++v)
-          {
-            double whole;
-            sample[v] = std::modf(uniform(sequence) + shift[v], &whole);
-          }
-      return result;
+      return sobol_points(n, dimension, designs.seed);
     }
 
     std::vector<std::string> fields_of(const std::string &line, const std::string &where)
@@ -307,14 +289,59 @@ namespace Squeal
     return text.substr(0, place) + value + text.substr(place + length);
   }
 
+  std::string DesignVariable::at(const double t) const
+  {
+    if (is_range)
+      return rounded(by_ratio ? first * std::pow(last / first, t) : first + t * (last - first));
+    return levels[std::min(levels.size() - 1, static_cast<std::size_t>(t * static_cast<double>(levels.size())))];
+  }
+
+  std::vector<DesignVariable> design_variables(const DesignParameters &designs)
+  {
+    return parse_variables(designs.variables);
+  }
+
+  std::vector<std::vector<double>> sobol_points(const std::size_t n, const std::size_t dimension, const unsigned int seed)
+  {
+    boost::random::mt19937_64         generator(seed);
+    boost::random::uniform_01<double> uniform;
+    std::vector<double>               shift(dimension, 0.);
+    if (seed > 0)
+      for (double &component : shift)
+        component = uniform(generator);
+    boost::random::sobol             sequence(dimension);
+    std::vector<std::vector<double>> result(n, std::vector<double>(dimension));
+    for (std::vector<double> &point : result)
+      for (std::size_t v = 0; v < dimension; ++v)
+        {
+          double whole;
+          point[v] = std::modf(uniform(sequence) + shift[v], &whole);
+        }
+    return result;
+  }
+
+  std::string as_csv(const DesignPlan &plan)
+  {
+    const auto line = [](const std::vector<std::string> &fields) {
+      std::string result;
+      for (const std::string &field : fields)
+        result += (result.empty() ? "\"" : ",\"") + field + "\"";
+      return result + "\n";
+    };
+    std::string result = line(plan.names);
+    for (const std::vector<std::string> &values : plan.designs)
+      result += line(values);
+    return result;
+  }
+
   DesignPlan design_plan(const Parameters &parameters)
   {
     const DesignParameters &designs = parameters.designs;
     if (designs.choice == DesignChoice::file)
       return from_file(parameters);
-    const std::vector<Variable> variables = parse_variables(designs.variables);
-    DesignPlan                  plan;
-    for (const Variable &variable : variables)
+    const std::vector<DesignVariable> variables = parse_variables(designs.variables);
+    DesignPlan                        plan;
+    for (const DesignVariable &variable : variables)
       plan.names.push_back(variable.name);
     if (!designs.is_sampled())
       {

@@ -186,6 +186,7 @@ namespace Squeal
     ingredients.declare(declarations);
     accuracy.declare(declarations);
     designs.declare(declarations);
+    search.declare(declarations);
     solvers.declare(declarations);
     output.declare(declarations);
   }
@@ -342,6 +343,7 @@ namespace Squeal
     sweep.check();
     ingredients.check();
     accuracy.check();
+    search.check();
     if (study->check != nullptr)
       study->check(*this);
     check_damping_in_band();

@@ -124,11 +124,11 @@ namespace Squeal
                           const DesignStore                               &store,
                           const std::function<DesignResult(int)>          &unfinished,
                           const std::function<void(const DesignResult &)> &report,
-                          Run                                             &run)
+                          const std::vector<std::string>                  &given)
   {
     const auto start = [&](const int design) {
       const fs::path           folder    = store.folder_of(design);
-      std::vector<std::string> arguments = run.options.again;
+      std::vector<std::string> arguments = given;
       arguments.push_back("--designs=" + std::to_string(design));
       arguments.push_back("--output=" + folder.string());
       const fs::path log = folder.string() + ".log";

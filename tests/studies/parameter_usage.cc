@@ -30,8 +30,8 @@ namespace
   std::vector<std::string> run_of(const Study &study)
   {
     std::vector<std::string> overrides = {std::string("Study=") + study.name};
-    if (overrides.front() == "Study=geometry")
-      overrides.emplace_back("Designs/Variables=Geometry/Pin height = 0.03, 0.04");
+    if (overrides.front() == "Study=geometry" || overrides.front() == "Study=search")
+      overrides.emplace_back("Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2");
     return overrides;
   }
 
@@ -99,6 +99,12 @@ namespace
                                                               {"Designs/Number of designs", "5"},
                                                               {"Designs/Seed", "2"},
                                                               {"Designs/Processes", "3"},
+                                                              {"Search/Goal", "onset"},
+                                                              {"Search/Method", "COBYLA"},
+                                                              {"Search/Samples", "5"},
+                                                              {"Search/Evaluations", "30"},
+                                                              {"Search/First step", "0.1"},
+                                                              {"Search/Smallest step", "0.01"},
                                                               {"Ingredients/Frequency tolerance", "2"},
                                                               {"Ingredients/Divergence tolerance", "0.1"},
                                                               {"Ingredients/Trial friction slope", "-0.01"},
@@ -200,14 +206,14 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names,
-            (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "search", "stability",
+                                          "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
   const std::vector<std::string> others = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Iteration", "Complex modes/Maximum"};
+    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Iteration", "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -217,7 +223,7 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Shift",
+            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Shift",
                              "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
@@ -229,14 +235,15 @@ TEST(ParameterUsage, OfStability)
 TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Steady sliding/Contact",
+            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Steady sliding/Contact",
                       "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
   const std::vector<std::string> always = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
+    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Iteration", "Complex modes/Maximum",
+    "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
@@ -248,7 +255,7 @@ TEST(ParameterUsage, OfAccuracy)
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   const std::vector<std::string> others =
-    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Output/", "Complex modes/Iteration"}, steady);
+    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Search/", "Output/", "Complex modes/Iteration"}, steady);
   EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
             those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
@@ -257,7 +264,7 @@ TEST(ParameterUsage, OfAccuracy)
 TEST(ParameterUsage, OfIngredients)
 {
   // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Search/", "Output/"}));
 }
 
 TEST(ParameterUsage, OfReduction)
@@ -266,6 +273,7 @@ TEST(ParameterUsage, OfReduction)
                                            "Ingredients/",
                                            "Accuracy study/",
                                            "Designs/",
+                                           "Search/",
                                            "Output/",
                                            "Steady sliding/Control",
                                            "Steady sliding/Displacement",
@@ -284,9 +292,9 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Accuracy study/",
-                                           "Designs/",     "Complex modes/",   "Operation/Friction coefficient",
-                                           "Output/Write", "Output/Component", "Output/Real"};
+  const std::vector<std::string> always = {
+    "Reduction/",   "Ingredients/",     "Accuracy study/", "Designs/", "Search/", "Complex modes/", "Operation/Friction coefficient",
+    "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),
@@ -343,13 +351,19 @@ TEST(ParameterUsage, OfDesigns)
   const std::vector<std::string> run =
     run_of(*Parameters::read("/dev/null", {"Study=geometry", "Designs/Variables=Geometry/Pin height=1, 2"}).study);
   const std::vector<std::string> always = {
-    "Reduction/", "Ingredients/",    "Accuracy study/",   "Complex modes/",     "Operation/Friction coefficient",
-    "Output/",    "Sweep/Compare",   "Sweep/Mode shapes", "Sweep/Complex",      "Sweep/Count",
-    "Sweep/Map",  "Sweep/First map", "Sweep/Last map",    "Sweep/Number of map"};
+    "Search/",         "Reduction/",     "Ingredients/",       "Accuracy study/", "Complex modes/", "Operation/Friction coefficient",
+    "Output/",         "Sweep/Compare",  "Sweep/Mode shapes",  "Sweep/Complex",   "Sweep/Count",    "Sweep/Map",
+    "Sweep/First map", "Sweep/Last map", "Sweep/Number of map"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   const std::vector<std::string> idle   = {"Operation/Load", "Operation/Rotation speed"};
   EXPECT_EQ(unused_alone(run), those_of(joined(joined(joined(always, steady), idle), {"Designs/Number", "Designs/Seed", "Designs/File"})));
   EXPECT_EQ(unused_alone(joined(run, {"Designs/Plan=Sobol sequence", "Steady sliding/Contact state=steady sliding"})),
             those_of(joined(always, {"Designs/File", "Operation/Rotation speed"})));
+
+  // A search has ranges in the place of a plan
+  std::vector<std::string> search = always;
+  search.erase(std::remove(search.begin(), search.end(), "Search/"), search.end());
+  EXPECT_EQ(unused_alone({"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"}),
+            those_of(joined(joined(joined(search, steady), idle), {"Designs/Plan", "Designs/Number", "Designs/File"})));
 }

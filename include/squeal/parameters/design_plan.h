@@ -14,6 +14,24 @@ namespace Squeal
     std::vector<std::vector<std::string>> designs; ///< a value of each variable; empty: as the scene has it
   };
 
+  /// A parameter that varies: a list of values, or a range.
+  struct DesignVariable
+  {
+    std::string              name;
+    std::vector<std::string> levels;
+    double                   first = 0., last = 0.; ///< of a range
+    bool                     is_range = false, by_ratio = false;
+
+    /// The value at a part t in [0, 1] of the range, or of the list.
+    std::string at(double t) const;
+  };
+
+  /// The variables that the section `Designs` names. Throws ParameterError.
+  std::vector<DesignVariable> design_variables(const DesignParameters &designs);
+
+  /// The first @p n points of Sobol's sequence in the unit cube, a row each, shifted as design_plan() says.
+  std::vector<std::vector<double>> sobol_points(std::size_t n, std::size_t dimension, unsigned int seed);
+
   /**
    * The designs that the section `Designs` asks for. The same on every process and machine for the same parameters.
    *
@@ -24,6 +42,9 @@ namespace Squeal
    * Throws ParameterError where the variables or the file are not as the section says, FileError if the file cannot be read.
    */
   DesignPlan design_plan(const Parameters &parameters);
+
+  /// The plan as a CSV file that Designs/Plan = file reads.
+  std::string as_csv(const DesignPlan &plan);
 
   /**
    * The scene of a design, unchecked: @p parameters with the values of the variables. Throws ParameterError where there is no such

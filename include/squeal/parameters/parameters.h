@@ -10,6 +10,7 @@
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
+#include <squeal/parameters/search.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
@@ -38,6 +39,7 @@ namespace Squeal
     IngredientsParameters    ingredients;
     AccuracyStudyParameters  accuracy;
     DesignParameters         designs;
+    SearchParameters         search;
     SolverParameters         solvers;
     OutputParameters         output;
 

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <squeal/studies/design_results.h>
-#include <squeal/studies/run.h>
+
+#include <mpi.h>
 
 #include <filesystem>
 #include <functional>
@@ -50,6 +51,7 @@ namespace Squeal
    *
    * @param designs      numbers of those that are not finished
    * @param n_side_by_side processes of this MPI process at a time
+   * @param arguments    of the command line, from which a process reads the designs
    * @param unfinished   result of a design without what is to be found
    * @param report       of a design that is finished
    */
@@ -58,5 +60,5 @@ namespace Squeal
                           const DesignStore                               &store,
                           const std::function<DesignResult(int)>          &unfinished,
                           const std::function<void(const DesignResult &)> &report,
-                          Run                                             &run);
+                          const std::vector<std::string>                  &arguments);
 } // namespace Squeal

@@ -1,0 +1,253 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
+#include <squeal/base/memory_limit.h>
+#include <squeal/base/version.h>
+#include <squeal/base/worker_process.h>
+#include <squeal/geometry/problem_size.h>
+#include <squeal/studies/design_work.h>
+#include <squeal/studies/parameter_usage.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <ostream>
+#include <sstream>
+#include <thread>
+
+namespace Squeal
+{
+  extern const Study sweep_study;
+
+  namespace fs  = std::filesystem;
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    /// Modes of the scene are found so far beyond the band that those of stiffer and softer designs find their likes [-].
+    constexpr double reference_margin = 0.2;
+
+    /// Values of the variables in a design, as the scene has them where the design leaves them open.
+    std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
+    {
+      std::vector<std::string> result = values;
+      for (std::size_t v = 0; v < values.size(); ++v)
+        if (values[v].empty())
+          result[v] = current_value(parameters, plan.names[v]);
+      return result;
+    }
+
+    /// Designs that one MPI process solves side by side: by cores, and by the memory that each takes.
+    unsigned int n_side_by_side(const Scene &scene, const Run &run)
+    {
+      if (run.parameters.designs.n_processes > 0)
+        return run.parameters.designs.n_processes;
+      MPI_Comm machine;
+      int      n_here = 1;
+      MPI_Comm_split_type(run.communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+      MPI_Comm_size(machine, &n_here);
+      MPI_Comm_free(&machine);
+      const unsigned int degree    = degree_of(run.parameters.discretization.element);
+      const double       bytes     = expected_size(scene.mesh, degree).memory(degree, run.parameters.solvers.maximum_modes);
+      const double       by_cores  = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
+      const double       by_memory = available_memory() / bytes / n_here;
+      return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
+    }
+
+    /// Says how a design went, and how long the others may take.
+    class Reporter
+    {
+    public:
+      Reporter(Run &run, const std::size_t n_all, const std::size_t n_known)
+        : run(run)
+        , n_all(n_all)
+        , n_known(n_known)
+      {}
+
+      void operator()(const DesignResult &result)
+      {
+        ++n_done;
+        const std::size_t n_left  = n_all - n_known - n_done;
+        const double      seconds = stopwatch.cost().seconds / static_cast<double>(n_done) * static_cast<double>(n_left);
+        const std::string what =
+          result.outcome != DesignOutcome::solved ? to_string(result.outcome) + ": " + result.reason :
+          result.weak_onset ? text("beyond ", 100. * weak_divergence, " % from mu = ", result.weak_onset->friction_coefficient, " on (",
+                                   result.weak_onset->label, ")") :
+                              text("nowhere beyond ", 100. * weak_divergence, " %");
+        run.progress.note(text("    design ", result.number, ": ", what, "; ", std::round(result.seconds), " s",
+                               n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
+        run.progress.update(text(n_known + n_done, " of ", n_all, " designs"));
+      }
+
+    private:
+      Run              &run;
+      const std::size_t n_all, n_known;
+      std::size_t       n_done = 0;
+      const Stopwatch   stopwatch;
+    };
+
+  } // namespace
+
+  std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
+  {
+    Parameters parameters          = run.parameters;
+    parameters.output              = {};
+    parameters.designs.n_processes = 0;
+    std::ostringstream stream;
+    stream << "# squeal " << version << '\n';
+    parameters.print(stream, false);
+    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(scene.mesh) << '\n';
+    for (const auto &values : plan.designs)
+      {
+        for (const std::string &value : values)
+          stream << value << ", ";
+        stream << '\n';
+      }
+    return stream.str();
+  }
+
+  DesignResult unfinished(const Run &run, const DesignPlan &plan, const int design)
+  {
+    DesignResult result;
+    result.number = design;
+    result.values = shown_values(run.parameters, plan, plan.designs[design - 1]);
+    return result;
+  }
+
+  std::string in_one_line(const Error &error)
+  {
+    return error.reason + "; where: " + error.where + "; change: " + error.change;
+  }
+
+  std::optional<Parameters> parameters_of(const Run &run, const DesignPlan &plan, const int design, std::string &reason)
+  {
+    try
+      {
+        Parameters result = with_design(run.parameters, plan.names, plan.designs[design - 1]);
+        result.study      = &sweep_study;
+        result.check();
+        return result;
+      }
+    catch (const ParameterError &error)
+      {
+        reason = in_one_line(error);
+        return {};
+      }
+  }
+
+  ReferenceModes design_reference(Scene &scene, Run &run, const fs::path &file)
+  {
+    if (fs::exists(file))
+      {
+        std::ifstream           stream(file, std::ios::binary);
+        const std::vector<char> packed{std::istreambuf_iterator<char>(stream), {}};
+        return dealii::Utilities::unpack<ReferenceModes>(packed, false);
+      }
+    run.progress.begin("Reference modes");
+    Progress                silent;
+    Run                     part(run.parameters, run, silent);
+    const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
+    ReferenceModes          result = reference_modes(modes, run.parameters.materials);
+    run.progress.finish(text(result.names.size(), " modes of the scene as it is, by which those of designs are named"));
+    return result;
+  }
+
+  std::vector<DesignResult> solve_all(Scene                          &scene,
+                                      Run                            &run,
+                                      const DesignWork               &work,
+                                      const DesignStore              &store,
+                                      const std::vector<std::string> &arguments)
+  {
+    const fs::path file = store.folder / DesignStore::reference_file;
+    {
+      const ReferenceModes modes = design_reference(scene, run, file);
+      if (run.is_root && !fs::exists(file))
+        {
+          const std::vector<char> packed = dealii::Utilities::pack(modes, false);
+          replace_file(file, {packed.data(), packed.size()});
+        }
+    }
+    run.progress.begin("Designs");
+    // Refused ones need no process
+    std::vector<int> left;
+    std::size_t      n_known = 0;
+    for (const int design : work.designs)
+      if (store.find(design))
+        ++n_known;
+      else
+        left.push_back(design);
+    MPI_Barrier(run.communicator);
+    if (n_known > 0)
+      run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
+    const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
+              me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
+    std::vector<int> mine;
+    for (std::size_t i = 0; i < left.size(); ++i)
+      if (static_cast<int>(i) % n_ranks == me)
+        mine.push_back(left[i]);
+    const unsigned int n_here = n_side_by_side(scene, run);
+    Reporter           report(run, n_known + mine.size(), n_known);
+    solve_side_by_side(
+      mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);
+    MPI_Barrier(run.communicator);
+    std::vector<DesignResult> results;
+    for (const int design : work.designs)
+      if (auto result = store.find(design))
+        results.push_back(*std::move(result));
+    run.progress.finish(text(results.size(), " designs, ", n_here * n_ranks, " side by side"));
+    return results;
+  }
+
+  void write_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &results, Run &run)
+  {
+    run.count("designs", results.size());
+    run.screen << '\n';
+    for (const std::string &line : verdict(names, results))
+      run.progress.note(line);
+    run.screen << "\n  the quietest designs, all in designs.csv\n\n";
+    quietest_designs(names, results).print(run.screen);
+    run.screen << '\n';
+    run.store_table("designs", design_table(names, results));
+    run.store_table("design_thresholds", design_threshold_table(results));
+    run.store_table("design_modes", design_mode_table(results));
+  }
+
+  void write_parameter_file(Parameters design, const std::string &name, const Run &run)
+  {
+    const GeometryCopy copy = copy_of(design.geometry.path());
+    // Seen from the file; where nothing was copied, the geometry is found by its name from everywhere
+    const bool is_below  = name.find('/') != std::string::npos;
+    design.geometry.file = (is_below && !copy.files.empty() ? "../" : "") + copy.name;
+    design.designs       = {};
+    design.search        = {};
+    run.folder().write(name, [&](std::ostream &stream) { design.print(stream, false); });
+  }
+
+  Study study_of_designs(const char *name, void (*run)(Scene &, Run &), std::vector<UsageRule> own_rules)
+  {
+    Study study{name, run, {"Designs/", "Sweep/"}};
+    study.rules = std::move(own_rules);
+    study.rules.push_back({"Operation/Friction coefficient",
+                           [](const Parameters &) { return "designs go from Sweep/First to Sweep/Last friction coefficient"; }});
+    study.rules.push_back({"Operation/Rotation speed", no_sliding_speed});
+    study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved as reduced models"; }});
+    for (const char *path :
+         {"Sweep/Compare dissipation", "Sweep/Mode shapes at", "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter",
+          "Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
+      study.rules.push_back({path, [](const Parameters &) { return "designs have no maps, planes and mode shapes; Study = sweep has"; }});
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; };
+    return study;
+  }
+
+  void check_variables(const Parameters &parameters, const std::vector<std::string> &names)
+  {
+    for (const std::string &several : names)
+      for (const std::string &name : dealii::Utilities::split_string_list(several, '+'))
+        current_value(parameters, name);
+  }
+} // namespace Squeal

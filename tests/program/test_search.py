@@ -1,0 +1,109 @@
+"""Searches for quiet designs: budgets, what they report, held against single runs and full order; interrupted and resumed."""
+
+import signal
+import subprocess
+import time
+import unittest
+
+from program import EXECUTABLE, ProgramTest, eigenvalues, read_table
+
+VARIABLES = "Designs/Variables=Geometry/Pin height = 0.029 to 0.035; Pin material/Young modulus = 1.5e9 to 2.5e9"
+SEARCH = ["Study=search", VARIABLES, "Search/Samples=4", "Search/Evaluations=9", "Sweep/Number of friction coefficients=6"]
+RATE, BEST = "largest divergence rate [%]", "best largest divergence rate [%]"
+
+
+class SearchTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.search = cls.run_scene("search", *SEARCH)
+
+    def test_it_keeps_its_budget_and_its_best(self):
+        rows = read_table(self.search / "search.csv")
+        self.assertEqual([int(row["design [-]"]) for row in rows], list(range(1, len(rows) + 1)))
+        self.assertEqual([row["phase"] for row in rows[:4]], ["sample"] * 4)
+        self.assertLessEqual(len(rows), 9)
+        self.assertGreater(len(rows), 6)
+        smallest = float("inf")
+        for row in rows:
+            smallest = min(smallest, float(row[RATE]))
+            self.assertEqual(float(row[BEST]), smallest)
+            self.assertTrue(0.029 <= float(row["Geometry/Pin height"]) <= 0.035)
+            self.assertTrue(1.5e9 <= float(row["Pin material/Young modulus"]) <= 2.5e9)
+        designs = {row["design [-]"]: row for row in read_table(self.search / "designs.csv")}
+        for row in rows:
+            self.assertAlmostEqual(float(row[RATE]), float(designs[row["design [-]"]][RATE]), places=9)
+
+    def test_the_best_design_is_what_a_sweep_finds(self):
+        best = min(float(row[RATE]) for row in read_table(self.search / "search.csv"))
+        sweep = self.run_scene("best", file=str(self.search / "best.prm"))
+        found = max(float(row["divergence rate [%]"]) for row in read_table(sweep / "branches.csv"))
+        self.assertAlmostEqual(found, best, delta=1e-3 * best)
+
+    def test_the_best_design_is_that_at_full_order(self):
+        best = min(float(row[RATE]) for row in read_table(self.search / "search.csv"))
+        rows = read_table(self.search / "full_order.csv")
+        self.assertGreaterEqual(len(rows), 1)
+        # The last one is where the sweep found it
+        self.assertAlmostEqual(float(rows[-1]["divergence rate [%]"]), best, delta=1e-3 * best)
+        for row in rows:
+            self.assertLess(float(row["residual [-]"]), 1e-8)
+            single = self.run_scene("single", "Study=stability", f"Operation/Friction coefficient={row['mu [-]']}",
+                                    file=str(self.search / "best.prm"))
+            values = eigenvalues(single)
+            self.assertEqual(len(values), int(row["modes [-]"]))
+            self.assertAlmostEqual(100 * max(value.real / value.imag for value in values), float(row["divergence rate [%]"]), places=6)
+
+    def test_every_goal_and_method(self):
+        for goal, method in (("onset", "COBYLA"), ("onset", "BOBYQA"), ("divergence rate", "COBYLA")):
+            rows = read_table(self.run_scene("other", *SEARCH, f"Search/Goal={goal}", f"Search/Method={method}") / "search.csv")
+            self.assertLessEqual(len(rows), 9)
+            self.assertGreater(len(rows), 4)
+            if goal == "onset":
+                found = [float(row["mu of 0.01 % [-]"]) for row in rows]
+                self.assertEqual(float(rows[-1]["best mu of 0.01 % [-]"]), max(found))
+
+    def test_killed_and_resumed(self):
+        settings = [word for text in SEARCH for word in ("--set", text)]
+        kept = self.folder / "killed.checkpoint"
+        for number, how in ((2, signal.SIGKILL), (5, signal.SIGTERM)):
+            process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "killed", *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            deadline = time.monotonic() + 300
+            while len(list(kept.glob("design-*/design.result"))) < number and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            process.send_signal(how)
+            process.wait()
+            self.assertNotEqual(process.returncode, 0)
+        known = len(list(kept.glob("design-*/design.result")))
+        self.assertGreaterEqual(known, 5)
+        resumed = self.run_scene("killed", *SEARCH)
+        self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
+        self.assertFalse(kept.exists())
+
+    def test_what_is_refused(self):
+        for settings, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search needs ranges"),
+                               (["Designs/Variables="], "no parameter varies"),
+                               ([VARIABLES, "Search/Samples=20", "Search/Evaluations=10"], "more than the 10 evaluations"),
+                               ([VARIABLES, "Search/Smallest step=0.2"], "larger than the first"),
+                               (["Designs/Variables=Geometry/Pin hight = 0.03 to 0.04"], "nearest known name is `Geometry/Pin height`")):
+            words = [word for text in ["Study=search", *settings] for word in ("--set", text)]
+            process = self.call("scene.prm", "--output", "none", *words)
+            self.assertEqual(process.returncode, 1, settings)
+            self.assertIn(what, process.stderr)
+            self.assertFalse((self.folder / "none").exists())
+
+    def test_designs_that_cannot_be_meshed_are_walls(self):
+        """A part of the range cannot be meshed: the search goes on, and ends at a design that can."""
+        folder = self.run_scene("walls", "Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09", "Search/Samples=4",
+                                "Search/Evaluations=8", "Sweep/Number of friction coefficients=4")
+        rows = read_table(folder / "designs.csv")
+        self.assertIn("refused", {row["outcome"] for row in rows})
+        solved = [row for row in rows if row["outcome"] == "solved"]
+        self.assertGreater(len(solved), 0)
+        best = min(float(row[RATE] or 0) for row in solved)
+        self.assertEqual(float(read_table(folder / "search.csv")[-1][BEST]), best)
+
+
+if __name__ == "__main__":
+    unittest.main()
