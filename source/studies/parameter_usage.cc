@@ -119,9 +119,13 @@ namespace Squeal
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
-      for (const Study *other : studies())
-        for (const char *own : other->own_parameters)
-          if (other != parameters.study && concerns(own, path))
+      const auto owns = [&path](const Study *study) {
+        return std::any_of(study->own_parameters.begin(), study->own_parameters.end(),
+                           [&path](const char *own) { return concerns(own, path); });
+      };
+      if (!owns(parameters.study))
+        for (const Study *other : studies())
+          if (owns(other))
             return std::string("of Study = ") + other->name;
       for (const auto *table : {&parameters.study->rules, &general_rules()})
         for (const UsageRule &rule : *table)

@@ -84,6 +84,9 @@ namespace
                                                               {"Accuracy study/Grown tolerance", "1e-5"},
                                                               {"Accuracy study/Largest number of dofs", "1e6"},
                                                               {"Accuracy study/Band margin", "0.2"},
+                                                              {"Sensitivity/Largest number of modes", "3"},
+                                                              {"Sensitivity/Thresholds", "false"},
+                                                              {"Sensitivity/Tolerance", "1e-5"},
                                                               {"Ingredients/Frequency tolerance", "2"},
                                                               {"Ingredients/Divergence tolerance", "0.1"},
                                                               {"Ingredients/Trial friction slope", "-0.01"},
@@ -185,13 +188,14 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "ingredients", "paper", "reduction", "stability", "sweep"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"accuracy", "dissipation", "ingredients", "paper", "reduction", "sensitivity", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
-  const std::vector<std::string> others = {"Reduction/",           "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration",
-                                           "Complex modes/Maximum"};
+  const std::vector<std::string> others = {
+    "Reduction/", "Sensitivity/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration", "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -201,8 +205,8 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Shift", "Complex modes/Tolerance",
-                             "Output/Field format", "Output/Animation"},
+            those_of(joined({"Reduction/", "Sensitivity/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Shift",
+                             "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
@@ -213,14 +217,15 @@ TEST(ParameterUsage, OfStability)
 TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Steady sliding/Contact", "Complex modes/Iteration",
-                      "Complex modes/Maximum", "Output/"}));
+            those_of({"Reduction/", "Sensitivity/", "Sweep/", "Ingredients/", "Accuracy study/", "Steady sliding/Contact",
+                      "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
   const std::vector<std::string> always = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"};
+    "Reduction/", "Sensitivity/", "Sweep/", "Ingredients/", "Accuracy study/", "Complex modes/Iteration", "Complex modes/Maximum",
+    "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
@@ -231,7 +236,8 @@ TEST(ParameterUsage, OfAccuracy)
 {
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
-  const std::vector<std::string> others = joined({"Reduction/", "Sweep/", "Ingredients/", "Output/", "Complex modes/Iteration"}, steady);
+  const std::vector<std::string> others =
+    joined({"Reduction/", "Sensitivity/", "Sweep/", "Ingredients/", "Output/", "Complex modes/Iteration"}, steady);
   EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
             those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
@@ -240,12 +246,13 @@ TEST(ParameterUsage, OfAccuracy)
 TEST(ParameterUsage, OfIngredients)
 {
   // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sensitivity/", "Sweep/", "Accuracy study/", "Output/"}));
 }
 
 TEST(ParameterUsage, OfReduction)
 {
-  const std::vector<std::string> always = {"Sweep/",
+  const std::vector<std::string> always = {"Sensitivity/",
+                                           "Sweep/",
                                            "Ingredients/",
                                            "Accuracy study/",
                                            "Output/",
@@ -266,9 +273,9 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {
-    "Reduction/",   "Ingredients/",     "Accuracy study/", "Complex modes/", "Operation/Friction coefficient",
-    "Output/Write", "Output/Component", "Output/Real"};
+  const std::vector<std::string> always = {"Reduction/",      "Sensitivity/",     "Ingredients/",
+                                           "Accuracy study/", "Complex modes/",   "Operation/Friction coefficient",
+                                           "Output/Write",    "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),
@@ -276,6 +283,24 @@ TEST(ParameterUsage, OfSweeps)
   EXPECT_EQ(
     unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
     those_of(joined(always, steady)));
+}
+
+TEST(ParameterUsage, OfSensitivities)
+{
+  const std::vector<std::string> always   = {"Reduction/",     "Ingredients/",        "Accuracy study/", "Complex modes/", "Sweep/Compare",
+                                             "Sweep/Mode",     "Sweep/Complex plane", "Sweep/Count",     "Sweep/Map",      "Sweep/First map",
+                                             "Sweep/Last map", "Sweep/Number of map", "Output/"};
+  const std::vector<std::string> steady   = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                             "Steady sliding/Gaps"};
+  const std::vector<std::string> undamped = {"Operation/Load", "Operation/Rotation speed"};
+  // Modal damping is refused
+  const std::set<std::string> refused = {"Damping/Modal damping ratio"};
+  EXPECT_EQ(unused_alone({"Study=sensitivity"}), those_of(joined(joined(always, steady), undamped), refused));
+  EXPECT_EQ(unused_alone({"Study=sensitivity", "Operation/Radial dissipation=consistent"}), those_of(joined(always, steady), refused));
+  EXPECT_EQ(unused_alone({"Study=sensitivity", "Sensitivity/Thresholds=false"}),
+            those_of(joined(joined(joined(always, steady), undamped),
+                            {"Sweep/First friction", "Sweep/Last friction", "Sweep/Number of friction", "Sweep/Threshold"}),
+                     refused));
 }
 
 TEST(ParameterUsage, OfGeometries)

@@ -9,6 +9,7 @@
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
+#include <squeal/parameters/sensitivity.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
@@ -33,6 +34,7 @@ namespace Squeal
     DampingParameters        damping;
     ReductionParameters      reduction;
     SweepParameters          sweep;
+    SensitivityParameters    sensitivity;
     IngredientsParameters    ingredients;
     AccuracyStudyParameters  accuracy;
     SolverParameters         solvers;

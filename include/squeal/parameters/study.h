@@ -32,7 +32,7 @@ namespace Squeal
     const char *name;            ///< in `set Study = ...`
     void (*run)(Scene &, Run &); ///< the scene is meshed
 
-    /// Paths of parameters and sections that no other study uses.
+    /// Paths of parameters and sections that no other study uses but those that list them, too.
     std::vector<const char *> own_parameters = {};
 
     /// When it leaves parameters unused, its own or others'. For those that it names the general rules do not hold.
