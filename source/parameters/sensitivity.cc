@@ -13,6 +13,10 @@ namespace Squeal
     declarations.add("Thresholds", thresholds,
                      "Find the thresholds between Sweep/First and Sweep/Last friction coefficient, and their derivatives.");
     declarations.add(
+      "Geometry", geometry,
+      "Derivatives with respect to lengths of the built-in geometry, disc_pins.geo, and to the place of each pin; they take two "
+      "assemblies each.");
+    declarations.add(
       "Tolerance", tolerance,
       "Change of the derivatives of a mode by the last growth of the basis, relative to the largest of them, up to which the "
       "basis grows. Units: none.",

@@ -1,4 +1,6 @@
 #include <squeal/base/conventions.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/sensitivity_model.h>
 #include <squeal/tracking/mode_links.h>
 
@@ -392,6 +394,10 @@ namespace Squeal
     const Eigentriples    apart   = on_bodies(sweep.frictionless.linearisation.contact, mu, triples);
     const TermProducts    of_contact(coupled.terms, triples), of_bodies(bodies.terms, apart);
 
+    const Eigentriples alone = on_bodies(sweep.frictionless.linearisation.contact, 0., triples); // without friction in the left vectors
+    const auto         k     = static_cast<int>(modes.size());
+    const auto         r_n   = normal_reactions(coupled, triples.lambda, view(triples.right, 0, k), view(triples.right, k, k));
+
     SensitivityProducts result{triples.lambda, of_contact.by_lambda(values), {}};
     for (const SensitivityParameter &parameter : parameters)
       {
@@ -400,7 +406,39 @@ namespace Squeal
           N += TermProducts(parameter.derivative, apart).pencil(bodies.values);
         if (parameter.operation != nullptr)
           N += of_contact.along(values, contact_rates(parameter, mu));
+        if (parameter.contact)
+          N += by_moved_contact(*parameter.contact, mu, alone, r_n);
         result.N.push_back(std::move(N));
+      }
+    return result;
+  }
+
+  ComplexDenseMatrix SensitivityModel::by_moved_contact(const ContactMotion      &motion,
+                                                        const double              friction_coefficient,
+                                                        const Eigentriples       &apart,
+                                                        const ComplexDenseMatrix &reactions) const
+  {
+    const Scene              &scene     = sweep.plan.scene;
+    const OperationParameters operation = sweep.plan.lines[main_line].at(friction_coefficient);
+    const auto                state     = sweep.plan.sliding_state(operation);
+    const auto                k         = static_cast<Eigen::Index>(apart.lambda.size());
+    ComplexDenseMatrix        result    = ComplexDenseMatrix::Zero(k, k);
+    for (const auto &[interface, sign] : {std::make_pair(&motion.before, -1.), std::make_pair(&motion.after, 1.)})
+      {
+        ContactInterface closed;
+        for (const unsigned int c : sweep.regime.closed)
+          closed.push_back((*interface)[c]);
+        const ContactOperators contact = contact_operators(*scene.model, closed);
+        // Friction: −μ P_tᵀ r_n. The reactions of a motion do not change, since normals do not
+        const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
+        result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
+        const ContactDamping damping = selected(state_of_contact(*interface, state, operation).damping, sweep.regime.closed);
+        if (const auto C = contact_damping(contact, damping))
+          {
+            const ComplexDenseMatrix forms = product_of_halves(gram(apart.left, *C * apart.right));
+            for (Eigen::Index j = 0; j < k; ++j)
+              result.col(j) += sign / motion.step * apart.lambda[j] * forms.col(j);
+          }
       }
     return result;
   }

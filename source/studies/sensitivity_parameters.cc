@@ -1,3 +1,6 @@
+#include <squeal/assembly/rotation.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/sensitivity/mesh_motions.h>
 #include <squeal/studies/sensitivity_parameters.h>
 
 #include <algorithm>
@@ -36,7 +39,7 @@ namespace Squeal
                                      const std::string              &single = "")
     {
       SensitivityParameter result{
-        section + "/" + number.name, single, number.unit, material.*number.value, {}, {}, nullptr, number.deforms};
+        section + "/" + number.name, single, number.unit, material.*number.value, {}, {}, nullptr, {}, number.deforms};
       for (const std::string &body : bodies)
         result.body_rates[number.parameter(body)] = {1.};
       return result;
@@ -53,7 +56,7 @@ namespace Squeal
       const double       nu = poisson_ratio(less), h = relative_step * std::min(0.5 - nu, 1. + nu);
       poisson_ratio(less) -= h;
       poisson_ratio(more) += h;
-      SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}, nullptr, true};
+      SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}, nullptr, {}, true};
       const std::vector<Term> before = body_terms(*scene.model, less).terms, after = body_terms(*scene.model, more).terms;
       for (std::size_t k = 0; k < after.size(); ++k)
         for (const std::string &body : bodies)
@@ -111,6 +114,7 @@ namespace Squeal
                             {{BodyParameter::mount_stiffness(direction, mount.surface), {1.}}},
                             {},
                             nullptr,
+                            {},
                             true});
 
     result.push_back(
@@ -126,6 +130,68 @@ namespace Squeal
       }
     if (operation.load_per_side > 0.)
       result.push_back({"Operation/Friction slope", "", "s/m", operation.friction_slope, {}, {}, &OperationParameters::friction_slope});
+    return result;
+  }
+
+  namespace
+  {
+    /// Largest motion of a node by a step, over the radius of the disc.
+    constexpr double motion_step = 3e-6;
+
+    /// The bodies and all contact nodes on a mesh whose nodes have moved.
+    struct MovedScene
+    {
+      BodyTerms        bodies;
+      ContactInterface interface;
+    };
+
+    MovedScene moved_scene(const Scene &scene, const MeshMotion &motion, const double change, const Run &run)
+    {
+      const Parameters &parameters = run.parameters;
+      const Model       model(moved(scene.mesh, motion, change), parameters.discretization.element, run.communicator);
+      MovedScene        result{body_terms(model, parameters.materials),
+                        pair_contact_nodes(model, parameters.operation.rotation, parameters.geometry.pairing_tolerance)};
+      if (parameters.operation.rotating_disc)
+        add_rotation(result.bodies, model, parameters.operation.angular_velocity());
+      for (std::size_t c = 0; c < result.interface.size(); ++c)
+        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node != scene.interface[c].disc_node ||
+            result.interface[c].pin_node != scene.interface[c].pin_node)
+          throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
+                          "set Sensitivity/Geometry = none");
+      return result;
+    }
+  } // namespace
+
+  std::vector<SensitivityParameter> geometry_sensitivity_parameters(const Scene &scene, const BodyTerms &bodies, Run &run)
+  {
+    const GeometryParameters         &geometry = run.parameters.geometry;
+    const GeometrySensitivities       wanted   = run.parameters.sensitivity.geometry;
+    std::vector<SensitivityParameter> result;
+    if (wanted == GeometrySensitivities::none || geometry.file != GeometryParameters().file)
+      return result;
+    run.progress.begin("Moved meshes");
+    for (const MeshMotion &motion : mesh_motions(scene.mesh, geometry))
+      {
+        if (!motion.pin.empty() && wanted != GeometrySensitivities::sizes_and_places)
+          continue;
+        run.progress.update(motion.parameter + " " + motion.pin);
+        const double         step   = motion_step * geometry.disc_outer_radius / largest_velocity(motion);
+        const MovedScene     before = moved_scene(scene, motion, -step, run), after = moved_scene(scene, motion, step, run);
+        SensitivityParameter parameter{motion.parameter, motion.pin, motion.unit, motion.value, {}, {}, nullptr, {}, true};
+        for (std::size_t k = 0; k < bodies.terms.size(); ++k)
+          {
+            const auto difference = add(0.5 / step, *after.bodies.terms[k].matrix, -0.5 / step, *before.bodies.terms[k].matrix);
+            if (max_norm(*difference) > 0.)
+              {
+                parameter.derivative.push_back(bodies.terms[k]);
+                parameter.derivative.back().matrix = difference;
+              }
+          }
+        if (motion.moves_contact)
+          parameter.contact = std::make_shared<ContactMotion>(ContactMotion{before.interface, after.interface, 2. * step});
+        result.push_back(std::move(parameter));
+      }
+    run.progress.finish(text(result.size(), " lengths and angles"));
     return result;
   }
 } // namespace Squeal

@@ -77,10 +77,12 @@ namespace Squeal
    */
   static void run_sensitivity_study(Scene &scene, Run &run)
   {
-    const Parameters                       &p          = run.parameters;
-    const double                            mu         = p.operation.friction_coefficient;
-    const BodyTerms                         bodies     = assemble_scene(scene, run);
-    const std::vector<SensitivityParameter> parameters = sensitivity_parameters(scene, p);
+    const Parameters                 &p          = run.parameters;
+    const double                      mu         = p.operation.friction_coefficient;
+    const BodyTerms                   bodies     = assemble_scene(scene, run);
+    std::vector<SensitivityParameter> parameters = sensitivity_parameters(scene, p);
+    for (SensitivityParameter &parameter : geometry_sensitivity_parameters(scene, bodies, run))
+      parameters.push_back(std::move(parameter));
 
     const SweepPlan plan   = sweep_plan(scene, {line_of(p)}, run);
     const auto      closed = plan.closed_at(mu);

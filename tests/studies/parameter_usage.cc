@@ -86,6 +86,7 @@ namespace
                                                               {"Accuracy study/Band margin", "0.2"},
                                                               {"Sensitivity/Largest number of modes", "3"},
                                                               {"Sensitivity/Thresholds", "false"},
+                                                              {"Sensitivity/Geometry", "none"},
                                                               {"Sensitivity/Tolerance", "1e-5"},
                                                               {"Ingredients/Frequency tolerance", "2"},
                                                               {"Ingredients/Divergence tolerance", "0.1"},

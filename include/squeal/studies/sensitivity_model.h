@@ -31,6 +31,12 @@ namespace Squeal
     /// Products of modes of a point of the main line. All processes must call.
     SensitivityProducts products(const ChartPoint &point, const std::vector<int> &modes) const;
 
+    /// ψ_iᵀ (dQ(λ_j)/dp) φ_j of friction and damping of contact nodes that move, with the vectors on the dofs of the bodies and the reactions.
+    ComplexDenseMatrix by_moved_contact(const ContactMotion      &motion,
+                                        double                    friction_coefficient,
+                                        const Eigentriples       &apart,
+                                        const ComplexDenseMatrix &reactions) const;
+
     /// Rates of the friction coefficient and of the contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
   };
