@@ -423,16 +423,21 @@ namespace Squeal
     const auto                state     = sweep.plan.sliding_state(operation);
     const auto                k         = static_cast<Eigen::Index>(apart.lambda.size());
     ComplexDenseMatrix        result    = ComplexDenseMatrix::Zero(k, k);
-    for (const auto &[interface, sign] : {std::make_pair(&motion.before, -1.), std::make_pair(&motion.after, 1.)})
+    const bool                all       = sweep.regime.closed.size() == scene.interface.size();
+    for (const bool is_after : {false, true})
       {
-        ContactInterface closed;
+        const ContactInterface &interface = is_after ? motion.after : motion.before;
+        const double            sign      = is_after ? 1. : -1.;
+        ContactInterface        closed;
         for (const unsigned int c : sweep.regime.closed)
-          closed.push_back((*interface)[c]);
-        const ContactOperators contact = contact_operators(*scene.model, closed);
+          closed.push_back(interface[c]);
+        const ContactOperators contact = !all     ? contact_operators(*scene.model, closed) :
+                                         is_after ? motion.operators_after :
+                                                    motion.operators_before;
         // Friction: −μ P_tᵀ r_n. The reactions of a motion do not change, since normals do not
         const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
         result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
-        const ContactDamping damping = selected(state_of_contact(*interface, state, operation).damping, sweep.regime.closed);
+        const ContactDamping damping = selected(state_of_contact(interface, state, operation).damping, sweep.regime.closed);
         if (const auto C = contact_damping(contact, damping))
           {
             const ComplexDenseMatrix forms = product_of_halves(gram(apart.left, *C * apart.right));

@@ -187,8 +187,12 @@ namespace Squeal
                 parameter.derivative.back().matrix = difference;
               }
           }
+        // One matrix of each kind instead of one for each body
+        parameter.derivative = merged(parameter.derivative, bodies.values);
         if (motion.moves_contact)
-          parameter.contact = std::make_shared<ContactMotion>(ContactMotion{before.interface, after.interface, 2. * step});
+          parameter.contact = std::make_shared<ContactMotion>(ContactMotion{before.interface, after.interface,
+                                                                            contact_operators(*scene.model, before.interface),
+                                                                            contact_operators(*scene.model, after.interface), 2. * step});
         result.push_back(std::move(parameter));
       }
     run.progress.finish(text(result.size(), " lengths and angles"));

@@ -10,8 +10,9 @@ namespace Squeal
   /// The contact before and after a motion of its nodes in the plane of the disc.
   struct ContactMotion
   {
-    ContactInterface before, after; ///< all pairs
-    double           step;          ///< change of the parameter between them
+    ContactInterface before, after;                     ///< all pairs
+    ContactOperators operators_before, operators_after; ///< on the dofs of the scene
+    double           step;                              ///< change of the parameter between them
   };
 
   /**
