@@ -269,6 +269,7 @@ class Ingredients(PlotTest):
 
 class Sensitivity(PlotTest):
     OVERRIDES = ["Study=sensitivity", "Sensitivity/Thresholds=false"]
+    WITH_NAMES_ABOVE = ("sensitivity",)
 
     def test_bars(self):
         self.assert_drawn({"sensitivity"})
