@@ -83,8 +83,8 @@ namespace Squeal
       const auto         matrices = assemble_cells(model, belongs, {stiffness, mass});
       const auto        &K = matrices[0], &M = matrices[1];
 
-      const std::string young = "Young's modulus, " + name, density = "density, " + name, alpha = "Rayleigh alpha, " + name,
-                        beta = "Rayleigh beta, " + name;
+      const std::string young = BodyParameter::young_modulus(name), density = BodyParameter::density(name),
+                        alpha = BodyParameter::rayleigh_alpha(name), beta = BodyParameter::rayleigh_beta(name);
       bodies.values[young]   = {material.young_modulus};
       bodies.values[density] = {material.density};
       bodies.values[alpha]   = {material.rayleigh_alpha};
@@ -121,13 +121,41 @@ namespace Squeal
                     integrate_mount(values, e, K);
                   }
             };
-            const std::string parameter = std::string(name) + " stiffness, " + mount.surface;
+            const std::string parameter = BodyParameter::mount_stiffness(name, mount.surface);
             bodies.values[parameter]    = {stiffness};
             bodies.terms.push_back(
               sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, {integral})[0]));
           }
     }
   } // namespace
+
+  namespace BodyParameter
+  {
+    std::string young_modulus(const std::string &body)
+    {
+      return "Young's modulus, " + body;
+    }
+
+    std::string density(const std::string &body)
+    {
+      return "density, " + body;
+    }
+
+    std::string rayleigh_alpha(const std::string &body)
+    {
+      return "Rayleigh alpha, " + body;
+    }
+
+    std::string rayleigh_beta(const std::string &body)
+    {
+      return "Rayleigh beta, " + body;
+    }
+
+    std::string mount_stiffness(const std::string &direction, const std::string &surface)
+    {
+      return direction + " stiffness, " + surface;
+    }
+  } // namespace BodyParameter
 
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials)
   {

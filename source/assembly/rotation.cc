@@ -45,7 +45,7 @@ namespace Squeal
     };
     const auto matrices = assemble_cells(model, is_disc, {gyroscopic, convective});
 
-    const char *const speed = "angular velocity of the disc", *const density = "density, disc";
+    const std::string speed = BodyParameter::angular_velocity, density = BodyParameter::density(model.component_names().front());
     bodies.values[speed] = {angular_velocity};
     bodies.terms.push_back(sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, matrices[0], Symmetry::skew));
     bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, matrices[1]));

@@ -183,6 +183,7 @@ namespace Squeal
     damping.declare(declarations);
     reduction.declare(declarations);
     sweep.declare(declarations);
+    sensitivity.declare(declarations);
     ingredients.declare(declarations);
     accuracy.declare(declarations);
     designs.declare(declarations);

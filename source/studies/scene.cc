@@ -76,7 +76,7 @@ namespace Squeal
     return scene;
   }
 
-  void assemble_scene(Scene &scene, Run &run)
+  BodyTerms assemble_scene(Scene &scene, Run &run)
   {
     run.progress.begin("Assembly");
     const Parameters &parameters = run.parameters;
@@ -92,6 +92,7 @@ namespace Squeal
     scene.bodies = merged(bodies.terms, bodies.values);
     scene.system = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
+    return bodies;
   }
 
   SlidingModel sliding_model(const Scene &scene, const Parameters &parameters)

@@ -97,34 +97,6 @@ namespace Squeal
       return result;
     }
 
-    SweepChart follow(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore &store)
-    {
-      Run        &run         = model.run;
-      std::size_t n_evaluated = 0;
-      const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
-        n_evaluated += friction_coefficients.size();
-        run.progress.update(text(n_evaluated, " points"));
-        return model.evaluate(line, friction_coefficients, &store);
-      };
-      run.progress.begin("Branches");
-      ChartOptions options;
-      options.largest_circular_frequency = model.largest_circular_frequency;
-      options.threshold_tolerance        = run.parameters.sweep.threshold_tolerance;
-      // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
-      // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
-      ChartOptions coarse        = options;
-      coarse.maximum_refinements = 0;
-      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
-      SweepChart            result{stability_chart(grid, evaluate, options), {}};
-      const StabilityChart &chart = result.chart;
-      result.labels               = branch_labels(model, chart);
-      run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
-                               " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
-      if (chart.n_doubtful_steps > 0)
-        run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be told apart by their frequencies only"));
-      return result;
-    }
-
     /// Without friction as many modes as inertia counts.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
@@ -161,6 +133,34 @@ namespace Squeal
     return stream.str();
   }
 
+  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore &store)
+  {
+    Run        &run         = model.run;
+    std::size_t n_evaluated = 0;
+    const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
+      n_evaluated += friction_coefficients.size();
+      run.progress.update(text(n_evaluated, " points"));
+      return model.evaluate(line, friction_coefficients, &store);
+    };
+    run.progress.begin("Branches");
+    ChartOptions options;
+    options.largest_circular_frequency = model.largest_circular_frequency;
+    options.threshold_tolerance        = run.parameters.sweep.threshold_tolerance;
+    // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
+    // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
+    ChartOptions coarse        = options;
+    coarse.maximum_refinements = 0;
+    sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
+    SweepChart            result{stability_chart(grid, evaluate, options), {}};
+    const StabilityChart &chart = result.chart;
+    result.labels               = branch_labels(model, chart);
+    run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
+                             " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
+    if (chart.n_doubtful_steps > 0)
+      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be told apart by their frequencies only"));
+    return result;
+  }
+
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
   {
     return checkpoint.part(text("contact set ", model.regime.number, " of ", model.regime.closed.size(), " nodes, ", phase),
@@ -174,7 +174,7 @@ namespace Squeal
         for (const auto &stretch : stretches(model, static_cast<int>(l)))
           {
             const auto store = store_of(model, checkpoint, text("line ", l, " from ", exact_text(stretch.front())));
-            charts[l].push_back(follow(model, static_cast<int>(l), stretch, *store));
+            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch, *store));
             if (kind == SweepLine::Kind::main)
               compare_with_inertia(model, charts[l].back().chart);
           }

@@ -65,7 +65,12 @@ namespace Squeal
 
   SweepPlan sweep_plan(const Scene &scene, Run &run)
   {
-    SweepPlan                   plan{scene, run.parameters.sliding, nullptr, lines_of(run.parameters), {}};
+    return sweep_plan(scene, lines_of(run.parameters), run);
+  }
+
+  SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run)
+  {
+    SweepPlan                   plan{scene, run.parameters.sliding, nullptr, lines, {}};
     std::vector<ContactRegime> &regimes  = plan.regimes;
     std::size_t                 n_points = 0;
     if (plan.sliding_parameters.state == ContactState::steady_sliding)

@@ -59,6 +59,18 @@ namespace Squeal
     return result;
   }
 
+  Monomial derivative(const Monomial &monomial, const std::string &parameter)
+  {
+    const auto found = monomial.powers.find(parameter);
+    if (found == monomial.powers.end())
+      return {0., {}};
+    Monomial result = monomial;
+    result.factor *= found->second;
+    if (--result.powers[parameter] == 0)
+      result.powers.erase(parameter);
+    return result;
+  }
+
   bool Term::vanishes(const ParameterValues &values) const
   {
     if (coefficient.at(values) == 0.)

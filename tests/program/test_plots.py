@@ -267,6 +267,26 @@ class Ingredients(PlotTest):
         self.assertEqual([x for x, _ in line_of(panels[1], "accuracy asked for")], [0.2, 0.2])
 
 
+class Sensitivity(PlotTest):
+    OVERRIDES = ["Study=sensitivity", "Sensitivity/Thresholds=false"]
+    WITH_NAMES_ABOVE = ("sensitivity",)
+
+    def test_bars(self):
+        self.assert_drawn({"sensitivity"})
+        rows = [row for row in read_table(self.results / "sensitivities.csv")
+                if not row["only of"] and row["divergence rate per 1 % [percentage points]"]]
+        panels = self.figures["sensitivity"].axes
+        self.assertEqual(len(panels), min(4, len({row["mode [-]"] for row in rows})))
+        names = [label.get_text() for label in panels[0].get_yticklabels()]
+        for mode, axes in enumerate(panels, start=1):
+            expected = {names.index(row["parameter"]): float(row["divergence rate per 1 % [percentage points]"])
+                        for row in rows if int(row["mode [-]"]) == mode}
+            self.assertEqual(len(expected), len(names))
+            bars = {round(bar.get_y() + bar.get_height() / 2): bar.get_width() for bar in axes.patches}
+            for place, value in expected.items():
+                self.assertAlmostEqual(bars.get(place, 0.0), value, places=12)
+
+
 @unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
 class Pictures(ProgramTest):
     """What becomes of pictures when they are drawn again and when the run is repeated."""

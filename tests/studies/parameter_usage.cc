@@ -99,6 +99,10 @@ namespace
                                                               {"Designs/Number of designs", "5"},
                                                               {"Designs/Seed", "2"},
                                                               {"Designs/Processes", "3"},
+                                                              {"Sensitivity/Largest number of modes", "3"},
+                                                              {"Sensitivity/Thresholds", "false"},
+                                                              {"Sensitivity/Geometry", "none"},
+                                                              {"Sensitivity/Tolerance", "1e-5"},
                                                               {"Search/Goal", "onset"},
                                                               {"Search/Method", "COBYLA"},
                                                               {"Search/Samples", "5"},
@@ -206,14 +210,15 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "search", "stability",
-                                          "sweep"}));
+  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "search",
+                                          "sensitivity", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
 {
   const std::vector<std::string> others = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Iteration", "Complex modes/Maximum"};
+    "Reduction/",           "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/", "Complex modes/Iteration",
+    "Complex modes/Maximum"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
@@ -223,8 +228,8 @@ TEST(ParameterUsage, OfStability)
               {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Shift",
-                             "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
+            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/",
+                             "Complex modes/Shift", "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
@@ -235,15 +240,22 @@ TEST(ParameterUsage, OfStability)
 TEST(ParameterUsage, OfDissipation)
 {
   EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Steady sliding/Contact",
-                      "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
+            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/",
+                      "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
 }
 
 TEST(ParameterUsage, OfThePaper)
 {
-  const std::vector<std::string> always = {
-    "Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Complex modes/Iteration", "Complex modes/Maximum",
-    "Output/"};
+  const std::vector<std::string> always = {"Reduction/",
+                                           "Sweep/",
+                                           "Ingredients/",
+                                           "Accuracy study/",
+                                           "Designs/",
+                                           "Search/",
+                                           "Sensitivity/",
+                                           "Complex modes/Iteration",
+                                           "Complex modes/Maximum",
+                                           "Output/"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
@@ -255,7 +267,7 @@ TEST(ParameterUsage, OfAccuracy)
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   const std::vector<std::string> others =
-    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Search/", "Output/", "Complex modes/Iteration"}, steady);
+    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Search/", "Sensitivity/", "Output/", "Complex modes/Iteration"}, steady);
   EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
   EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
             those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
@@ -264,12 +276,14 @@ TEST(ParameterUsage, OfAccuracy)
 TEST(ParameterUsage, OfIngredients)
 {
   // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}), those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Search/", "Output/"}));
+  EXPECT_EQ(unused_alone({"Study=ingredients"}),
+            those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/", "Output/"}));
 }
 
 TEST(ParameterUsage, OfReduction)
 {
-  const std::vector<std::string> always = {"Sweep/",
+  const std::vector<std::string> always = {"Sensitivity/",
+                                           "Sweep/",
                                            "Ingredients/",
                                            "Accuracy study/",
                                            "Designs/",
@@ -292,9 +306,9 @@ TEST(ParameterUsage, OfReduction)
 
 TEST(ParameterUsage, OfSweeps)
 {
-  const std::vector<std::string> always = {
-    "Reduction/",   "Ingredients/",     "Accuracy study/", "Designs/", "Search/", "Complex modes/", "Operation/Friction coefficient",
-    "Output/Write", "Output/Component", "Output/Real"};
+  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Accuracy study/", "Designs/",
+                                           "Search/",      "Sensitivity/",     "Complex modes/",  "Operation/Friction coefficient",
+                                           "Output/Write", "Output/Component", "Output/Real"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   EXPECT_EQ(unused_alone({"Study=sweep"}),
@@ -302,6 +316,24 @@ TEST(ParameterUsage, OfSweeps)
   EXPECT_EQ(
     unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
     those_of(joined(always, steady)));
+}
+
+TEST(ParameterUsage, OfSensitivities)
+{
+  const std::vector<std::string> always = {"Designs/",       "Search/",         "Reduction/",     "Ingredients/",        "Accuracy study/",
+                                           "Complex modes/", "Sweep/Compare",   "Sweep/Mode",     "Sweep/Complex plane", "Sweep/Count",
+                                           "Sweep/Map",      "Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Output/"};
+  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
+                                           "Steady sliding/Gaps"};
+  const std::vector<std::string> undamped = {"Operation/Load", "Operation/Rotation speed"};
+  // Modal damping is refused
+  const std::set<std::string> refused = {"Damping/Modal damping ratio"};
+  EXPECT_EQ(unused_alone({"Study=sensitivity"}), those_of(joined(joined(always, steady), undamped), refused));
+  EXPECT_EQ(unused_alone({"Study=sensitivity", "Operation/Radial dissipation=consistent"}), those_of(joined(always, steady), refused));
+  EXPECT_EQ(unused_alone({"Study=sensitivity", "Sensitivity/Thresholds=false"}),
+            those_of(joined(joined(joined(always, steady), undamped),
+                            {"Sweep/First friction", "Sweep/Last friction", "Sweep/Number of friction", "Sweep/Threshold"}),
+                     refused));
 }
 
 TEST(ParameterUsage, OfGeometries)
@@ -350,10 +382,22 @@ TEST(ParameterUsage, OfDesigns)
 {
   const std::vector<std::string> run =
     run_of(*Parameters::read("/dev/null", {"Study=geometry", "Designs/Variables=Geometry/Pin height=1, 2"}).study);
-  const std::vector<std::string> always = {
-    "Search/",         "Reduction/",     "Ingredients/",       "Accuracy study/", "Complex modes/", "Operation/Friction coefficient",
-    "Output/",         "Sweep/Compare",  "Sweep/Mode shapes",  "Sweep/Complex",   "Sweep/Count",    "Sweep/Map",
-    "Sweep/First map", "Sweep/Last map", "Sweep/Number of map"};
+  const std::vector<std::string> always = {"Sensitivity/",
+                                           "Search/",
+                                           "Reduction/",
+                                           "Ingredients/",
+                                           "Accuracy study/",
+                                           "Complex modes/",
+                                           "Operation/Friction coefficient",
+                                           "Output/",
+                                           "Sweep/Compare",
+                                           "Sweep/Mode shapes",
+                                           "Sweep/Complex",
+                                           "Sweep/Count",
+                                           "Sweep/Map",
+                                           "Sweep/First map",
+                                           "Sweep/Last map",
+                                           "Sweep/Number of map"};
   const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
                                            "Steady sliding/Gaps"};
   const std::vector<std::string> idle   = {"Operation/Load", "Operation/Rotation speed"};

@@ -13,6 +13,20 @@ namespace Squeal
     ParameterValues   values;
   };
 
+  /// Names of the parameters of body_terms() and add_rotation().
+  namespace BodyParameter
+  {
+    std::string young_modulus(const std::string &body);  ///< E [Pa]
+    std::string density(const std::string &body);        ///< ρ [kg/m³]
+    std::string rayleigh_alpha(const std::string &body); ///< α [1/s]
+    std::string rayleigh_beta(const std::string &body);  ///< β [s]
+
+    /// k [N/m³] of a mount; @p direction is radial, tangential or axial.
+    std::string mount_stiffness(const std::string &direction, const std::string &surface);
+
+    inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
+  }                                                                                 // namespace BodyParameter
+
   /**
    * Terms of the disc and of every pin on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
    * parameters of each body, such as "density, pin_top_1":

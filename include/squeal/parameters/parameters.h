@@ -11,6 +11,7 @@
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
 #include <squeal/parameters/search.h>
+#include <squeal/parameters/sensitivity.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
 #include <squeal/parameters/sweep.h>
@@ -36,6 +37,7 @@ namespace Squeal
     DampingParameters        damping;
     ReductionParameters      reduction;
     SweepParameters          sweep;
+    SensitivityParameters    sensitivity;
     IngredientsParameters    ingredients;
     AccuracyStudyParameters  accuracy;
     DesignParameters         designs;

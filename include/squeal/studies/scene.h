@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/assembly/elasticity.h>
 #include <squeal/contact/coupled_system.h>
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/model/model.h>
@@ -60,8 +61,8 @@ namespace Squeal
   /// Meshes, checks and pairs; refuses parameters that do not fit the pins. The system is left empty.
   Scene mesh_scene(Run &run);
 
-  /// Assembles the system of the uncoupled bodies.
-  void assemble_scene(Scene &scene, Run &run);
+  /// Assembles the system of the uncoupled bodies; returns its terms with their coefficients, before they are merged.
+  BodyTerms assemble_scene(Scene &scene, Run &run);
 
   /// What serves all steady sliding states of an assembled scene.
   SlidingModel sliding_model(const Scene &scene, const Parameters &parameters);

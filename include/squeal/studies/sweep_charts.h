@@ -23,6 +23,9 @@ namespace Squeal
   /// Where the results of a phase of the work on a contact set are kept.
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
 
+  /// Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run.
+  SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients, ChartStore &store);
+
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
   void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts);
 

@@ -64,4 +64,7 @@ namespace Squeal
 
   /// Finds the states of contact at all operating points that the parameters ask for, as steps of the run. @p scene must outlive the plan.
   SweepPlan sweep_plan(const Scene &scene, Run &run);
+
+  /// The same for some lines of operating points.
+  SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
 } // namespace Squeal

@@ -36,6 +36,9 @@ namespace Squeal
 
   Monomial operator*(const Monomial &a, const Monomial &b);
 
+  /// Partial derivative with respect to a named parameter; of factor zero where the parameter does not occur.
+  Monomial derivative(const Monomial &monomial, const std::string &parameter);
+
   enum class Symmetry
   {
     symmetric,

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <squeal/contact/contact_operators.h>
+#include <squeal/contact/coupled_system.h>
+
+#include <complex>
+#include <vector>
+
+namespace Squeal
+{
+  /// Eigenvalues with right and left vectors at full order, ψᵀ Q(λ) = 0 without conjugate, of any length.
+  struct Eigentriples
+  {
+    std::vector<std::complex<double>> lambda;      ///< [rad/s]
+    MultiVector                       right, left; ///< φ and ψ, n × 2k: real parts, then imaginary parts
+  };
+
+  /**
+   * The vectors u and w on the dofs of the uncoupled bodies with which every matrix X of a body contributes to Q,
+   *
+   *   ψᵀ (T_cᵀ X T_c − μ A V_X) φ = wᵀ X u,   u = T_c φ,   w = T_c ψ − (μ/2) P_nᵀ P_t T_c ψ,
+   *
+   * since A = T_cᵀ P_tᵀ and V_X = ½ P_n X T_c: friction takes part in every derivative with respect to a body by w alone.
+   */
+  Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
+
+  /**
+   * Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, from which follow its derivatives with
+   * respect to every parameter. Rates of parameters, a ParameterValues with dp/ds, give a direction s: one rate for a parameter that is a number, and
+   * one for each entry of a list, such as damping coefficients of contact nodes.
+   */
+  class TermProducts
+  {
+  public:
+    /// All processes must call.
+    TermProducts(const std::vector<Term> &terms, const Eigentriples &modes);
+
+    /// ψ_iᵀ Q(λ_j) φ_j, k × k.
+    ComplexDenseMatrix pencil(const ParameterValues &values) const;
+
+    /// ψ_iᵀ ((λ_i + λ_j) M + C) φ_j, k × k: on the diagonal ψᵀ Q'(λ) φ, zero elsewhere for exact vectors of λ_i ≠ λ_j.
+    ComplexDenseMatrix by_lambda(const ParameterValues &values) const;
+
+    /// ψ_iᵀ (dQ(λ_j)/ds) φ_j, k × k, along a direction of the parameters; parameters without a rate keep their values.
+    ComplexDenseMatrix along(const ParameterValues &values, const ParameterValues &rates) const;
+
+  private:
+    /// Of one term.
+    struct Product
+    {
+      Term               term;        ///< without its matrices
+      ComplexDenseMatrix value;       ///< ψ_iᵀ A φ_j; empty for a term with weights
+      ComplexDenseMatrix left, right; ///< Lᵀψ and Rᵀφ of a term with weights, m × k
+    };
+
+    /// ψ_iᵀ A φ_j of a term, with @p weights in place of its own values.
+    ComplexDenseMatrix matrix(const Product &product, const ParameterValues &weights) const;
+
+    std::vector<std::complex<double>> lambda;
+    std::vector<Product>              products;
+  };
+} // namespace Squeal

@@ -1,0 +1,193 @@
+#include <squeal/sensitivity/mesh_motions.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Point = HexMesh::Point;
+
+    /// Largest difference of the mesh from the parameters, over the outer radius: polygons of true area are somewhat larger than circles.
+    constexpr double resemblance = 0.02;
+
+    /// Radii that are equal but for rounding, over the outer radius.
+    constexpr double rounding = 1e-9;
+
+    /// A pin in the plane of the disc.
+    struct PinPlace
+    {
+      unsigned int component;
+      std::string  name;
+      int          side;                 ///< ±1
+      double       x, y;                 ///< of its axis [m]
+      double       radius;               ///< of its outermost node [m]
+      double       gap = 0.;             ///< to the nearest other pin of its side, or rim [m]
+      double       axis_distance, angle; ///< as the parameters say [m], [degree]
+    };
+
+    double distance(const double x, const double y)
+    {
+      return std::hypot(x, y);
+    }
+
+    /// The pins with the places that the parameters give them; empty if they are others.
+    std::vector<PinPlace> places(const HexMesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
+    {
+      std::vector<PinPlace> pins;
+      for (const auto &[layout, prefix, side] :
+           {std::make_tuple(&parameters.top, "pin_top_", 1), std::make_tuple(&parameters.bottom, "pin_bottom_", -1)})
+        for (std::size_t i = 0; i < layout->radii.size(); ++i)
+          {
+            const std::string name  = prefix + std::to_string(i + 1);
+            const auto        found = std::find(mesh.volume_names.begin(), mesh.volume_names.end(), name);
+            if (found == mesh.volume_names.end())
+              return {};
+            const double r = layout->radii[i], angle = layout->angles[i] * M_PI / 180.;
+            PinPlace     pin{static_cast<unsigned int>(found - mesh.volume_names.begin()),
+                         name,
+                         side,
+                         r * std::cos(angle),
+                         r * std::sin(angle),
+                         0.,
+                         0.,
+                         r,
+                         layout->angles[i]};
+            for (std::size_t n = 0; n < mesh.points.size(); ++n)
+              if (component[n] == pin.component)
+                pin.radius = std::max(pin.radius, distance(mesh.points[n][0] - pin.x, mesh.points[n][1] - pin.y));
+            pins.push_back(pin);
+          }
+      if (pins.size() + 1 != mesh.volume_names.size())
+        return {};
+      return pins;
+    }
+
+    /// ρ of a pin: 1 within, 0 from the nearest other thing on.
+    double weight(const PinPlace &pin, const Point &x)
+    {
+      const double outside = distance(x[0] - pin.x, x[1] - pin.y) - pin.radius;
+      return std::clamp(1. - outside / pin.gap, 0., 1.);
+    }
+  } // namespace
+
+  std::vector<MeshMotion> mesh_motions(const HexMesh &mesh, const GeometryParameters &parameters)
+  {
+    const std::vector<unsigned int> component = volume_of_nodes(mesh);
+    const double                    t = parameters.disc_thickness, h = parameters.pin_height, d = parameters.pin_diameter;
+    const double                    R_in = parameters.disc_inner_radius, R_out = parameters.disc_outer_radius;
+
+    // ------------------------------------------------- whether the mesh is that of the parameters
+    double inner = std::numeric_limits<double>::infinity(), outer = 0., innermost_pin = inner, outermost_pin = 0., highest = 0., end = 0.;
+    for (std::size_t n = 0; n < mesh.points.size(); ++n)
+      {
+        const Point &x     = mesh.points[n];
+        const double r     = distance(x[0], x[1]);
+        double      &least = component[n] == 0 ? inner : innermost_pin, &most = component[n] == 0 ? outer : outermost_pin,
+               &top = component[n] == 0 ? highest : end;
+        least       = std::min(least, r);
+        most        = std::max(most, r);
+        top         = std::max(top, std::abs(x[2]));
+      }
+    const auto            differs = [R_out](const double a, const double b) { return std::abs(a - b) > resemblance * R_out; };
+    std::vector<PinPlace> pins    = places(mesh, component, parameters);
+    if (pins.empty() || differs(inner, R_in) || differs(outer, R_out) || std::abs(highest - t / 2.) > rounding * R_out ||
+        std::abs(end - t / 2. - h) > rounding * R_out)
+      return {};
+    for (PinPlace &pin : pins)
+      {
+        const double r = distance(pin.x, pin.y);
+        if (differs(pin.radius, d / 2.))
+          return {};
+        pin.gap = std::min(outer - r - pin.radius, r - pin.radius - inner);
+        for (const PinPlace &other : pins)
+          if (&other != &pin && other.side == pin.side)
+            pin.gap = std::min(pin.gap, distance(pin.x - other.x, pin.y - other.y) - pin.radius - other.radius);
+        if (!(pin.gap > rounding * R_out))
+          return {};
+      }
+
+    // ------------------------------------------------------------------------------------ motions
+    std::vector<MeshMotion> result;
+    const auto add = [&](const char *parameter, const std::string &pin, const char *unit, const double value, const bool moves_contact,
+                         const std::function<Point(const Point &x, unsigned int component)> &velocity) {
+      MeshMotion motion{std::string("Geometry/") + parameter, pin, unit, value, {}, moves_contact};
+      for (std::size_t n = 0; n < mesh.points.size(); ++n)
+        motion.velocity.push_back(velocity(mesh.points[n], component[n]));
+      result.push_back(std::move(motion));
+    };
+    // Linear from the face of the pins to the other one
+    const auto through_disc = [&](const PinPlace &pin, const Point &x) { return std::clamp(0.5 + pin.side * x[2] / t, 0., 1.); };
+    // In-plane velocity of a node that a pin takes along: its own nodes, and those of the disc
+    const auto taken_along = [&](const PinPlace &pin, const Point &x, const unsigned int k, const auto &inside) {
+      if (k != 0 && k != pin.component)
+        return Point();
+      const double factor = k == 0 ? through_disc(pin, x) * weight(pin, x) : 1.;
+      const auto   v      = inside(pin, x);
+      return Point(factor * v[0], factor * v[1], 0.);
+    };
+
+    add("Disc thickness", "", "m", t, false,
+        [&](const Point &x, const unsigned int k) { return Point(0., 0., k == 0 ? x[2] / t : std::copysign(0.5, x[2])); });
+    add("Pin height", "", "m", h, false, [&](const Point &x, const unsigned int k) {
+      return Point(0., 0., k == 0 ? 0. : std::copysign((std::abs(x[2]) - t / 2.) / h, x[2]));
+    });
+    const auto radial = [&](const double rim, const double R, const double nearest_pin) {
+      return [=](const Point &x, const unsigned int k) {
+        const double r = distance(x[0], x[1]), s = (r - nearest_pin) / (rim - nearest_pin);
+        const double v = k == 0 && s > 0. ? s * rim / R / r : 0.;
+        return Point(v * x[0], v * x[1], 0.);
+      };
+    };
+    add("Disc inner radius", "", "m", R_in, false, radial(inner, R_in, innermost_pin));
+    add("Disc outer radius", "", "m", R_out, false, radial(outer, R_out, outermost_pin));
+    add("Pin diameter", "", "m", d, true, [&](const Point &x, const unsigned int k) {
+      Point sum;
+      for (const PinPlace &pin : pins)
+        sum += taken_along(pin, x, k,
+                           [&](const PinPlace &p, const Point &at) {
+                             // On the way outwards no faster than the outline
+                             const double s = distance(at[0] - p.x, at[1] - p.y), slow = s > p.radius ? p.radius / s : 1.;
+                             return Point(slow * (at[0] - p.x) / d, slow * (at[1] - p.y) / d, 0.);
+                           }) -
+               Point();
+      return sum;
+    });
+    for (const PinPlace &pin : pins)
+      {
+        const bool is_top = pin.side > 0;
+        add(is_top ? "Top pin radii" : "Bottom pin radii", pin.name, "m", pin.axis_distance, true,
+            [&](const Point &x, const unsigned int k) {
+              return taken_along(pin, x, k, [](const PinPlace &p, const Point &) {
+                const double r = distance(p.x, p.y);
+                return Point(p.x / r, p.y / r, 0.);
+              });
+            });
+        add(is_top ? "Top pin angles" : "Bottom pin angles", pin.name, "degree", pin.angle, true,
+            [&](const Point &x, const unsigned int k) {
+              return taken_along(pin, x, k,
+                                 [](const PinPlace &, const Point &at) { return Point(-at[1] * M_PI / 180., at[0] * M_PI / 180., 0.); });
+            });
+      }
+    return result;
+  }
+
+  HexMesh moved(HexMesh mesh, const MeshMotion &motion, const double change)
+  {
+    for (std::size_t n = 0; n < mesh.points.size(); ++n)
+      for (int i = 0; i < 3; ++i)
+        mesh.points[n][i] += change * motion.velocity[n][i];
+    return mesh;
+  }
+
+  double largest_velocity(const MeshMotion &motion)
+  {
+    double result = 0.;
+    for (const Point &v : motion.velocity)
+      result = std::max(result, v.norm());
+    return result;
+  }
+} // namespace Squeal

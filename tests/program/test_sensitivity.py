@@ -1,0 +1,265 @@
+"""`Study = sensitivity`: derivatives held against differences of runs with other parameters, and its tables."""
+
+import math
+
+from program import ProgramTest, read_table
+
+STUDY = "Study=sensitivity"
+NO_THRESHOLDS, NO_GEOMETRY = "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none"
+ITERATED = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-12"]
+# Every parameter has a value other than zero
+RICH = ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.002", "Operation/Gyroscopic forces=true",
+        "Operation/Rotation speed=20", "Operation/Load per side=2000", "Disc material/Rayleigh alpha=2", "Disc material/Rayleigh beta=1e-8",
+        "Pin material/Rayleigh alpha=3", "Pin material/Rayleigh beta=2e-8", "Mounts/Elastic mounts=disc_bore: 3e10, 7.8e10, 1.88e10"]
+MOUNTS = {"radial": 3e10, "tangential": 7.8e10, "axial": 1.88e10}
+THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coefficient=0.45", "Sweep/Number of friction coefficients=12",
+              "Sweep/Tolerance=1e-8", "Sweep/Threshold tolerance=1e-10"]
+
+# Twelve digits are printed: what two of a frequency may leave of their difference, over twice the step [-]
+PRINTED = 5e-12
+
+COLUMNS = ["mode [-]", "label", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "parameter", "only of", "value", "unit",
+           "growth rate per 1 % [1/s]", "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "growth rate per unit [1/s]",
+           "frequency per unit [Hz]", "estimated error of the growth rate per unit [1/s]", "estimated error of the frequency per unit [Hz]",
+           "derivative of", "remark"]
+
+
+def eigenvalue(row):
+    return complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"]))
+
+
+def derivative(row):
+    """With respect to ln p."""
+    return float(row["value"]) * complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
+
+
+def override(path, value):
+    """The parameter `path` with another value."""
+    if path.startswith("Mounts/"):
+        direction = path.rsplit(" ", 1)[1]
+        return "Mounts/Elastic mounts=disc_bore: " + ", ".join(repr(value if name == direction else stiffness)
+                                                               for name, stiffness in MOUNTS.items())
+    return f"{path}={value!r}"
+
+
+# ---------------------------------------------------------------- moving nodes
+
+THICKNESS, HEIGHT, INNER, OUTER, DIAMETER = 0.0463, 0.0318, 0.1505, 0.3155, 0.052
+# Of the scene: component, side, angle [degree]; all pins at one distance from the axis
+PINS = {"pin_top_1": (1, -10), "pin_top_2": (1, 10), "pin_bottom_1": (-1, -10), "pin_bottom_2": (-1, 10)}
+PIN_RADIUS = 0.2275
+
+
+def centre(pin):
+    angle = math.radians(PINS[pin][1])
+    return PIN_RADIUS * math.cos(angle), PIN_RADIUS * math.sin(angle)
+
+
+GAP = min(2 * PIN_RADIUS * math.sin(math.radians(10)) - DIAMETER, PIN_RADIUS - DIAMETER / 2 - INNER, OUTER - PIN_RADIUS - DIAMETER / 2)
+
+
+def share(pin, x, y, z, component):
+    """How far a node goes along with a pin: all of it, or falling to nothing at other pins, rims and the other face of the disc."""
+    if component not in ("disc", pin):
+        return 0.0
+    if component == pin:
+        return 1.0
+    outside = math.dist((x, y), centre(pin)) - DIAMETER / 2
+    return min(1.0, max(0.0, 1 - outside / GAP)) * min(1.0, max(0.0, 0.5 + PINS[pin][0] * z / THICKNESS))
+
+
+def motion(path, pin):
+    """Velocity of a node by its place and component, as include/squeal/sensitivity/mesh_motions.h has it."""
+    def radial(x, y, component, rim, nearest):
+        r = math.hypot(x, y)
+        s = max(0.0, (r - nearest) / (rim - nearest)) if component == "disc" else 0.0
+        return s * x / r, s * y / r, 0.0
+
+    def widened(x, y, z, component):
+        v = [0.0, 0.0]
+        for name in PINS:
+            c = centre(name)
+            distance = math.dist((x, y), c)
+            factor = share(name, x, y, z, component) * min(1.0, DIAMETER / 2 / distance if distance > 0 else 1.0) / DIAMETER
+            v[0] += factor * (x - c[0])
+            v[1] += factor * (y - c[1])
+        return *v, 0.0
+
+    def outwards(x, y, z, component):
+        factor = share(pin, x, y, z, component)
+        return factor * centre(pin)[0] / PIN_RADIUS, factor * centre(pin)[1] / PIN_RADIUS, 0.0
+
+    def turned(x, y, z, component):
+        factor = share(pin, x, y, z, component) * math.pi / 180
+        return -factor * y, factor * x, 0.0
+
+    return {"Disc thickness": lambda _, __, z, component: (0.0, 0.0, z / THICKNESS if component == "disc" else math.copysign(0.5, z)),
+            "Pin height": lambda _, __, z, component: (0.0, 0.0, 0.0 if component == "disc" else
+                                                      math.copysign((abs(z) - THICKNESS / 2) / HEIGHT, z)),
+            "Disc inner radius": lambda x, y, _, component: radial(x, y, component, INNER, PIN_RADIUS - DIAMETER / 2),
+            "Disc outer radius": lambda x, y, _, component: radial(x, y, component, OUTER, PIN_RADIUS + DIAMETER / 2),
+            "Pin diameter": widened, "Top pin radii": outwards, "Bottom pin angles": turned}[path]
+
+
+def with_moved_nodes(mesh, velocity, change):
+    """The text of a mesh file with its nodes moved; a block of nodes belongs to the volume of its number."""
+    lines = mesh.splitlines()
+    first = lines.index("$PhysicalNames") + 2
+    names = [line.split('"')[1] for line in lines[first:lines.index("$EndPhysicalNames")] if line.startswith("3 ")]
+    row = lines.index("$Nodes") + 1
+    n_blocks = int(lines[row].split()[0])
+    row += 1
+    for _ in range(n_blocks):
+        dimension, tag, _, n_nodes = map(int, lines[row].split())
+        if dimension != 3:
+            raise AssertionError("nodes of a mesh of the program belong to volumes")
+        for i in range(row + 1 + n_nodes, row + 1 + 2 * n_nodes):
+            place = [float(number) for number in lines[i].split()]
+            lines[i] = " ".join(repr(x + change * v) for x, v in zip(place, velocity(*place, names[tag - 1])))
+        row += 1 + 2 * n_nodes
+    return "\n".join(lines) + "\n"
+
+
+class Sensitivity(ProgramTest):
+    def eigenvalues_at(self, *overrides):
+        return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
+
+    def check_modes(self, scene, paths=None):
+        """Derivatives beside central differences of complete runs; returns how many were compared for each mode."""
+        folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7", "Sensitivity/Largest number of modes=4",
+                                *scene)
+        rows = [row for row in read_table(folder / "sensitivities.csv") if not row["only of"]]
+        self.assertEqual(list(rows[0]), COLUMNS)
+        modes = sorted({int(row["mode [-]"]) for row in rows})
+        self.assertGreaterEqual(len(modes), 2)
+        step = 3e-5
+        paths = paths or sorted({row["parameter"] for row in rows})
+        for path in paths:
+            of_path = {int(row["mode [-]"]): row for row in rows if row["parameter"] == path}
+            value = float(of_path[1]["value"])
+            self.assertNotEqual(value, 0, path)
+            around = {side: self.eigenvalues_at(*scene, override(path, value * (1 + side * step))) for side in (-1, 1)}
+            for mode in modes:
+                row = of_path[mode]
+                self.assertEqual((row["derivative of"], row["remark"]), ("lambda", ""))
+                here = eigenvalue(row)
+                at = {side: min(values, key=lambda other, here=here: abs(other - here)) for side, values in around.items()}
+                difference = (at[1] - at[-1]) / (2 * step)
+                with self.subTest(parameter=path, mode=mode):
+                    self.assertLessEqual(abs(derivative(row) - difference), 1e-5 * abs(difference) + PRINTED * abs(here) / step)
+        return len(paths)
+
+    def test_differences(self):
+        """All parameters that are numbers, with every kind of damping and a turning disc."""
+        self.assertEqual(self.check_modes(RICH), 17)
+
+    def test_steady_sliding(self):
+        """The reactions of steady sliding change with friction and load; with stiffnesses, too, which rows say is left out."""
+        steady = [*RICH, "Steady sliding/Contact state=steady sliding"]
+        self.check_modes(steady, ["Operation/Friction coefficient", "Operation/Load per side", "Pin material/Density"])
+        rows = read_table(self.folder / "rich" / "sensitivities.csv")
+        held = {row["parameter"] for row in rows if row["remark"] == "reactions of steady sliding held"}
+        self.assertEqual(held, {row["parameter"] for row in rows
+                                if any(word in row["parameter"] for word in ("Young", "Poisson", "Mounts"))})
+
+    def test_identities(self):
+        """The unit of force changes nothing, all pins together are the pins, and percentages are what they say."""
+        folder = self.run_scene("plain", STUDY, NO_THRESHOLDS, "Sensitivity/Tolerance=1e-8")
+        rows = read_table(folder / "sensitivities.csv")
+        for mode in {row["mode [-]"] for row in rows}:
+            of_mode = [row for row in rows if row["mode [-]"] == mode]
+            own = {row["parameter"]: derivative(row) for row in of_mode if not row["only of"]}
+            here = eigenvalue(of_mode[0])
+            stiffness = sum(value for path, value in own.items() if "Young" in path or "Mounts" in path)
+            density = sum(value for path, value in own.items() if "Density" in path)
+            self.assertLessEqual(abs(stiffness - here / 2), 1e-8 * abs(here))
+            self.assertLessEqual(abs(density + here / 2), 1e-8 * abs(here))
+            for path in ("Pin material/Young modulus", "Pin material/Density"):
+                single = [derivative(row) for row in of_mode if row["parameter"] == path and row["only of"]]
+                self.assertEqual(len(single), 4)
+                self.assertLessEqual(abs(sum(single) - own[path]), 1e-10 * abs(here))
+            for row in of_mode:
+                if float(row["value"]) != 0:
+                    slope = derivative(row)
+                    xi = (slope.real - here.real / here.imag * slope.imag) / here.imag
+                    self.assertAlmostEqual(float(row["divergence rate per 1 % [percentage points]"]), xi, delta=1e-9)
+                    self.assertAlmostEqual(float(row["growth rate per 1 % [1/s]"]), slope.real / 100, delta=1e-8)
+                else:
+                    self.assertEqual(row["growth rate per 1 % [1/s]"], "")
+        ranking = [float(row["divergence rate per 1 % [percentage points]"]) for row in read_table(folder / "sensitivity_ranking.csv")]
+        self.assertEqual(ranking, sorted(ranking, key=abs, reverse=True))
+
+    def test_thresholds(self):
+        """dmu_c/dp beside differences of the thresholds of sweeps."""
+        folder = self.run_scene("thresholds", STUDY, *THRESHOLDS)
+        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none" and not row["only of"]]
+        kinds = {row["derivative of"] for row in rows}
+        self.assertEqual(kinds, {"squared difference of the pair"})
+        self.check_thresholds(rows, "Disc material/Young modulus", [])
+        self.check_thresholds(rows, "Pin material/Poisson ratio", [])
+
+    def test_damped_thresholds(self):
+        """The same where damping makes modes cease to decay one by one."""
+        folder = self.run_scene("damped", STUDY, *THRESHOLDS, *RICH)
+        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["only of"]]
+        self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
+        self.check_thresholds(rows, "Pin material/Density", RICH)
+        self.check_thresholds(rows, "Operation/Load per side", RICH)
+
+    def check_thresholds(self, rows, path, scene):
+        step = 2e-5
+        rows = [row for row in rows if row["parameter"] == path]
+        self.assertGreaterEqual(len(rows), 3)
+        value = float(rows[0]["value"])
+        found = {}
+        for side in (-1, 1):
+            folder = self.run_scene("shifted", "Study=sweep", "Sweep/Compare dissipation=false", *THRESHOLDS, *scene,
+                                    override(path, value * (1 + side * step)))
+            found[side] = [(float(row["mu [-]"]), row["event"]) for row in read_table(folder / "thresholds.csv")]
+        for row in rows:
+            here = float(row["mu [-]"])
+            there = {side: min((mu for mu, event in others if event == row["event"]), key=lambda mu, here=here: abs(mu - here))
+                     for side, others in found.items()}
+            difference = (there[1] - there[-1]) / (2 * step)
+            with self.subTest(parameter=path, mu=here, label=row["label"]):
+                # Thresholds are known to 1e-10, that of A0-0 with its small slope of the growth rate to 4e-8
+                self.assertLessEqual(abs(float(row["mu per unit [-]"]) * value - difference), 1e-5 * abs(difference) + 2e-6)
+
+    def test_geometry(self):
+        """Lengths and places beside runs on meshes whose nodes have been moved here."""
+        folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, "Sensitivity/Geometry=sizes and places", "Sensitivity/Tolerance=1e-8",
+                                "Sensitivity/Largest number of modes=3", *RICH)
+        rows = read_table(folder / "sensitivities.csv")
+        mesh = (self.run_scene("still", "Band/Maximum frequency=1000", *RICH) / "mesh.msh").read_text(encoding="utf-8")
+        checked = 0
+        for path, pin in [("Disc thickness", ""), ("Pin height", ""), ("Disc inner radius", ""), ("Disc outer radius", ""), ("Pin diameter", ""),
+                          ("Top pin radii", "pin_top_2"), ("Bottom pin angles", "pin_bottom_1")]:
+            of_path = [row for row in rows if row["parameter"] == "Geometry/" + path and row["only of"] == pin]
+            self.assertGreaterEqual(len(of_path), 2)
+            step = 1e-6 if "angles" not in path else 1e-4
+            around = {}
+            for side in (-1, 1):
+                (self.folder / "moved.msh").write_text(with_moved_nodes(mesh, motion(path, pin), side * step), encoding="utf-8")
+                around[side] = self.eigenvalues_at(*RICH, "Geometry/File=moved.msh")
+            for row in of_path:
+                here = eigenvalue(row)
+                at = {side: min(values, key=lambda other, here=here: abs(other - here)) for side, values in around.items()}
+                difference = (at[1] - at[-1]) / (2 * step)
+                slope = complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
+                with self.subTest(parameter=path, pin=pin, mode=row["mode [-]"]):
+                    self.assertLessEqual(abs(slope - difference), 1e-5 * abs(difference) + PRINTED * abs(here) / step)
+                    checked += 1
+        self.assertEqual(checked, len(of_path) * 7)
+
+    def test_refusals(self):
+        process = self.call("scene.prm", "--output", "refused", "--set", STUDY, "--set", "Damping/Modal damping ratio=0: 0.001")
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("parameter Damping/Modal damping ratio", process.stderr)
+
+    def test_stable_scene(self):
+        """Where nothing grows the least damped modes are named."""
+        folder = self.run_scene("stable", STUDY, NO_THRESHOLDS, "Operation/Friction coefficient=0", "Sensitivity/Largest number of modes=3")
+        rows = read_table(folder / "sensitivities.csv")
+        self.assertEqual({row["mode [-]"] for row in rows}, {"1", "2", "3"})
+        for row in rows:
+            self.assertLessEqual(abs(float(row["growth rate [1/s]"])), 1e-4)

@@ -1,0 +1,262 @@
+#include "flutter.h"
+#include "solutions.h"
+
+#include <squeal/assembly/rotation.h>
+#include <squeal/sensitivity/eigenvalue_derivatives.h>
+#include <squeal/sensitivity/term_products.h>
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double friction = 0.5;
+
+  /// Pins on a turning disc with every damping of bodies and contact.
+  struct DampedBrake
+  {
+    DampedBrake()
+      : s(mesh_of(skewed_pins), damped(mounted({{"disc_bore", 2e10, 7.80e10, 1.88e10}})), operating(RadialDissipation::consistent))
+      , bodies(body_terms(s.model, damped(mounted({{"disc_bore", 2e10, 7.80e10, 1.88e10}}))))
+      , damping{s.damping.radial, s.damping.radial}
+    {
+      add_rotation(bodies, s.model, 30.);
+      for (std::size_t node = 0; node < damping.sliding.size(); ++node)
+        damping.sliding[node] *= -0.3 * (1. + node % 3);
+    }
+
+    CoupledSystem system(const ParameterValues &values, const ContactDamping &contact_damping) const
+    {
+      return Squeal::couple(merged(bodies.terms, values), s.contact, contact_damping);
+    }
+
+    CoupledSystem system() const
+    {
+      return system(bodies.values, damping);
+    }
+
+    Scene          s;
+    BodyTerms      bodies;
+    ContactDamping damping;
+  };
+
+  Eigentriples triples(const ComplexModes &modes)
+  {
+    return {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
+            join({modes.left_real_part.get(), modes.left_imaginary_part.get()})};
+  }
+
+  /// dλ/ds of the λ nearest to each of @p lambda from λ at s = −2h, −h, h, 2h: of fourth order.
+  std::vector<Complex> differences(const std::vector<Complex>                               &lambda,
+                                   const std::function<std::vector<Complex>(double change)> &eigenvalues,
+                                   const double                                              h)
+  {
+    std::vector<Complex> result(lambda.size(), 0.);
+    for (const auto &[steps, weight] : {std::make_pair(1, 8. / 12.), std::make_pair(2, -1. / 12.)})
+      for (const int side : {-1, 1})
+        {
+          const std::vector<Complex> there = eigenvalues(side * steps * h);
+          for (std::size_t j = 0; j < lambda.size(); ++j)
+            result[j] += side * weight / h * *std::min_element(there.begin(), there.end(), [&](const Complex &a, const Complex &b) {
+                           return std::abs(a - lambda[j]) < std::abs(b - lambda[j]);
+                         });
+        }
+    return result;
+  }
+
+  /// To 1e-5; parameters that a mode hardly knows of to what the differences resolve.
+  void expect_alike(const std::vector<Complex> &derivatives, const std::vector<Complex> &others, const std::vector<Complex> &lambda)
+  {
+    for (std::size_t j = 0; j < lambda.size(); ++j)
+      EXPECT_LE(std::abs(derivatives[j] - others[j]), 1e-5 * std::abs(others[j]) + 1e-9 * std::abs(lambda[j])) << j << ": " << lambda[j];
+  }
+
+  std::vector<Complex> diagonal_derivatives(const ComplexDenseMatrix &N, const ComplexDenseMatrix &D)
+  {
+    std::vector<Complex> result;
+    for (Eigen::Index j = 0; j < N.cols(); ++j)
+      result.push_back(eigenvalue_derivative(N, D, static_cast<int>(j)));
+    return result;
+  }
+} // namespace
+
+TEST(Sensitivities, OfEveryParameterOfTheBodiesAgreeWithDifferences)
+{
+  const DampedBrake     brake;
+  const CoupledSystem   system = brake.system();
+  const Eigentriples    modes  = triples(iterated(system, friction, 1e-13));
+  const TermProducts    of_contact(system.terms, modes), of_bodies(brake.bodies.terms, on_bodies(brake.s.contact, friction, modes));
+  const ParameterValues values = system.at(friction);
+  const auto            D      = of_contact.by_lambda(values);
+  for (const auto &[name, value] : brake.bodies.values)
+    {
+      SCOPED_TRACE(name);
+      const auto N = of_bodies.along(brake.bodies.values, {{name, value}}); // with respect to ln p
+      expect_alike(diagonal_derivatives(N, D),
+                   differences(
+                     modes.lambda,
+                     [&, &name = name](const double change) {
+                       ParameterValues changed = brake.bodies.values;
+                       changed[name].front() *= 1. + change;
+                       return krylov(brake.system(changed, brake.damping), friction, 1e-12).lambda;
+                     },
+                     1e-4),
+                   modes.lambda);
+    }
+}
+
+TEST(Sensitivities, OfFrictionAndContactDampingAgreeWithDifferences)
+{
+  const DampedBrake   brake;
+  const CoupledSystem system = brake.system();
+  const Eigentriples  modes  = triples(iterated(system, friction, 1e-13));
+  const TermProducts  products(system.terms, modes);
+  const auto          values = system.at(friction);
+  const auto          D      = products.by_lambda(values);
+
+  // λ is an eigenvalue, D its derivative and both vectors belong to it
+  const auto Q = products.pencil(values);
+  for (Eigen::Index i = 0; i < Q.rows(); ++i)
+    for (Eigen::Index j = 0; j < Q.cols(); ++j)
+      {
+        EXPECT_LE(std::abs(Q(i, j)), 1e-6 * std::abs(modes.lambda[j] * D(j, j))) << i << ' ' << j;
+        EXPECT_TRUE(i == j || std::abs(D(i, j)) <= 1e-5 * std::abs(modes.lambda[j])) << i << ' ' << j;
+      }
+
+  expect_alike(diagonal_derivatives(products.along(values, {{SystemParameter::friction, {1.}}}), D),
+               differences(
+                 modes.lambda, [&](const double change) { return krylov(system, friction + change, 1e-12).lambda; }, 1e-3),
+               modes.lambda);
+  for (const bool radial : {true, false})
+    {
+      SCOPED_TRACE(radial ? "radial" : "sliding");
+      const auto &list = radial ? brake.damping.radial : brake.damping.sliding;
+      const char *name = radial ? SystemParameter::radial_damping : SystemParameter::sliding_damping;
+      expect_alike(diagonal_derivatives(products.along(values, {{name, list}}), D),
+                   differences(
+                     modes.lambda,
+                     [&](const double change) {
+                       ContactDamping changed = brake.damping;
+                       for (double &c : radial ? changed.radial : changed.sliding)
+                         c *= 1. + change;
+                       return krylov(brake.system(brake.bodies.values, changed), friction, 1e-12).lambda;
+                     },
+                     1e-2),
+                   modes.lambda);
+    }
+}
+
+TEST(Sensitivities, DoNotChangeWithTheUnitOfForce)
+{
+  // All stiffnesses by one factor: ω by its root, whatever friction does
+  const Scene           s(mesh_of(skewed_pins), mounted(), operating());
+  const BodyTerms       bodies = body_terms(s.model, mounted());
+  const Eigentriples    modes  = triples(iterated(s.coupled, friction, 1e-13));
+  const TermProducts    of_contact(s.coupled.terms, modes), of_bodies(bodies.terms, on_bodies(s.contact, friction, modes));
+  const ParameterValues values = s.coupled.at(friction);
+  ParameterValues       stiffnesses, densities;
+  for (const auto &[name, value] : bodies.values)
+    {
+      if (name.find("density") == 0)
+        densities[name] = value;
+      else if (name.find("Rayleigh") != 0)
+        stiffnesses[name] = value;
+    }
+  const auto D            = of_contact.by_lambda(values);
+  const auto by_stiffness = diagonal_derivatives(of_bodies.along(bodies.values, stiffnesses), D);
+  const auto by_density   = diagonal_derivatives(of_bodies.along(bodies.values, densities), D);
+  for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+    {
+      EXPECT_LE(std::abs(by_stiffness[j] - 0.5 * modes.lambda[j]), 1e-10 * std::abs(modes.lambda[j]));
+      EXPECT_LE(std::abs(by_density[j] + 0.5 * modes.lambda[j]), 1e-10 * std::abs(modes.lambda[j]));
+    }
+}
+
+namespace
+{
+  /// λ and vectors of the two modes of flutter(s) at a friction coefficient.
+  Eigentriples flutter_modes(const CoupledSystem &system, const double mu)
+  {
+    UpdatedInverse           inverse(system, 0., FactorizationLibrary::automatic);
+    ResidualIterationOptions options;
+    options.largest_circular_frequency = 10.;
+    options.tolerance                  = 1e-12;
+    Progress progress;
+    return triples(residual_iteration(system, inverse, unit_vectors(system.map()), mu, options, progress));
+  }
+} // namespace
+
+TEST(Sensitivities, OfACoalescence)
+{
+  // 1 + 2.8 (0.7 − s μ_c) = 0; with K_12 = 0.7 + e there and K_21 as it is, e changes μ_c by 1 / s
+  const double           s = 1.3, mu_c = (0.7 + 1. / 2.8) / s;
+  const CoupledSystem    system = flutter(s);
+  std::array<Complex, 3> by_friction{}, by_stiffness{};
+  for (int distance = 1; distance <= 3; ++distance)
+    for (const int side : {-1, 1})
+      {
+        const double       mu    = mu_c + side * distance * 0.01;
+        const Eigentriples modes = flutter_modes(system, mu);
+        ASSERT_EQ(modes.lambda.size(), 2u);
+        const TermProducts products(system.terms, modes);
+        const auto         values = system.at(mu);
+        const auto         D      = products.by_lambda(values);
+        by_friction[distance - 1] +=
+          0.5 * squared_difference_derivative(products.along(values, {{SystemParameter::friction, {1.}}}), D, modes.lambda, 0, 1);
+        // dQ/dk of a spring k at the first mass
+        const DenseMatrix        u = replicate(modes.right), w = replicate(modes.left);
+        const auto               x = from_halves(u), y = from_halves(w);
+        const ComplexDenseMatrix N = y.row(0).transpose() * x.row(0);
+        by_stiffness[distance - 1] += 0.5 * squared_difference_derivative(N, D, modes.lambda, 0, 1);
+      }
+  const ValueAtCentre of_friction = value_at_centre(by_friction), of_stiffness = value_at_centre(by_stiffness);
+
+  // With ω² = a ± √b, a = 5/2 + k/2, b = (1 + k)²/4 + 0.7 (0.7 − s μ): δ² = (λ_1 − λ_2)² = −2 a + 2 √(a² − b), b = 0 at μ_c
+  const double db_dmu = -0.7 * s, db_dk = 0.5, a = 2.5;
+  EXPECT_NEAR(of_friction.value.real(), -db_dmu / a, 1e-6);
+  EXPECT_NEAR(of_friction.value.imag(), 0., 1e-8);
+  EXPECT_LE(std::abs(of_friction.value.real() + db_dmu / a), 3. * of_friction.error);
+  const double rate = -(of_stiffness.value / of_friction.value).real();
+  EXPECT_NEAR(rate, -db_dk / db_dmu, 1e-6 * std::abs(db_dk / db_dmu));
+}
+
+TEST(Sensitivities, OfTheMeanStayFiniteAtACoalescence)
+{
+  const double         s = 1.3, mu_c = (0.7 + 1. / 2.8) / s;
+  const CoupledSystem  system = flutter(s);
+  double               single = 0.;
+  std::vector<Complex> means;
+  for (const double distance : {1e-3, 1e-5, 1e-7})
+    {
+      const double       mu    = mu_c + distance;
+      const Eigentriples modes = flutter_modes(system, mu);
+      ASSERT_EQ(modes.lambda.size(), 2u);
+      const TermProducts products(system.terms, modes);
+      const auto         values = system.at(mu);
+      const auto         D = products.by_lambda(values), N = products.along(values, {{SystemParameter::friction, {1.}}});
+      const double       modulus = std::abs(eigenvalue_derivative(N, D, 0));
+      EXPECT_GT(modulus, 5. * single); // grows like one over the root of the distance
+      single = modulus;
+      means.push_back(mean_derivative(N, D, {0, 1}));
+    }
+  // λ² = −a ± i √|b|: the mean of both is i √((a + √(a² − b)) / 2), of which the derivative at b = 0 is −i b' / (8 a^{3/2})
+  const double expected = 0.7 * s / (8. * std::pow(2.5, 1.5));
+  for (const Complex &mean : means)
+    EXPECT_LE(std::abs(mean - Complex(0., expected)), 2e-3 * expected) << mean;
+  EXPECT_LE(std::abs(means.back() - Complex(0., expected)), 1e-5 * expected) << means.back();
+}
+
+TEST(Sensitivities, OfProductsOfPowers)
+{
+  const ParameterValues values = {{"a", {3.}}, {"b", {-2.}}};
+  const Monomial        m      = {-5., {{"a", 1}, {"b", 2}}};
+  EXPECT_EQ(derivative(m, "a").at(values), -20.);
+  EXPECT_EQ(derivative(m, "b").at(values), 60.);
+  EXPECT_EQ(derivative(m, "c").at(values), 0.);
+  EXPECT_EQ(derivative(m, "a").at({{"a", {0.}}, {"b", {-2.}}}), -20.); // of a parameter that is zero, too
+}
