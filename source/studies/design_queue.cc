@@ -1,5 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
+#include <squeal/base/progress.h>
+#include <squeal/base/text.h>
 #include <squeal/base/worker_process.h>
 #include <squeal/studies/design_queue.h>
 

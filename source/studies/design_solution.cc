@@ -1,4 +1,6 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/studies/design_solution.h>
 #include <squeal/studies/sweep_charts.h>
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/enum_table.h>
 #include <squeal/output/table.h>
 
 #include <boost/serialization/optional.hpp>
