@@ -67,6 +67,8 @@ namespace Squeal
             partner  = j;
             parallel = overlap;
           }
+      if (partner < 0)
+        return result;
       return {{mode, partner}, Differentiated::pair};
     }
 
