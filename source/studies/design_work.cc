@@ -173,7 +173,6 @@ namespace Squeal
         }
     }
     run.progress.begin("Designs");
-    // Refused ones need no process
     std::vector<int> left;
     std::size_t      n_known = 0;
     for (const int design : work.designs)
