@@ -15,13 +15,15 @@ import sys
 
 from plot_results import enlist, replace
 from plotting.results import Results, ResultsError
-from reporting import content, page
+from reporting import page
 
 NAME = "report.html"
 
 
 def write(folder, output):
     """Writes the report; returns its file and remarks."""
+    from reporting import content
+
     results = Results(folder)
     text = page.page(content.content(results)).encode()
     place = pathlib.Path(output) if output else results.folder / NAME

@@ -39,16 +39,61 @@ def script(text):
     return "<script>" + text.replace("</script", "<\\/script").replace("<!--", "<\\!--") + "</script>\n"
 
 
+VIEWER = ('<div class="viewer"><div class="buttons" id="modes"></div><div id="canvas"></div><div class="buttons"><button id="play">pause</button>'
+          '<label>size <input type="range" id="size" min="0" max="0.2" step="0.005" value="0.06"></label>'
+          '<label><input type="checkbox" id="disc" checked> disc</label><button data-view="above">above</button>'
+          '<button data-view="below">below</button><button data-view="side">side</button></div><p>Colours: amplitude, dark where it is large. '
+          "Turn with the mouse or a finger. Without the disc the contact faces of the pins are seen.</p></div>")
+
+
 def section(title, body, name):
-    return f'<section id="{name}"><h2>{html.escape(title)}</h2>{body}</section>\n'
+    return f'<section id="{html.escape(name)}"><h2>{html.escape(title)}</h2>{body}</section>\n'
+
+
+def entry_section(entry):
+    """A section with what its entry has: a caption, moving shapes, a list of choices, a chart, a picture, facts, notes, a command."""
+    parts, name = [], html.escape(entry["id"])
+    if "caption" in entry:
+        parts.append(f'<p>{html.escape(entry["caption"])} {choices(entry)}</p>')
+    if "shapes" in entry:
+        parts.append(VIEWER)
+    if is_chart(entry):
+        size = "".join(f"{style}: {entry[part]}px; " for part, style in (("height", "height"), ("least width", "min-width")) if part in entry)
+        parts.append(f'<div class="wide"><div class="chart" id="chart-{name}" style="{size}"></div></div>')
+    if "picture" in entry:
+        parts.append(f'<img src="{entry["picture"]}" alt="{html.escape(entry["title"])}">')
+    if "facts" in entry:
+        parts.append('<div class="wide"><table class="facts">' + rows_of(entry["facts"]["columns"], entry["facts"]["rows"], str) + "</table></div>")
+    if "notes" in entry:
+        parts.append("<ul>" + "".join(f"<li>{html.escape(note)}</li>" for note in entry["notes"]) + "</ul>")
+    if "command" in entry:
+        parts.append(f'<pre>{html.escape(entry["command"])}</pre>')
+    return section(entry["title"], "".join(parts), entry["id"])
+
+
+def choices(entry):
+    """A list, of which a choice shows another chart."""
+    if "choices" not in entry:
+        return ""
+    options = "".join(f'<option value="{html.escape(choice["key"])}">{html.escape(choice["name"])}</option>' for choice in entry["choices"])
+    return f'<select id="choice-{html.escape(entry["id"])}" aria-label="{html.escape(entry["title"])}">{options}</select>'
+
+
+def is_chart(entry):
+    return "data" in entry or "choices" in entry
+
+
+def rows_of(columns, rows, text_of):
+    """Head and body of a table; text_of(cell) is what is shown."""
+    head = "".join(f"<th>{html.escape(column)}</th>" for column in columns)
+    lines = "".join("<tr>" + "".join(f"<td>{html.escape(text_of(cell))}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<thead><tr>{head}</tr></thead><tbody>{lines}</tbody>"
 
 
 def table(entry):
-    head = "".join(f"<th>{html.escape(column)}</th>" for column in entry["columns"])
-    rows = "".join("<tr>" + "".join(f"<td>{html.escape(shown(cell))}</td>" for cell in row) + "</tr>" for row in entry["rows"])
-    return (f'<details open><summary>{html.escape(entry["title"])} <span class="file">{html.escape(entry["id"])}.csv</span></summary>'
-            f'<div class="wide"><table class="sortable" id="table-{html.escape(entry["id"])}"><thead><tr>{head}</tr></thead>'
-            f"<tbody>{rows}</tbody></table></div></details>")
+    name = html.escape(entry["id"])
+    return (f'<details open><summary>{html.escape(entry["title"])} <span class="file">{name}.csv</span></summary>'
+            f'<div class="wide"><table class="sortable" id="table-{name}">{rows_of(entry["columns"], entry["rows"], shown)}</table></div></details>')
 
 
 def shown(cell):
@@ -60,26 +105,16 @@ def shown(cell):
     return cell if len(cell) < 8 else f"{value:.6g}"
 
 
+def not_shown(names):
+    return f"<p>Only in the folder: {html.escape(', '.join(name + '.csv' for name in names))}.</p>" if names else ""
+
+
 def body(content):
     parts = [f'<header class="{content["level"]}"><p class="study">{html.escape(content["title"])} · Study = {html.escape(content["study"])}</p>'
              f'<h1 id="verdict">{html.escape(content["verdict"])}</h1></header>\n']
-    for chart in content["charts"]:
-        parts.append(section(chart["title"], f'<p>{html.escape(chart["caption"])}</p><div class="chart" id="chart-{chart["id"]}"></div>', chart["id"]))
-    if content["shapes"]:
-        parts.append(section("Modes that grow", '<div class="viewer"><div class="buttons" id="modes"></div><div id="canvas"></div>'
-                             '<div class="buttons"><button id="play">pause</button><label>size <input type="range" id="size" min="0" max="0.2" '
-                             'step="0.005" value="0.06"></label><label><input type="checkbox" id="disc" checked> disc</label>'
-                             '<button data-view="above">above</button><button data-view="below">below</button>'
-                             '<button data-view="side">side</button></div><p>Colours: amplitude, dark where it is large. Turn with the mouse or a '
-                             "finger. Without the disc the contact faces of the pins are seen.</p></div>", "shapes"))
-    if content["energy"]:
-        parts.append(section("Where their energy enters", '<p>What friction and damping of each body add to the divergence rate of '
-                             '<select id="energy-mode"></select>; together they are the divergence rate.</p>'
-                             '<div class="chart" id="chart-energy"></div>', "energy"))
-    for picture in content["pictures"]:
-        parts.append(section(picture["name"].capitalize(), f'<img src="{picture["source"]}" alt="{html.escape(picture["name"])}">', "plot-" + picture["name"].replace(" ", "-")))
+    parts += map(entry_section, content["sections"])
     parts.append(section("Tables", "".join(table(entry) for entry in content["tables"]) +
-                         "<p>Here with six digits; the files have twelve.</p>", "tables"))
+                         "<p>Here with six digits; the files have twelve.</p>" + not_shown(content["too long"]), "tables"))
     parts.append(section("What was checked, and how accurate it is",
                          "<dl>" + "".join(f"<dt>{html.escape(what)}</dt><dd>{html.escape(value)}</dd>" for what, value in content["checks"]) +
                          "</dl>" + "".join(f'<p class="warning">{html.escape(text)}</p>' for text in content["repeat"]["warnings"]), "checks"))
@@ -95,7 +130,9 @@ def page(content):
     missing = missing_packages()
     if missing:
         raise MissingLibraries(missing)
-    data = {name: content[name] for name in ("charts", "energy", "shapes")}
+    charts = [{part: entry[part] for part in ("id", "data", "layout", "choices", "chosen") if part in entry}
+              for entry in content["sections"] if is_chart(entry)]
+    data = {"charts": charts, "shapes": next((entry["shapes"] for entry in content["sections"] if "shapes" in entry), None)}
     scripts = [path.read_text(encoding="utf-8") for path in (*LIBRARIES.values(), CONTROLS)]
     return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
             f"<title>{html.escape(content['title'])}</title><link rel=\"icon\" href=\"data:,\">\n"

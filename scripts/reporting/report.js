@@ -2,10 +2,31 @@
 "use strict";
 
 const content = JSON.parse(document.getElementById("data").textContent);
-const options = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"] };
+// On a narrow screen buttons would lie on the chart
+const options = { responsive: true, displaylogo: false, displayModeBar: window.innerWidth < 600 ? false : "hover",
+  modeBarButtonsToRemove: ["lasso2d", "select2d"] };
 
+/* Draws all charts; returns for each with a list of choices a function that shows the one with a key. */
 function drawCharts() {
-  for (const chart of content.charts) Plotly.newPlot("chart-" + chart.id, chart.data, chart.layout, options);
+  const choosers = {};
+  for (const chart of content.charts) {
+    if (chart.choices) choosers[chart.id] = drawChoices(chart);
+    else Plotly.newPlot("chart-" + chart.id, chart.data, chart.layout, options);
+  }
+  return choosers;
+}
+
+function drawChoices(chart) {
+  const list = document.getElementById("choice-" + chart.id);
+  const choose = (key) => {
+    const choice = chart.choices.find((one) => one.key === key);
+    if (!choice) return;
+    list.value = key;
+    Plotly.react("chart-" + chart.id, choice.data, choice.layout, options);
+  };
+  list.onchange = () => choose(list.value);
+  choose(chart.chosen);
+  return choose;
 }
 
 function drawTables() {
@@ -13,23 +34,6 @@ function drawTables() {
     const isLong = this.tBodies[0].rows.length > 25;
     $(this).DataTable({ order: [], paging: isLong, info: isLong, searching: isLong, pageLength: 25, lengthChange: false });
   });
-}
-
-/* Where the energy of a mode enters; the list of modes follows the one whose shape is shown. */
-function drawEnergy() {
-  const list = document.getElementById("energy-mode");
-  if (!list) return null;
-  const titles = new Map((content.shapes ? content.shapes.modes : []).map((mode) => [mode.number, title(mode)]));
-  for (const entry of content.energy) list.add(new Option(titles.get(entry.mode) || "mode " + entry.mode, entry.mode));
-  const show = (mode) => {
-    const entry = content.energy.find((one) => one.mode === mode);
-    if (!entry) return;
-    list.value = mode;
-    Plotly.react("chart-energy", entry.data, entry.layout, options);
-  };
-  list.onchange = () => show(Number(list.value));
-  show(content.shapes ? content.shapes.modes[content.shapes.leading].number : content.energy[0].mode);
-  return show;
 }
 
 function title(mode) {
@@ -140,6 +144,7 @@ class Viewer {
   }
 }
 
+/* The energy is that of the mode whose shape is shown. */
 function drawShapes(showEnergy) {
   if (!content.shapes) return null;
   const viewer = new Viewer(content.shapes, document.getElementById("canvas"));
@@ -147,7 +152,7 @@ function drawShapes(showEnergy) {
   const choose = (k) => {
     [...row.children].forEach((button, i) => button.classList.toggle("chosen", i === k));
     viewer.show(content.shapes.modes[k]);
-    if (showEnergy) showEnergy(content.shapes.modes[k].number);
+    if (showEnergy) showEnergy(String(content.shapes.modes[k].number));
   };
   content.shapes.modes.forEach((mode, k) => {
     const button = document.createElement("button");
@@ -174,6 +179,6 @@ function drawShapes(showEnergy) {
   return viewer;
 }
 
-drawCharts();
+const choosers = drawCharts();
 drawTables();
-window.viewer = drawShapes(drawEnergy());
+window.viewer = drawShapes(choosers.energy);

@@ -18,7 +18,23 @@ sys.path.insert(0, str(SCRIPT.parent))
 from reporting.page import missing_packages  # noqa: E402
 
 LARGEST_FILE = 15e6  # [byte]
-SWEEP = ("Study=sweep", "Sweep/First friction coefficient=0", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5")
+RATE = "divergence rate [%]"
+SCENES = {"stability": ("Output/Mode shapes=unstable",),
+          "sweep": ("Study=sweep", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5")}
+# A table of each page, and a column by which it is sorted
+SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]")}
+# Titles and keys of a chart: pairs that lie on each other, and those that reach beyond it
+CROWDED = """
+return [...document.querySelectorAll('.chart')].flatMap(chart => {
+  const frame = chart.getBoundingClientRect();
+  const parts = [...chart.querySelectorAll('.g-xtitle, .g-ytitle, .legend, .colorbar, .xaxislayer-above .xtick:last-child')]
+    .map(e => [e.getAttribute('class'), e.getBoundingClientRect()]).filter(([, r]) => r.width > 0);
+  const outside = parts.filter(([, r]) => r.left < frame.left - 1 || r.right > frame.right + 1 || r.top < frame.top - 1 || r.bottom > frame.bottom + 1);
+  const meet = (r, s) => Math.min(r.right, s.right) - Math.max(r.left, s.left) > 1 && Math.min(r.bottom, s.bottom) - Math.max(r.top, s.top) > 1;
+  const pairs = parts.flatMap(([a, r], i) => parts.slice(i + 1).filter(([, s]) => meet(r, s)).map(([b]) => a + ' and ' + b));
+  return [...outside.map(([a]) => a + ' beyond'), ...pairs].map(text => chart.id + ': ' + text);
+});
+"""
 
 
 def browser(width):
@@ -47,78 +63,88 @@ class Reports(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.stability = cls.run_scene("stability", "Output/Mode shapes=unstable")
-        cls.sweep = cls.run_scene("sweep", *SWEEP)
-        for folder in (cls.stability, cls.sweep):
-            process = subprocess.run([sys.executable, "-B", SCRIPT, folder], capture_output=True, text=True, check=False)
-            if process.returncode != 0:
-                raise AssertionError(process.stderr)
+        for name, overrides in SCENES.items():
+            cls.report_of(cls.run_scene(name, *overrides))
 
-    def page(self, folder):
-        return (folder / "report.html").read_text(encoding="utf-8")
+    @staticmethod
+    def report_of(folder):
+        process = subprocess.run([sys.executable, "-B", SCRIPT, folder], capture_output=True, text=True, check=False)
+        if process.returncode != 0:
+            raise AssertionError(process.stderr)
 
-    def data(self, folder):
-        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', self.page(folder), re.S)[1])
+    def rows(self, name, table):
+        return read_table(self.folder / name / f"{table}.csv")
 
-    def verdict(self, folder):
-        return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(folder))[1])
+    def page(self, name):
+        return (self.folder / name / "report.html").read_text(encoding="utf-8")
+
+    def data(self, name):
+        return json.loads(re.search(r'<script type="application/json" id="data">(.*?)</script>', self.page(name), re.S)[1])
+
+    def charts(self, name):
+        return {chart["id"]: chart for chart in self.data(name)["charts"]}
+
+    def verdict(self, name):
+        return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(name))[1])
 
     def test_verdict(self):
-        rows = read_table(self.stability / "complex_modes.csv")
+        rows = self.rows("stability", "complex_modes")
         growing = [row for row in rows if row["unstable [-]"] == "1"]
-        worst = max(growing, key=lambda row: float(row["divergence rate [%]"]))
-        words = self.verdict(self.stability)
+        worst = max(growing, key=lambda row: float(row[RATE]))
+        words = self.verdict("stability")
         self.assertTrue(words.startswith(f"{len(growing)} of the {len(rows)} modes up to 5000 Hz at μ = 0.4 grow"), words)
         self.assertIn(f"{worst['label']} at {float(worst['frequency [Hz]']):.0f} Hz", words)
-        self.assertIn('<header class="unstable">', self.page(self.stability))
+        self.assertIn('<header class="unstable">', self.page("stability"))
 
-        rows = [row for row in read_table(self.sweep / "branches.csv") if float(row["divergence rate [%]"]) > 0.01]
-        words = self.verdict(self.sweep)
+        rows = [row for row in self.rows("sweep", "branches") if float(row[RATE]) > 0.01]
+        words = self.verdict("sweep")
         self.assertTrue(words.startswith(f"{len({row['branch [-]'] for row in rows})} modes grow by more than 0.01 %"), words)
         self.assertIn(f"from μ = {min(float(row['mu [-]']) for row in rows):.3g} on", words)
 
     def test_charts(self):
         """As many curves as branches, as many marks as modes."""
-        rows = read_table(self.stability / "complex_modes.csv")
-        damping, = self.data(self.stability)["charts"]
+        rows = self.rows("stability", "complex_modes")
+        damping = self.charts("stability")["damping"]
         self.assertEqual([len(trace["x"]) for trace in damping["data"]],
                          [sum(row["unstable [-]"] == flag for row in rows) for flag in ("0", "1")])
         for trace, flag in zip(damping["data"], ("0", "1")):
             self.assertEqual(trace["y"], [float(row["effective damping ratio -2R/omega [%]"]) for row in rows if row["unstable [-]"] == flag])
-        charts = {chart["id"]: chart for chart in self.data(self.sweep)["charts"]}
-        rows = read_table(self.sweep / "branches.csv")
+        charts = self.charts("sweep")
+        rows = self.rows("sweep", "branches")
         curves = charts["branches"]["data"][:-2]
         self.assertEqual(len(curves), len({row["branch [-]"] for row in rows}))
         self.assertEqual(sum(len(trace["x"]) for trace in curves), len(rows))
-        events = read_table(self.sweep / "thresholds.csv")
+        events = self.rows("sweep", "thresholds")
         self.assertEqual(sum(len(trace["x"]) for trace in charts["branches"]["data"][-2:]), len(events))
         # Of two modes that meet, both have the frequency of the threshold there
         first, second = charts["bifurcations"]["data"][:2]
         event = next(row for row in events if first["name"].startswith(f"{row['label']} and {row['label of partner']}, "
-                                                                       f"{float(row['frequency [Hz]']):.0f} Hz"))
+                                                                       f"{float(row['frequency [Hz]']):.1f} Hz"))
         for curve in (first, second):
             at = min(range(len(curve["x"])), key=lambda i: abs(curve["x"][i] - float(event["mu [-]"])))
             self.assertLess(abs(curve["y"][at]), 0.1 * max(map(abs, first["y"] + second["y"])))
 
     def test_energy_and_shapes(self):
-        data = self.data(self.stability)
-        growing = [i for i, row in enumerate(read_table(self.stability / "complex_modes.csv"), start=1) if row["unstable [-]"] == "1"]
-        self.assertEqual([entry["mode"] for entry in data["energy"]], growing)
-        self.assertEqual([mode["number"] for mode in data["shapes"]["modes"]], growing)
-        self.assertIsNone(self.data(self.sweep)["shapes"])
+        growing = [i for i, row in enumerate(self.rows("stability", "complex_modes"), start=1) if row["unstable [-]"] == "1"]
+        self.assertEqual([int(choice["key"]) for choice in self.charts("stability")["energy"]["choices"]], growing)
+        self.assertEqual([mode["number"] for mode in self.data("stability")["shapes"]["modes"]], growing)
+        self.assertIsNone(self.data("sweep")["shapes"])
+
+    # ------------------------------------------------------------------------------------------------------------ every page
 
     def test_nothing_from_the_network(self):
-        for folder in (self.stability, self.sweep):
-            text = self.page(folder)
+        for name in SCENES:
+            text = self.page(name)
             self.assertLess(len(text.encode()), LARGEST_FILE)
             self.assertEqual(re.findall(r'<(?:script|link|img|iframe)[^>]*(?:src|href)="(?!data:)[^"]*"', text), [])
             self.assertEqual(re.findall(r"url\((?!data:|none)[^)]{0,60}", text.split("</style>")[0]), [])
 
     def test_belongs_to_the_run(self):
         """The next run takes the page away with the results that it shows."""
-        record = json.loads((self.stability / "run.json").read_text(encoding="utf-8"))
-        self.assertEqual(record["files [byte]"]["report.html"], (self.stability / "report.html").stat().st_size)
-        shutil.copytree(self.stability, self.folder / "again")
+        stability = self.folder / "stability"
+        record = json.loads((stability / "run.json").read_text(encoding="utf-8"))
+        self.assertEqual(record["files [byte]"]["report.html"], (stability / "report.html").stat().st_size)
+        shutil.copytree(stability, self.folder / "again")
         again = self.run_scene("again")
         self.addCleanup(shutil.rmtree, again)
         self.assertFalse((again / "report.html").exists())
@@ -128,61 +154,81 @@ class Reports(ProgramTest):
         self.assertEqual(process.returncode, 1)
         self.assertTrue(process.stderr.startswith("error: there is no folder"), process.stderr)
 
+    # --------------------------------------------------------------------------------------------------------- in a browser
+
     def test_in_a_browser(self):
         for width in (1200, 390):
             driver = browser(width)
             if driver is None:
                 self.skipTest("chromium, chromium-driver or python3-selenium is not installed")
             try:
-                for folder in (self.stability, self.sweep):
-                    with self.subTest(folder.name, width=width):
-                        self.look(driver, folder, width)
+                for name in SCENES:
+                    with self.subTest(name, width=width):
+                        self.look(driver, name, width)
             finally:
                 driver.quit()
 
-    def look(self, driver, folder, width):
-        driver.get((folder / "report.html").as_uri())
-        time.sleep(1)
+    def look(self, driver, name, width):
+        driver.get((self.folder / name / "report.html").as_uri())
+        deadline = time.monotonic() + 30
+        drawn = "return 'viewer' in window && [...document.querySelectorAll('.chart')].every(chart => chart.querySelector('.main-svg'))"
+        while not driver.execute_script(drawn) and time.monotonic() < deadline:
+            time.sleep(0.1)
         self.assertEqual([entry for entry in driver.get_log("browser") if entry["level"] == "SEVERE"], [])
-        self.assertEqual(driver.find_element("id", "verdict").text, self.verdict(folder))
+        self.assertEqual(driver.find_element("id", "verdict").text, self.verdict(name))
         # Nothing is wider than the screen, and no part lies on another
         self.assertLessEqual(driver.execute_script("return document.documentElement.scrollWidth"), width)
         places = driver.execute_script("return [...document.querySelectorAll('main > *')].map(e => { const r = e.getBoundingClientRect();"
                                        " return [r.top, r.bottom]; })")
         for (_, bottom), (top, _) in zip(places, places[1:]):
             self.assertLessEqual(bottom, top + 0.5)
-        for chart in self.data(folder)["charts"]:
+        self.assertEqual(driver.execute_script(CROWDED), [])
+        for chart in self.data(name)["charts"]:
             shown = driver.execute_script("return document.getElementById(arguments[0]).data.length", "chart-" + chart["id"])
-            self.assertEqual(shown, len(chart["data"]))
-        name = "complex_modes" if folder == self.stability else "thresholds"
-        self.assert_sorts(driver, folder / f"{name}.csv")
-        if folder == self.stability:
+            traces = chart["data"] if "data" in chart else next(one["data"] for one in chart["choices"] if one["key"] == chart["chosen"])
+            self.assertEqual(shown, len(traces))
+        self.assert_tables(driver, name)
+        self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
+        if name == "stability":
             self.assert_moves(driver)
 
-    def assert_sorts(self, driver, path):
+    def assert_tables(self, driver, name):
+        """Every table has the rows of its file."""
+        shown = driver.execute_script("return [...document.querySelectorAll('table.sortable')].map(t => [t.id, $(t).DataTable().rows().count()])")
+        self.assertGreater(len(shown), 0)
+        self.assertEqual(shown, [[table, len(self.rows(name, table.removeprefix("table-")))] for table, _ in shown])
+        self.assertIn("table-" + SORTED[name][0], [table for table, _ in shown])
+
+    def assert_sorts(self, driver, path, name):
         """A click on a head sorts its column, a second one the other way round."""
-        column = next(i for i, name in enumerate(read_table(path)[0]) if name == "frequency [Hz]")
-        values = sorted(float(row["frequency [Hz]"]) for row in read_table(path))
+        column = list(read_table(path)[0]).index(name)
+        values = sorted(float(row[name]) for row in read_table(path) if row[name])
         head = driver.find_elements("css selector", f"#table-{path.stem} thead th")[column]
-        for extreme in (values[0], values[-1]):
+        found = []
+        for _ in range(2):
             driver.execute_script("arguments[0].click()", head)
-            first = driver.execute_script("return document.querySelector(arguments[0]).textContent",
-                                          f"#table-{path.stem} tbody tr:first-child td:nth-child({column + 1})")
-            self.assertAlmostEqual(float(first) / extreme, 1, delta=1e-5)
+            texts = driver.execute_script("return $(arguments[0]).DataTable().column(arguments[1], { order: 'current' }).data().toArray()",
+                                          f"#table-{path.stem}", column)
+            found.append([float(text) for text in texts if text])
+        self.assertEqual(found[0], sorted(found[0]))
+        self.assertEqual(found[1], sorted(found[0], reverse=True))
+        for shown, value in zip(found[0], values):
+            self.assertAlmostEqual(shown, value, delta=1e-5 * abs(value))
 
     def assert_moves(self, driver):
         place = "return Array.from(viewer.geometry.getAttribute('position').array.slice(0, 30000)).reduce((a, x) => a + Math.abs(x), 0)"
-        before, frames = driver.execute_script(place), driver.execute_script("return viewer.frames")
-        time.sleep(0.7)
-        self.assertGreater(driver.execute_script("return viewer.frames"), frames)
+        frames, before, deadline = driver.execute_script("return viewer.frames"), driver.execute_script(place), time.monotonic() + 30
+        while driver.execute_script(place) == before and time.monotonic() < deadline:
+            time.sleep(0.1)
         self.assertNotEqual(driver.execute_script(place), before)
+        self.assertGreater(driver.execute_script("return viewer.frames"), frames)
         driver.execute_script("document.getElementById('play').click()")
         time.sleep(0.3)
         still = driver.execute_script(place)
         time.sleep(0.4)
         self.assertEqual(driver.execute_script(place), still)
         # Another mode has other shape and energy
-        energy = "return document.getElementById('energy-mode').value"
+        energy = "return document.getElementById('choice-energy').value"
         before = driver.execute_script(energy)
         driver.execute_script("[...document.querySelectorAll('#modes button')].find(b => !b.classList.contains('chosen')).click()")
         self.assertNotEqual(driver.execute_script(energy), before)

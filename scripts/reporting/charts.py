@@ -1,0 +1,48 @@
+"""Colours, axes and numbers of the charts of a page."""
+
+import math
+
+UNSTABLE, STABLE, PALE = "#b2182b", "#2166ac", "#b9c2cc"
+WEAK = 0.01  # divergence rate [%] up to which growth is called weak
+RATE, DAMPING, FREQUENCY = "divergence rate [%]", "effective damping ratio -2R/omega [%]", "frequency [Hz]"
+
+
+def number(text):
+    return float(text) if text else math.nan
+
+
+def short(text, n=6):
+    """A number with so many digits, for a chart."""
+    return float(f"{number(text):.{n}g}")
+
+
+def digits(value, n=4):
+    return f"{value:.{n}g}"
+
+
+def layout(x, y, **more):
+    axis = {"zeroline": False, "gridcolor": "#e8ebee", "linecolor": "#8a939c", "ticks": "outside", "automargin": True, "exponentformat": "power"}
+    return {"xaxis": {**axis, "title": {"text": x, "standoff": 6}}, "yaxis": {**axis, "title": y}, "hovermode": "closest",
+            "plot_bgcolor": "white", "paper_bgcolor": "white", "margin": {"l": 60, "r": 16, "t": 30, "b": 50}, "legend": {"orientation": "h", "y": 1.02, "yanchor": "bottom", "x": 0},
+            "font": {"family": "inherit", "size": 13}, **more}
+
+
+def plain(text, n=5):
+    """A value as the tables have it, its number with so many digits."""
+    try:
+        return digits(float(text), n).replace("e+0", "e").replace("e+", "e").replace("e-0", "e-")
+    except ValueError:
+        return text
+
+
+def names_apart(heights, span, most=8, share=0.05):
+    """Keys of the greatest heights whose names do not lie on each other in a chart of such a span."""
+    named = []
+    for key in sorted(heights, key=heights.get, reverse=True):
+        if len(named) < most and all(abs(heights[key] - heights[other]) > share * span for other in named):
+            named.append(key)
+    return named
+
+
+def end_of_band(results):
+    return f"{float(results.parameter('Band/Maximum frequency')):g} Hz"
