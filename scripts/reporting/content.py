@@ -8,10 +8,10 @@ Each kind of results has a module in PAGES: whether it is there (`is_of`), its `
 import base64
 import math
 
-from reporting import designs, sensitivity, stability, stability_map, sweep
+from reporting import designs, search, sensitivity, stability, stability_map, sweep
 from reporting.charts import digits
 
-PAGES = (sweep, stability_map, stability, designs, sensitivity)
+PAGES = (sweep, stability_map, stability, search, designs, sensitivity)
 LARGEST_TABLE = 2500  # rows
 
 

@@ -34,6 +34,9 @@ def end_of_sweep(results):
 
 
 def verdict(results):
+    """None of a search, which says which design is the best."""
+    if results.has("search"):
+        return None
     table = results.table("designs")
     rows = solved(table)
     left = len(table) - len(rows)
@@ -103,9 +106,11 @@ def lines_section(results):
     onset, largest = [number(row[ONSET] or end) for row in rows], [number(row[LARGEST] or "0") for row in rows]
     dimensions += [{"label": "μ of 0.01 %", "values": onset, "tickformat": ".4~g"},
                    {"label": "largest rate [%]", "values": largest, "tickformat": ".4~g"}]
+    by_rate = results.has("search") and results.parameter("Search/Goal") == "divergence rate"
     return {"id": "variables_chart", "title": "Which values make a design quiet",
             "caption": "Each line is a design; drag along an axis to choose a range. Colour is the "
-                       "μ from which on it exceeds 0.01 %.",
-            "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": onset, "colorscale": "Viridis", "showscale": True}}],
+                       + ("largest divergence rate [%]." if by_rate else "μ from which on it exceeds 0.01 %."),
+            "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": largest if by_rate else onset, "colorscale": "Viridis",
+                                                                              "reversescale": by_rate, "showscale": True}}],
             "least width": 110 * len(dimensions) + 100,
             "layout": layout("", "", margin={"l": 70, "r": 60, "t": 50, "b": 30})}
