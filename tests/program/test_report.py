@@ -2,6 +2,7 @@
 
 import html
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -18,11 +19,22 @@ sys.path.insert(0, str(SCRIPT.parent))
 from reporting.page import missing_packages  # noqa: E402
 
 LARGEST_FILE = 15e6  # [byte]
-RATE = "divergence rate [%]"
+RATE, LARGEST, ONSET, CHANGE = "divergence rate [%]", "largest divergence rate [%]", "mu of 0.01 % [-]", "divergence rate per 1 % [percentage points]"
+QUICK = ("Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3", "Sweep/Number of friction coefficients=3")
 SCENES = {"stability": ("Output/Mode shapes=unstable",),
-          "sweep": ("Study=sweep", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5")}
+          "sweep": ("Study=sweep", "Sweep/Last friction coefficient=0.4", "Sweep/Number of friction coefficients=5"),
+          # Cells that are stable, unstable and undecided
+          "map": ("Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Compare dissipation=false", "Sweep/Map parameter=load",
+                  "Sweep/Number of map values=3", "Sweep/Map friction coefficients=4", *QUICK),
+          # Designs that are solved and refused
+          "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, -1", *QUICK),
+          "search": ("Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09; Geometry/Pin height = 0.03 to 0.034",
+                     "Search/Samples=3", "Search/Evaluations=5", *QUICK),
+          # Thresholds with and without derivatives
+          "sensitivity": ("Study=sensitivity", "Sensitivity/Largest number of modes=2", "Sensitivity/Tolerance=1e-2", *QUICK)}
 # A table of each page, and a column by which it is sorted
-SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]")}
+SORTED = {"stability": ("complex_modes", "frequency [Hz]"), "sweep": ("thresholds", "frequency [Hz]"), "map": ("map", "growth rate [1/s]"),
+          "designs": ("design_modes", "frequency [Hz]"), "search": ("search", LARGEST), "sensitivity": ("sensitivities", CHANGE)}
 # Titles and keys of a chart: pairs that lie on each other, and those that reach beyond it
 CROWDED = """
 return [...document.querySelectorAll('.chart')].flatMap(chart => {
@@ -87,6 +99,10 @@ class Reports(ProgramTest):
     def verdict(self, name):
         return html.unescape(re.search(r'<h1 id="verdict">(.*?)</h1>', self.page(name))[1])
 
+    def section(self, name, which):
+        """The text of a section without its marks."""
+        return html.unescape(re.sub("<[^>]*>", " ", re.search(rf'<section id="{which}">(.*?)</section>', self.page(name), re.S)[1]))
+
     def test_verdict(self):
         rows = self.rows("stability", "complex_modes")
         growing = [row for row in rows if row["unstable [-]"] == "1"]
@@ -129,6 +145,139 @@ class Reports(ProgramTest):
         self.assertEqual([int(choice["key"]) for choice in self.charts("stability")["energy"]["choices"]], growing)
         self.assertEqual([mode["number"] for mode in self.data("stability")["shapes"]["modes"]], growing)
         self.assertIsNone(self.data("sweep")["shapes"])
+
+    # ------------------------------------------------------------------------------------------------------------------ maps
+
+    def test_map(self):
+        rows = self.rows("map", "map")
+        growing = [row for row in rows if int(row["unstable modes [-]"]) > 0]
+        worst = max(growing, key=lambda row: float(row[RATE]))
+        self.assertIn(f"{len(growing)} of {len(rows)} points of the map", self.verdict("map"))
+        self.assertIn(f"{float(worst[RATE]):.3g} % ({worst['label']}), at μ = {float(worst['mu [-]']):g} and {float(worst['load per side [N]']):g} N",
+                      self.verdict("map"))
+        chart = self.charts("map")["map"]
+        self.assertEqual(chart["layout"]["yaxis"]["type"], "log")
+        *maps, limit, names = chart["data"]
+        cells = [[(value, text) for line, texts in zip(trace["z"], trace["text"]) for value, text in zip(line, texts) if value is not None]
+                 for trace in maps]
+        undecided = [row for row in rows if row not in growing and int(row["undecided modes [-]"]) > 0]
+        self.assertEqual([len(one) for one in cells], [len(growing), len(rows) - len(growing) - len(undecided), len(undecided)])
+        self.assertGreater(len(undecided), 0)
+        # The table is in the order of the cells
+        for (value, text), row in zip(cells[0], growing):
+            self.assertAlmostEqual(value / float(row[RATE]), 1, delta=1e-5)
+            self.assertTrue(text.startswith(f"<b>{row['label']}</b>, {float(row['frequency [Hz]']):.0f} Hz<br>μ = {float(row['mu [-]']):.4g}"), text)
+        # Cells reach half-way to the next load, in the ratio of both
+        self.assertAlmostEqual(maps[0]["y"][1] / math.sqrt(100 * 1000), 1)
+        self.assertEqual(len(maps[0]["x"]), 5)
+        self.assertGreater(sum(x is not None for x in limit["x"]), 3)
+        self.assertLessEqual(set(names["text"]), {row["label"] for row in growing})
+
+    # --------------------------------------------------------------------------------------------------------------- designs
+
+    def test_designs(self):
+        rows = self.rows("designs", "designs")
+        solved = [row for row in rows if row["outcome"] == "solved"]
+        self.assertEqual((len(rows), len(solved)), (4, 2))
+        best = max(solved, key=lambda row: float(row[ONSET]))
+        words = self.verdict("designs")
+        self.assertTrue(words.startswith("All 2 designs exceed a divergence rate of 0.01 % up to μ = 0.45; the quietest is design "
+                                         f"{best['design [-]']} (Pin height = "), words)
+        self.assertIn(f"from μ = {float(best[ONSET]):.3g} on", words)
+        self.assertIn("2 of 4 designs solved, 2 refused or failed", words)
+        charts = self.charts("designs")
+        places = sorted((x, y) for trace in charts["designs_chart"]["data"] for x, y in zip(trace["x"], trace["y"]))
+        for (x, y), row in zip(places, sorted(solved, key=lambda row: float(row[ONSET]))):
+            self.assertAlmostEqual(x / float(row[ONSET]), 1, delta=1e-5)
+            self.assertAlmostEqual(y / float(row[LARGEST]), 1, delta=1e-5)
+        lines, = charts["variables_chart"]["data"]
+        self.assertEqual([axis["label"] for axis in lines["dimensions"]], ["Pin height", "Young modulus", "μ of 0.01 %", "largest rate [%]"])
+        self.assertEqual(lines["dimensions"][0]["values"], [0.03, 0.034])
+
+    def test_search(self):
+        rows = self.rows("search", "search")
+        solved = [row for row in rows if row[LARGEST]]
+        self.assertLess(len(solved), len(rows))
+        best = min(solved, key=lambda row: float(row[LARGEST]))
+        words = self.verdict("search")
+        self.assertTrue(words.startswith(f"Of {len(rows)} designs the best is design {best['design [-]']} ("), words)
+        self.assertIn(f"a divergence rate of {float(best[LARGEST]):.3g} % at most", words)
+        charts = self.charts("search")
+        line, *marks = charts["history"]["data"]
+        self.assertEqual(line["x"], [int(row["design [-]"]) for row in rows])
+        for y, row in zip(line["y"], rows):
+            self.assertAlmostEqual(y / float(row["best " + LARGEST]), 1, delta=1e-5)
+        self.assertEqual(sorted(x for trace in marks for x in trace["x"]), line["x"])
+        self.assertEqual(marks[-1]["x"], [int(row["design [-]"]) for row in rows if not row[LARGEST]])
+        for choice in charts["over_variables"]["choices"]:
+            places = [x for trace in choice["data"][:-1] for x in trace["x"]]
+            self.assertEqual(sorted(places), sorted(float(row[choice["key"]]) for row in solved))
+            self.assertEqual(choice["data"][-1]["x"], [float(best[choice["key"]])])
+        text = self.section("search", "best")
+        for full in self.rows("search", "full_order"):
+            self.assertIn(f"{full['unstable modes [-]']} of {full['modes [-]']} modes grow, at most with {float(full[RATE]):.4g} % ({full['label']}", text)
+        self.assertIn("best.prm", text)
+        self.assertIn(f"Geometry/Pin height  0.0318  0.03 … 0.034  {float(best['Geometry/Pin height']):.4g}", text)
+
+    # --------------------------------------------------------------------------------------------------------- sensitivities
+
+    def test_sensitivity(self):
+        rows = self.rows("sensitivity", "sensitivities")
+        first, second = [row for row in self.rows("sensitivity", "sensitivity_ranking") if not row["only of"]][:2]
+        words = self.verdict("sensitivity")
+        self.assertIn(f"{rows[0]['label']} at {float(rows[0]['frequency [Hz]']):.0f} Hz grows fastest, with a divergence rate of "
+                      f"{float(rows[0][RATE]):.3g} %", words)
+        for row in (first, second):
+            self.assertIn(f"{row['parameter']} ", words)
+            self.assertIn(f"{float(row[CHANGE]):+.4f}".replace("-", "−"), words)
+        chart = self.charts("sensitivity")["sensitivity"]
+        self.assertEqual([choice["key"] for choice in chart["choices"]], ["1", "2"])
+        self.assertEqual(chart["chosen"], "1")
+        for choice in chart["choices"]:
+            own = [row for row in rows if row["mode [-]"] == choice["key"] and not row["only of"] and row[CHANGE]]
+            shown = sorted(x for trace in choice["data"] for x in trace["x"])
+            self.assertEqual(len(shown), len(own))
+            for x, row in zip(shown, sorted(own, key=lambda row: float(row[CHANGE]))):
+                self.assertAlmostEqual(x, float(row[CHANGE]), delta=1e-5 * abs(x))
+        self.assertEqual(chart["choices"][0]["layout"]["yaxis"]["categoryarray"][-1].replace("<br>", "/"), first["parameter"])
+
+    def test_thresholds_of_sensitivities(self):
+        rows = self.rows("sensitivity", "sensitivities_thresholds")
+        places = list(dict.fromkeys(row["mu [-]"] for row in rows))
+        without = [row for row in rows if row["derivative of"] == "none"]
+        self.assertGreater(len(without), 0)
+        chart = self.charts("sensitivity")["sensitivity_thresholds"]
+        self.assertEqual(len(chart["choices"]), len(places) - len(without))
+        notes = self.section("sensitivity", "sensitivity_notes")
+        for row in without:
+            self.assertIn(f"μ = {float(row['mu [-]']):.4g}: {row['event']} of {row['label']} with {row['label of partner']}, "
+                          f"{float(row['frequency [Hz]']):.0f} Hz has no derivative: {row['remark']}.", notes)
+        self.assertIn(f"{len(places) - len(without)} of {len(places)} thresholds are exceptional points", notes)
+        self.assertIn(f"thresholds with derivatives {len(places) - len(without)} of {len(places)}",
+                      " ".join(self.section("sensitivity", "checks").split()))
+
+    def test_nothing_grows(self):
+        still = self.run_scene("still", "Study=sensitivity", "Sensitivity/Thresholds=false", "Sensitivity/Geometry=none",
+                               "Operation/Friction coefficient=0")
+        self.addCleanup(shutil.rmtree, still)
+        self.report_of(still)
+        self.assertIn('<header class="stable">', self.page("still"))
+        self.assertIn("is the least damped mode, and none grows. One per cent of no parameter changes its divergence rate", self.verdict("still"))
+
+    def test_coalescing_pairs_are_named(self):
+        """A stability run that has sensitivities, too, shows both; of a pair near its coalescence it says what is differentiated."""
+        folder = self.folder / "both"
+        shutil.copytree(self.folder / "stability", folder)
+        self.addCleanup(shutil.rmtree, folder)
+        text = (self.folder / "sensitivity" / "sensitivities.csv").read_text(encoding="utf-8")
+        lines = [line.replace(",lambda,", ",mean of a coalescing pair,") if line.startswith("2,") else line for line in text.splitlines()]
+        (folder / "sensitivities.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+        self.report_of(folder)
+        self.assertTrue({"damping", "energy", "sensitivity"} <= set(self.charts("both")))
+        second = next(row for row in self.rows("both", "sensitivities") if row["mode [-]"] == "2")
+        self.assertIn(f"{second['label']} at {float(second['frequency [Hz]']):.1f} Hz: its derivatives are those of the mean of a coalescing pair.",
+                      self.section("both", "sensitivity_notes"))
+        self.assertTrue(self.verdict("both").startswith(self.verdict("stability")))
 
     # ------------------------------------------------------------------------------------------------------------ every page
 
@@ -189,8 +338,11 @@ class Reports(ProgramTest):
             self.assertEqual(shown, len(traces))
         self.assert_tables(driver, name)
         self.assert_sorts(driver, self.folder / name / f"{SORTED[name][0]}.csv", SORTED[name][1])
+        self.assert_marks(driver, name)
         if name == "stability":
             self.assert_moves(driver)
+        elif name == "sensitivity":
+            self.assert_chooses(driver)
 
     def assert_tables(self, driver, name):
         """Every table has the rows of its file."""
@@ -198,6 +350,32 @@ class Reports(ProgramTest):
         self.assertGreater(len(shown), 0)
         self.assertEqual(shown, [[table, len(self.rows(name, table.removeprefix("table-")))] for table, _ in shown])
         self.assertIn("table-" + SORTED[name][0], [table for table, _ in shown])
+
+    def assert_marks(self, driver, name):
+        """As many marks and bars are drawn as the tables have rows."""
+        def drawn(chart, what):
+            return driver.execute_script("return document.querySelectorAll(arguments[0]).length", f"#chart-{chart} {what}")
+
+        if name == "designs":
+            self.assertEqual(drawn("designs_chart", ".points path"), sum(row["outcome"] == "solved" for row in self.rows(name, "designs")))
+        elif name == "search":
+            rows = self.rows(name, "search")
+            self.assertEqual(drawn("history", ".points path"), len(rows))
+            self.assertEqual(drawn("over_variables", ".points path"), sum(row[LARGEST] != "" for row in rows) + 1)
+        elif name == "sensitivity":
+            rows = [row for row in self.rows(name, "sensitivities") if row["mode [-]"] == "1" and not row["only of"] and row[CHANGE]]
+            self.assertEqual(drawn("sensitivity", ".bars .point"), len(rows))
+            self.assertEqual(drawn("sensitivity", ".yaxislayer-above .ytick"), len(rows))
+        elif name == "map":
+            self.assertGreater(drawn("map", ".heatmaplayer image"), 0)
+
+    def assert_chooses(self, driver):
+        """The list of modes shows another chart."""
+        rows = [row for row in self.rows("sensitivity", "sensitivities") if row["mode [-]"] == "2" and not row["only of"] and row[CHANGE]]
+        driver.execute_script("const list = document.getElementById('choice-sensitivity'); list.value = '2'; list.dispatchEvent(new Event('change'))")
+        shown = driver.execute_script("return document.getElementById('chart-sensitivity').data.flatMap(trace => trace.x)")
+        self.assertEqual(len(shown), len(rows))
+        self.assertAlmostEqual(min(shown) / min(float(row[CHANGE]) for row in rows), 1, delta=1e-5)
 
     def assert_sorts(self, driver, path, name):
         """A click on a head sorts its column, a second one the other way round."""
