@@ -2,7 +2,8 @@
 # Makes the checkout ready: installs the Debian packages that are missing, configures and builds.
 # run.sh and test.sh source this file; called by itself it builds the program and stops there:
 #
-#   scripts/setup.sh              what building, running and testing need
+#   scripts/setup.sh              what building, running and most tests need
+#   scripts/setup.sh browser      also the browser in which scripts/test.sh looks at pages of scripts/report.py
 #   scripts/setup.sh pictures     also what scripts/render_*.py need
 #   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
@@ -20,6 +21,7 @@ packages=(g++ cmake ninja-build git
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev libnlopt-cxx-dev
           libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-h5py
           python3-plotly libjs-three libjs-jquery libjs-jquery-datatables)
+packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 # Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
@@ -173,6 +175,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
   additional=()
   for group in "$@"; do
     case $group in
+      browser) additional+=("${packages_browser[@]}") ;;
       pictures)
         if [[ -z $(missing_packages python3-paraview) ]]; then
           packages_pictures=("${packages_pictures[@]/python3-vtk9/python3-paraview}")
@@ -180,7 +183,7 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
         additional+=("${packages_pictures[@]}") ;;
       paraview) additional+=("${packages_paraview[@]}") ;;
       peers) additional+=("${packages_peers[@]}") ;;
-      *) complain "usage: scripts/setup.sh [pictures] [paraview] [peers]"; exit 2 ;;
+      *) complain "usage: scripts/setup.sh [browser] [pictures] [paraview] [peers]"; exit 2 ;;
     esac
   done
   install_packages "${packages[@]}" "${additional[@]}"

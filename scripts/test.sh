@@ -8,6 +8,7 @@ set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
+install_packages "${packages[@]}" "${packages_browser[@]}"
 setup release
 
 cd "$squeal_root"

@@ -309,7 +309,7 @@ class Reports(ProgramTest):
         for width in (1200, 390):
             driver = browser(width)
             if driver is None:
-                self.skipTest("chromium, chromium-driver or python3-selenium is not installed")
+                self.skipTest("chromium, chromium-driver or python3-selenium is missing (scripts/setup.sh browser)")
             try:
                 for name in SCENES:
                     with self.subTest(name, width=width):
