@@ -9,6 +9,7 @@ import os
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
 
 EXECUTABLE = os.path.abspath(os.environ["SQUEAL"])
@@ -66,6 +67,25 @@ class ProgramTest(unittest.TestCase):
         if process.returncode != 0:
             raise AssertionError(f"the run {output} failed:\n{process.stdout}\n{process.stderr}")
         return cls.folder / output
+
+    def interrupt(self, output, overrides, ends):
+        """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets
+        the signal as soon as so many designs are known, and leaves no results."""
+        settings = [word for override in overrides for word in ("--set", override)]
+        for number, how in ends:
+            process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            deadline = time.monotonic() + 300
+            while len(self.known_designs(output)) < number and process.poll() is None and time.monotonic() < deadline:
+                time.sleep(0.02)
+            process.send_signal(how)
+            process.wait()
+            self.assertNotEqual(process.returncode, 0)
+            self.assertFalse((self.folder / output).exists())
+
+    def known_designs(self, output):
+        """Files that hold the designs that an interrupted study has solved."""
+        return sorted((self.folder / f"{output}.checkpoint").glob("design-*/design.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
         """Holds two lists against each other, whatever the order within clusters."""

@@ -113,36 +113,26 @@ class DesignsTest(ProgramTest):
         self.assertEqual(found, expected)
 
     def test_killed_and_resumed(self):
-        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
-        command = [EXECUTABLE, "scene.prm", "--output", "killed", *settings]
-        kept = self.folder / "killed.checkpoint"
-        for number, how in ((1, signal.SIGKILL), (2, signal.SIGTERM), (3, signal.SIGKILL)):
-            process = subprocess.Popen(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            deadline = time.monotonic() + 300
-            while len(list(kept.glob("design-*/design.result"))) < number and process.poll() is None and time.monotonic() < deadline:
-                time.sleep(0.02)
-            process.send_signal(how)
-            process.wait()
-            self.assertNotEqual(process.returncode, 0)
-            self.assertFalse((self.folder / "killed").exists())
+        self.interrupt("killed", (*STUDY, VARIABLES), ((1, signal.SIGKILL), (2, signal.SIGTERM), (3, signal.SIGKILL)))
         # Its processes end with it
         deadline = time.monotonic() + 60
         while self.processes_of("killed.checkpoint") and time.monotonic() < deadline:
             time.sleep(0.1)
         self.assertEqual(self.processes_of("killed.checkpoint"), [])
-        known = {path.parent.name: path.read_bytes() for path in kept.glob("design-*/design.result")}
-        self.assertGreaterEqual(len(known), 3)
+        n_known = len(self.known_designs("killed"))
+        self.assertGreaterEqual(n_known, 3)
 
         # Another study does not go on with it
+        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
         other = self.call("scene.prm", "--output", "killed", *settings, "--set", "Sweep/Tolerance=1e-5")
         self.assertEqual(other.returncode, 1)
         self.assertIn("an unfinished study of other designs", other.stderr)
 
         process = self.call("scene.prm", "--output", "killed", *settings)
         self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertIn(f"{len(known)} of 6 designs are known", process.stdout)
+        self.assertIn(f"{n_known} of 6 designs are known", process.stdout)
         self.assertEqual(tables(self.folder / "killed"), tables(self.study))
-        self.assertFalse(kept.exists())
+        self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     @staticmethod
     def processes_of(words):

@@ -1,11 +1,9 @@
 """Searches for quiet designs: budgets, what they report, held against single runs and full order; interrupted and resumed."""
 
 import signal
-import subprocess
-import time
 import unittest
 
-from program import EXECUTABLE, ProgramTest, eigenvalues, read_table
+from program import ProgramTest, eigenvalues, read_table
 
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.029 to 0.035; Pin material/Young modulus = 1.5e9 to 2.5e9"
 SEARCH = ["Study=search", VARIABLES, "Search/Samples=4", "Search/Evaluations=9", "Sweep/Number of friction coefficients=6"]
@@ -64,22 +62,11 @@ class SearchTest(ProgramTest):
                 self.assertEqual(float(rows[-1]["best mu of 0.01 % [-]"]), max(found))
 
     def test_killed_and_resumed(self):
-        settings = [word for text in SEARCH for word in ("--set", text)]
-        kept = self.folder / "killed.checkpoint"
-        for number, how in ((2, signal.SIGKILL), (5, signal.SIGTERM)):
-            process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "killed", *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
-                                       stderr=subprocess.DEVNULL)
-            deadline = time.monotonic() + 300
-            while len(list(kept.glob("design-*/design.result"))) < number and process.poll() is None and time.monotonic() < deadline:
-                time.sleep(0.02)
-            process.send_signal(how)
-            process.wait()
-            self.assertNotEqual(process.returncode, 0)
-        known = len(list(kept.glob("design-*/design.result")))
-        self.assertGreaterEqual(known, 5)
+        self.interrupt("killed", SEARCH, ((2, signal.SIGKILL), (5, signal.SIGTERM)))
+        self.assertGreaterEqual(len(self.known_designs("killed")), 5)
         resumed = self.run_scene("killed", *SEARCH)
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
-        self.assertFalse(kept.exists())
+        self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     def test_what_is_refused(self):
         for settings, what in ((["Designs/Variables=Geometry/Pin height = 0.03, 0.04"], "a search needs ranges"),
