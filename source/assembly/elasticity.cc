@@ -85,10 +85,6 @@ namespace Squeal
 
       const std::string young = BodyParameter::young_modulus(name), density = BodyParameter::density(name),
                         alpha = BodyParameter::rayleigh_alpha(name), beta = BodyParameter::rayleigh_beta(name);
-      bodies.values[young]   = {material.young_modulus};
-      bodies.values[density] = {material.density};
-      bodies.values[alpha]   = {material.rayleigh_alpha};
-      bodies.values[beta]    = {material.rayleigh_beta};
       bodies.terms.push_back(sparse_term("stiffness, " + name, 0, {1., {{young, 1}}}, K));
       bodies.terms.push_back(sparse_term("mass, " + name, 2, {1., {{density, 1}}}, M));
       bodies.terms.push_back(sparse_term("damping by stiffness, " + name, 1, {1., {{beta, 1}, {young, 1}}}, K));
@@ -122,7 +118,6 @@ namespace Squeal
                   }
             };
             const std::string parameter = BodyParameter::mount_stiffness(name, mount.surface);
-            bodies.values[parameter]    = {stiffness};
             bodies.terms.push_back(
               sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, {integral})[0]));
           }
@@ -157,9 +152,28 @@ namespace Squeal
     }
   } // namespace BodyParameter
 
+  ParameterValues body_values(const Model &model, const MaterialParameters &materials)
+  {
+    ParameterValues result;
+    for (const std::string &body : model.component_names())
+      {
+        const Material material                     = materials.of(body);
+        result[BodyParameter::young_modulus(body)]  = {material.young_modulus};
+        result[BodyParameter::density(body)]        = {material.density};
+        result[BodyParameter::rayleigh_alpha(body)] = {material.rayleigh_alpha};
+        result[BodyParameter::rayleigh_beta(body)]  = {material.rayleigh_beta};
+      }
+    for (const ElasticMount &mount : materials.mounts)
+      for (const auto &[name, stiffness] :
+           std::vector<std::pair<const char *, double>>{{"radial", mount.radial}, {"tangential", mount.tangential}, {"axial", mount.axial}})
+        if (stiffness != 0.)
+          result[BodyParameter::mount_stiffness(name, mount.surface)] = {stiffness};
+    return result;
+  }
+
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials)
   {
-    BodyTerms bodies;
+    BodyTerms bodies{{}, body_values(model, materials)};
     for (unsigned int component = 0; component < model.component_names().size(); ++component)
       add_body(bodies, model, component, materials.of(model.component_names()[component]));
     for (const ElasticMount &mount : materials.mounts)

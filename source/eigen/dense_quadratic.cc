@@ -16,7 +16,7 @@ namespace Squeal
     /// Corrections larger than this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the value is defective.
     constexpr double largest_correction = 1e-6;
     /// λ oscillates; below, it is real.
-    const Decision oscillating("Im / modulus of an eigenvalue of a dense quadratic problem", 1e-12);
+    const Decision oscillating_dense("Im / modulus of an eigenvalue of a dense quadratic problem", 1e-12);
 
     /// The root of a real or complex square with Im λ ≥ 0.
     Complex upper_root(const Complex square)
@@ -86,7 +86,7 @@ namespace Squeal
     for (int j = 0; j < companion.rows(); ++j)
       {
         const Complex lambda = value(j);
-        if (!oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
+        if (!oscillating_dense.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
           {
             modes.real_values.push_back(lambda.real());
             if (linear)

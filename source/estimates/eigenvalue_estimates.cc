@@ -40,9 +40,9 @@ namespace Squeal
                                    const ReducedModel   &model,
                                    const ReducedModes   &modes)
   {
-    const MultiVector &T     = model.basis();
-    const auto         force = [&](const ComplexDenseMatrix &vectors, const bool left) {
-      return force_residuals(system, modes.values, modes.lambda, T * DenseMatrix(vectors.real()), T * DenseMatrix(vectors.imag()), left);
+    const auto force = [&](const ComplexDenseMatrix &vectors, const bool left) {
+      return force_residuals(system, modes.values, modes.lambda, model.times_basis(vectors.real()), model.times_basis(vectors.imag()),
+                             left);
     };
     const MultiVector R = force(modes.right, false), L = force(modes.left, true);
     return {R, L, inverse.solve_frictionless(R), inverse.solve_frictionless(L)};

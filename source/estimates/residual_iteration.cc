@@ -18,11 +18,17 @@ namespace Squeal
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
 
-    /// Principal axes in the M-norm of the columns of X outside of the basis, the small ones left out.
-    MultiVector compress(const SparseMatrix &M, const MultiVector &basis, MultiVector X)
+    /// Leaves what X has outside of the M-orthonormal basis.
+    void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X)
     {
       for (unsigned int pass = 0; pass < 2; ++pass)
-        multiply_add(-1., basis, gram(basis, M * X), 1., X);
+        X -= model.times_basis(model.basis_products(M * X));
+    }
+
+    /// Principal axes in the M-norm of the columns of X outside of the basis, the small ones left out.
+    MultiVector compress(const SparseMatrix &M, const ReducedModel &model, MultiVector X)
+    {
+      remove_basis(M, model, X);
       const auto [squares, axes] = symmetric_eigenpairs(gram(X, M * X)); // ascending
       const int    k             = squares.size();
       const double limit         = compression_tolerance * compression_tolerance * squares.back();
@@ -148,7 +154,13 @@ namespace Squeal
     const SparseMatrix &M = *system.mass;
     if (directions.empty())
       return {};
-    return orthonormalize_if_any(M, &model.basis(), compress(M, model.basis(), join_all(directions)), dependence_tolerance);
+    const MultiVector X = compress(M, model, join_all(directions));
+    if (!model.is_restricted())
+      return orthonormalize_if_any(M, &model.basis(), X, dependence_tolerance);
+    auto result = orthonormalize_if_any(M, nullptr, X, dependence_tolerance);
+    if (result)
+      remove_basis(M, model, *result);
+    return result;
   }
 
   GrownBasis grow_residual_basis(const CoupledSystem            &system,

@@ -2,9 +2,23 @@
 
 namespace Squeal
 {
+  DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X)
+  {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index j = 0; j < X.cols(); ++j)
+      if ((X.col(j).array() != 0.).any())
+        kept.push_back(j);
+    if (static_cast<Eigen::Index>(kept.size()) == X.cols())
+      return A * X;
+    const DenseMatrix columns = X(Eigen::all, kept);
+    DenseMatrix       result  = DenseMatrix::Zero(A.rows(), X.cols());
+    result(Eigen::all, kept)  = A * columns;
+    return result;
+  }
+
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X)
   {
-    return from_halves(A * halves(X));
+    return from_halves(multiply_sparing_zeros(A, halves(X)));
   }
 
   DenseMatrix halves(const ComplexDenseMatrix &X)

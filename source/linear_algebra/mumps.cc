@@ -13,7 +13,7 @@ namespace Squeal
   namespace
   {
     /// What MUMPS is told about a matrix.
-    enum class Symmetry
+    enum class MatrixKind
     {
       general           = 0,
       positive_definite = 1,
@@ -24,7 +24,7 @@ namespace Squeal
     class Mumps
     {
     public:
-      Mumps(const SparseMatrix &A, const Symmetry symmetry, const std::string &what)
+      Mumps(const SparseMatrix &A, const MatrixKind symmetry, const std::string &what)
         : what(what)
         , comm(A.communicator())
         , rows(A)
@@ -44,7 +44,7 @@ namespace Squeal
         run(-1);
         try
           {
-            factorize(symmetry != Symmetry::general);
+            factorize(symmetry != MatrixKind::general);
           }
         catch (...)
           {
@@ -186,11 +186,11 @@ namespace Squeal
     class MumpsFactorization : public Factorization
     {
     public:
-      MumpsFactorization(const SparseMatrix &A, const Symmetry symmetry, const std::string &what)
+      MumpsFactorization(const SparseMatrix &A, const MatrixKind symmetry, const std::string &what)
         : row_map(A.rows())
         , mumps(std::make_unique<Mumps>(A, symmetry, what))
       {
-        if (symmetry == Symmetry::positive_definite && (mumps->n_negative_pivots() > 0 || mumps->n_null_pivots() > 0))
+        if (symmetry == MatrixKind::positive_definite && (mumps->n_negative_pivots() > 0 || mumps->n_null_pivots() > 0))
           throw_not_positive_definite("MUMPS", what);
         if (mumps->n_null_pivots() > 0)
           throw_singular("MUMPS", what);
@@ -224,12 +224,12 @@ namespace Squeal
 
   std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, const bool positive_definite, const std::string &what)
   {
-    return std::make_unique<MumpsFactorization>(A, positive_definite ? Symmetry::positive_definite : Symmetry::general, what);
+    return std::make_unique<MumpsFactorization>(A, positive_definite ? MatrixKind::positive_definite : MatrixKind::general, what);
   }
 
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null)
   {
-    const Mumps mumps(A, Symmetry::symmetric, what);
+    const Mumps mumps(A, MatrixKind::symmetric, what);
     if (n_null != nullptr)
       *n_null = mumps.n_null_pivots();
     else if (mumps.n_null_pivots() > 0)

@@ -17,11 +17,11 @@ namespace Squeal
     /// A defective double zero splits into ± √(rounding).
     const Decision nonzero("|lambda| of a reduced mode / end of the band", zero_frequency);
     /// A multiple real λ splits into pairs by rounding.
-    const Decision oscillating("Im lambda of a reduced mode / end of the band", 1e-7);
+    const Decision oscillating_in_band("Im lambda of a reduced mode / end of the band", 1e-7);
 
     bool is_real(const Complex lambda, const double largest_circular_frequency)
     {
-      return !oscillating.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
+      return !oscillating_in_band.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
     }
 
     /**

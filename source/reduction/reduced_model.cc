@@ -26,7 +26,7 @@ namespace Squeal
 
   void ReducedModel::extend(const MultiVector &vectors)
   {
-    T = std::make_unique<MultiVector>(T ? join({T.get(), &vectors}) : vectors);
+    T = std::make_shared<MultiVector>(size() > 0 ? join({&basis(), &vectors}) : vectors);
 
     std::map<const LowRankFactor *, bool> is_extended;
     for (std::size_t k = 0; k < matrices.size(); ++k)
@@ -35,10 +35,6 @@ namespace Squeal
         if (term.matrix)
           {
             border(matrices[k], gram(*T, *term.matrix * vectors), term.symmetry == Symmetry::skew ? -1. : 1.);
-            if (term.matrix == system->mass)
-              mass_matrix = matrices[k];
-            if (term.matrix == system->stiffness)
-              stiffness_matrix = matrices[k];
             continue;
           }
         for (const LowRankFactor *factor : {term.left.get(), term.right.get()})
@@ -47,6 +43,84 @@ namespace Squeal
         if (term.weights.empty())
           matrices[k] = motions(*term.left).transpose() * motions(*term.right);
       }
+    find_norms();
+  }
+
+  void ReducedModel::find_norms()
+  {
+    DenseMatrix sums[2];
+    for (std::size_t k = 0; k < matrices.size(); ++k)
+      if (const Term &term = system->terms[k]; term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
+        {
+          DenseMatrix      &sum  = sums[term.power / 2];
+          const DenseMatrix part = term.coefficient.at(system->values) * matrices[k];
+          sum                    = sum.size() == 0 ? part : DenseMatrix(sum + part);
+        }
+    stiffness_matrix = sums[0];
+    mass_matrix      = sums[1];
+  }
+
+  ReducedModel ReducedModel::restricted(const DenseMatrix &Z) const
+  {
+    ReducedModel result(*system);
+    result.parent = T ? T : parent;
+    result.Z      = T ? Z : DenseMatrix(this->Z * Z);
+    for (const auto &[factor, motions] : factors)
+      result.factors[factor] = motions * Z;
+    for (std::size_t k = 0; k < matrices.size(); ++k)
+      if (matrices[k].size() > 0)
+        result.matrices[k] = Z.transpose() * matrices[k] * Z;
+    result.find_norms();
+    return result;
+  }
+
+  ReducedModel ReducedModel::restricted(const SystemMember &member, const DenseMatrix &Z) const
+  {
+    ReducedModel result(member.system);
+    result.parent  = T;
+    result.Z       = Z;
+    const auto sum = [&](const TermShares &shares, const auto &part) {
+      DenseMatrix total = DenseMatrix::Zero(part(shares.front().first).rows(), size());
+      for (const auto &[number, factor] : shares)
+        total += factor * part(number);
+      return total;
+    };
+    for (std::size_t k = 0; k < result.matrices.size(); ++k)
+      {
+        const Term       &term   = member.system.terms[k];
+        const TermShares &shares = member.shares[k];
+        if (term.matrix)
+          {
+            result.matrices[k] =
+              Z.transpose() * sum(shares, [&](const std::size_t number) -> const DenseMatrix & { return matrices[number]; }) * Z;
+            continue;
+          }
+        result.factors[term.left.get()] = motions(*term.left) * Z;
+        if (term.right != term.left)
+          result.factors[term.right.get()] =
+            sum(shares, [&](const std::size_t number) -> const DenseMatrix & { return motions(*system->terms[number].right); }) * Z;
+        if (term.weights.empty())
+          result.matrices[k] = result.motions(*term.left).transpose() * result.motions(*term.right);
+      }
+    result.find_norms();
+    return result;
+  }
+
+  MultiVector ReducedModel::times_basis(const DenseMatrix &X) const
+  {
+    return T ? *T * X : *parent * DenseMatrix(Z * X);
+  }
+
+  DenseMatrix ReducedModel::basis_products(const MultiVector &Y) const
+  {
+    return T ? gram(*T, Y) : DenseMatrix(Z.transpose() * gram(*parent, Y));
+  }
+
+  const MultiVector &ReducedModel::basis() const
+  {
+    if (!T)
+      T = std::make_shared<MultiVector>(*parent * Z);
+    return *T;
   }
 
   ReducedPencil ReducedModel::at(const ParameterValues &values) const

@@ -18,22 +18,28 @@ namespace Squeal
       const Eigen::VectorXd result   = (products.head(k) + products.tail(k)).cwiseMax(0.);
       return {result.begin(), result.end()};
     }
+
+    bool is_stiffness(const Term &term)
+    {
+      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == 0;
+    }
+
+    bool is_mass(const Term &term)
+    {
+      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == 2;
+    }
   } // namespace
 
-  ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
-                                         const UpdatedInverse  &inverse,
-                                         const double           shift,
-                                         const ParameterValues &values)
+  ProjectedResiduals::ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values)
     : system(system)
     , inverse(inverse)
-    , shift(shift)
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
-      if (const Term &term = system.terms[k]; term.vanishes(with_friction) || term.matrix == system.stiffness)
+      if (const Term &term = system.terms[k]; term.vanishes(with_friction))
         continue;
       else if (term.matrix)
-        sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., term.matrix == system.mass ? shift * shift : 0., {}, {}});
+        sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., 0., {}, {}, {}});
       else
         {
           low_rank.push_back(&term);
@@ -55,6 +61,22 @@ namespace Squeal
         first += f.factor->rank();
         (!f.in_right ? n_left : !f.in_left ? n_right : n_shared) += f.factor->rank();
       }
+  }
+
+  ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
+                                         const UpdatedInverse  &inverse,
+                                         const double           shift,
+                                         const ParameterValues &values)
+    : ProjectedResiduals(system, inverse, values)
+  {
+    this->shift = shift;
+    // What S has of a term whose coefficient is a number leaves nothing
+    sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
+                                [](const Sparse &part) { return is_stiffness(*part.term) && part.term->coefficient.powers.empty(); }),
+                 sparse.end());
+    for (Sparse &part : sparse)
+      if (is_stiffness(*part.term) || is_mass(*part.term))
+        part.sigma = part.term->coefficient.at(system.values) * (is_mass(*part.term) ? shift * shift : 1.);
     for (const Factor &f : factors)
       // The responses to friction forces are at hand
       factor_gram = append_columns(factor_gram, factor_products(f.factor == system.friction_forces.get() ?
@@ -83,7 +105,7 @@ namespace Squeal
     left_columns = right_block = {};
     for (Sparse &part : sparse)
       {
-        part.factor_products = {};
+        part.projected = part.factor_products = {};
         part.products.assign(sparse.size(), {});
       }
   }
@@ -121,10 +143,93 @@ namespace Squeal
             columns[l + n * k].bottomRows(r - old);
           sparse[k].products[l] = std::move(products);
         }
-    assemble(model);
+    for (Sparse &part : sparse)
+      part.projected = model.projected(part.number);
+    pencil       = model.stiffness() + shift * shift * model.mass();
+    left_columns = right_block = {};
   }
 
-  void ProjectedResiduals::assemble(const ReducedModel &model)
+  ProjectedResiduals ProjectedResiduals::restricted(const SystemMember &member, const DenseMatrix &Z) const
+  {
+    ProjectedResiduals result(member.system, inverse, member.system.values);
+    const std::size_t  n = sparse.size();
+    result.shift         = shift;
+    result.r             = static_cast<int>(Z.cols());
+    result.pencil        = Z.transpose() * pencil * Z;
+
+    // Each term of the member as a sum of those of the family, its stiffness without S
+    std::vector<Sparse>              parts;
+    std::vector<std::vector<double>> shares;
+    for (Sparse &part : result.sparse)
+      {
+        std::vector<double> c(n, 0.);
+        for (std::size_t i = 0; i < n; ++i)
+          {
+            for (const auto &[number, factor] : member.shares[part.number])
+              if (sparse[i].number == number)
+                c[i] += factor;
+            if (is_stiffness(*part.term))
+              c[i] -= sparse[i].sigma;
+          }
+        if (std::all_of(c.begin(), c.end(), [](const double x) { return x == 0.; }))
+          continue;
+        parts.push_back(part);
+        shares.push_back(c);
+      }
+    result.sparse = std::move(parts);
+
+    // Rows of the member's factors from those of the family's
+    const auto rows_of = [&](const LowRankFactor *factor) {
+      return std::find_if(factors.begin(), factors.end(), [factor](const Factor &f) { return f.factor == factor; });
+    };
+    const auto part_of = [&](const Factor &factor, const auto &rows) -> DenseMatrix {
+      if (const auto same = rows_of(factor.factor); same != factors.end())
+        return rows(*same);
+      DenseMatrix sum;
+      for (std::size_t k = 0; k < member.system.terms.size(); ++k)
+        if (member.system.terms[k].right.get() == factor.factor)
+          for (const auto &[number, weight] : member.shares[k])
+            {
+              const DenseMatrix part = weight * rows(*rows_of(system.terms[number].right.get()));
+              sum                    = sum.size() == 0 ? part : DenseMatrix(sum + part);
+            }
+      return sum;
+    };
+    const auto combined = [&](const DenseMatrix &X) {
+      DenseMatrix Y(result.n_left + result.n_shared + result.n_right, X.cols());
+      for (const Factor &f : result.factors)
+        Y.middleRows(f.first, f.factor->rank()) =
+          part_of(f, [&](const Factor &g) -> DenseMatrix { return X.middleRows(g.first, g.factor->rank()); });
+      return Y;
+    };
+    result.factor_gram = combined(combined(factor_gram).transpose());
+    for (const Factor &f : result.factors)
+      result.motions[f.factor] = part_of(f, [&](const Factor &g) -> DenseMatrix { return motions.at(g.factor); }) * Z;
+
+    const auto weighted = [&](const std::vector<double> &c, const auto &matrix) {
+      DenseMatrix sum;
+      for (std::size_t i = 0; i < n; ++i)
+        if (c[i] != 0.)
+          sum = sum.size() == 0 ? DenseMatrix(c[i] * matrix(i)) : DenseMatrix(sum + c[i] * matrix(i));
+      return sum;
+    };
+    for (std::size_t t = 0; t < result.sparse.size(); ++t)
+      {
+        Sparse &part         = result.sparse[t];
+        part.projected       = Z.transpose() * weighted(shares[t], [&](const std::size_t i) { return sparse[i].projected; }) * Z;
+        part.factor_products = combined(weighted(shares[t], [&](const std::size_t i) { return sparse[i].factor_products; })) * Z;
+        part.products.clear();
+        for (std::size_t l = 0; l < result.sparse.size(); ++l)
+          part.products.push_back(
+            Z.transpose() *
+            weighted(shares[t],
+                     [&](const std::size_t i) { return weighted(shares[l], [&](const std::size_t j) { return sparse[i].products[j]; }); }) *
+            Z);
+      }
+    return result;
+  }
+
+  void ProjectedResiduals::assemble() const
   {
     const int n_sparse = static_cast<int>(sparse.size()) * r, size = n_sparse + n_left + n_shared + n_right;
 
@@ -148,14 +253,13 @@ namespace Squeal
             G.block(column_of(f), column, part.rows(), r) = part;
             G.block(column, column_of(f), r, part.rows()) = part.transpose();
           }
-        H.middleCols(column, r) = model.projected(sparse[k].number);
+        H.middleCols(column, r) = sparse[k].projected;
       }
 
     // Every vector by its own energy: those of motions of light bodies may be many powers of ten beyond those of modes of the band
-    const DenseMatrix     pencil = model.stiffness() + shift * shift * model.mass();
-    const Eigen::VectorXd scale  = pencil.diagonal().cwiseSqrt().cwiseInverse();
-    const RealLU          lu     = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
-    H                            = scale.asDiagonal() * H;
+    const Eigen::VectorXd scale = pencil.diagonal().cwiseSqrt().cwiseInverse();
+    const RealLU          lu    = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
+    H                           = scale.asDiagonal() * H;
     G -= H.transpose() * lu.solve(H);
     left_columns = G.leftCols(size - n_right);
     right_block  = G.bottomRightCorner(size - n_left, size - n_left);
@@ -198,8 +302,10 @@ namespace Squeal
                                                 const ComplexDenseMatrix   &right,
                                                 const ComplexDenseMatrix   &left) const
   {
+    if (left_columns.size() == 0)
+      assemble();
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
-    const DenseMatrix Gy = right_block * y, Gz = left_columns * z;
+    const DenseMatrix Gy = multiply_sparing_zeros(right_block, y), Gz = multiply_sparing_zeros(left_columns, z);
     return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),
             hermitian_products(z, Gz.topRows(z.rows()))};
   }

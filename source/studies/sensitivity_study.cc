@@ -101,7 +101,7 @@ namespace Squeal
         for (const int i : regime->on_line(0))
           if (sweep.known.count({0, regime->points[i].friction_coefficient}) > 0)
             grid.push_back(regime->points[i].friction_coefficient);
-        chart = follow_branches(sweep, 0, grid, store);
+        chart = follow_branches(sweep, 0, grid, &store);
       }
 
     SensitivityModel                   model{sweep, bodies, parameters};

@@ -3,6 +3,8 @@
 #include <squeal/base/version.h>
 #include <squeal/studies/sweep_charts.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <set>
 #include <sstream>
@@ -133,14 +135,14 @@ namespace Squeal
     return stream.str();
   }
 
-  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore &store)
+  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore *store)
   {
     Run        &run         = model.run;
     std::size_t n_evaluated = 0;
     const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
       n_evaluated += friction_coefficients.size();
       run.progress.update(text(n_evaluated, " points"));
-      return model.evaluate(line, friction_coefficients, &store);
+      return model.evaluate(line, friction_coefficients, store);
     };
     run.progress.begin("Branches");
     ChartOptions options;
@@ -150,8 +152,16 @@ namespace Squeal
     // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
-    sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
-    SweepChart            result{stability_chart(grid, evaluate, options), {}};
+    if (store != nullptr)
+      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, *store);
+    // Rounding must not lead processes to different friction coefficients
+    const auto predict = [&](const ZeroSearch &search) {
+      const auto at   = [&](const ChartPoint &point) { return model.plan.point(line, point.friction_coefficient, model.regime.closed); };
+      const auto zero = model.reduced->predicted_zero(search, at(search.first), at(search.second));
+      const auto same = dealii::Utilities::MPI::broadcast(run.communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
+      return same.empty() ? std::nullopt : std::optional(same.front());
+    };
+    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}};
     const StabilityChart &chart = result.chart;
     result.labels               = branch_labels(model, chart);
     run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
@@ -174,7 +184,7 @@ namespace Squeal
         for (const auto &stretch : stretches(model, static_cast<int>(l)))
           {
             const auto store = store_of(model, checkpoint, text("line ", l, " from ", exact_text(stretch.front())));
-            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch, *store));
+            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch, store.get()));
             if (kind == SweepLine::Kind::main)
               compare_with_inertia(model, charts[l].back().chart);
           }

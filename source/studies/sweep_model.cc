@@ -10,9 +10,6 @@ namespace Squeal
 {
   namespace
   {
-    /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
-    constexpr double band_margin = 0.05;
-
     /// Sum of all damping coefficients of the contact.
     double damping_of(const OperatingPoint &point)
     {
@@ -24,15 +21,32 @@ namespace Squeal
     }
   } // namespace
 
+  const OperatingPoint &most_damped(const ContactRegime &regime)
+  {
+    return *std::max_element(regime.points.begin(), regime.points.end(),
+                             [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
+  }
+
+  SweepModel::SweepModel(const SweepPlan            &plan,
+                         const ContactRegime        &regime,
+                         Run                        &run,
+                         FrictionlessModes           frictionless,
+                         std::unique_ptr<ChartModel> reduced)
+    : plan(plan)
+    , regime(regime)
+    , run(run)
+    , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
+    , frictionless(std::move(frictionless))
+    , reduced(std::move(reduced))
+  {}
+
   SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run)
     : plan(plan)
     , regime(regime)
     , run(run)
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
   {
-    const OperatingPoint &most =
-      *std::max_element(regime.points.begin(), regime.points.end(),
-                        [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
+    const OperatingPoint     &most      = most_damped(regime);
     const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
     const Linearisation       damped    = linearise(plan.scene, plan.sliding_state(operation), operation);
 
@@ -75,7 +89,7 @@ namespace Squeal
   std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
   {
     const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
-    return {reduced->reduced().basis() * DenseMatrix(X.real()), reduced->reduced().basis() * DenseMatrix(X.imag())};
+    return {reduced->reduced().times_basis(X.real()), reduced->reduced().times_basis(X.imag())};
   }
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const

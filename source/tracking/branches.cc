@@ -51,7 +51,10 @@ namespace Squeal
                     8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
   }
 
-  StabilityChart stability_chart(const std::vector<double> &grid, const EvaluateChart &evaluate, const ChartOptions &options)
+  StabilityChart stability_chart(const std::vector<double> &grid,
+                                 const EvaluateChart       &evaluate,
+                                 const ChartOptions        &options,
+                                 const PredictZero         &predict)
   {
     for (std::size_t i = 1; i < grid.size(); ++i)
       if (!(grid[i] > grid[i - 1]))
@@ -70,7 +73,7 @@ namespace Squeal
       {
         follow_branches(tracked);
         const std::vector<EventSearch> searches = find_events(tracked);
-        const std::vector<double>      wanted   = refinement_requests(tracked, searches);
+        const std::vector<double>      wanted   = refinement_requests(tracked, searches, predict);
         if (wanted.empty())
           return finished_chart(std::move(tracked), searches);
         insert(tracked, evaluate, wanted, true);

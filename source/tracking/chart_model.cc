@@ -2,12 +2,36 @@
 #include <squeal/tracking/chart_model.h>
 #include <squeal/tracking/mode_links.h>
 
+#include <boost/math/tools/roots.hpp>
+
+#include <Eigen/QR>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 namespace Squeal
 {
+  namespace
+  {
+    /// Part of the largest principal axis of some vectors below which one is left out.
+    constexpr double least_axis = 1e-7;
+
+    /// Orthonormal basis of the span of the columns of X, a few.
+    DenseMatrix principal_columns(const DenseMatrix &X)
+    {
+      const auto [squares, axes] = symmetric_eigenpairs(X.transpose() * X); // ascending
+      const double      limit    = least_axis * least_axis * squares.back();
+      const auto        first    = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
+      const DenseMatrix Y        = X * axes.rightCols(static_cast<Eigen::Index>(squares.size()) - first);
+      // The small ones have lost their orthogonality
+      return Eigen::HouseholderQR<DenseMatrix>(Y * Y.colwise().norm().cwiseInverse().asDiagonal()).householderQ() *
+             DenseMatrix::Identity(Y.rows(), Y.cols());
+    }
+  } // namespace
+
   ChartModel::ChartModel(const CoupledSystem  &system,
                          const UpdatedInverse &inverse,
                          const double          shift,
@@ -16,7 +40,7 @@ namespace Squeal
                          const double          margin)
     : system(system)
     , inverse(inverse)
-    , real_modes(real_modes)
+    , real_modes(&real_modes)
     , shift(shift)
     , largest_circular_frequency(largest_circular_frequency)
     , margin(margin)
@@ -25,6 +49,22 @@ namespace Squeal
   {
     residuals.extend(model);
   }
+
+  ChartModel::ChartModel(const CoupledSystem  &member,
+                         const UpdatedInverse &inverse,
+                         const double          shift,
+                         ReducedModel          model,
+                         ProjectedResiduals    residuals,
+                         const double          largest_circular_frequency,
+                         const double          margin)
+    : system(member)
+    , inverse(inverse)
+    , shift(shift)
+    , largest_circular_frequency(largest_circular_frequency)
+    , margin(margin)
+    , model(std::move(model))
+    , residuals(std::move(residuals))
+  {}
 
   int ChartModel::size() const
   {
@@ -58,6 +98,55 @@ namespace Squeal
       if (!estimates.claimed[j])
         result.errors[j] = estimates.uncertainties[j] / std::abs(modes.lambda[j]);
     return result;
+  }
+
+  std::optional<double> ChartModel::predicted_zero(const ZeroSearch     &search,
+                                                   const OperatingPoint &first,
+                                                   const OperatingPoint &second) const
+  {
+    DenseMatrix X;
+    for (const auto &[point, modes] : {std::make_pair(&search.first, &search.first_modes), {&search.second, &search.second_modes}})
+      for (const ComplexDenseMatrix *vectors : {&point->right, &point->left})
+        X = append_columns(X, halves(with_rows((*vectors)(Eigen::all, *modes), model.size())));
+    const ReducedModel small = model.restricted(principal_columns(X));
+
+    const double a = first.friction_coefficient, b = second.friction_coefficient;
+    const auto   mean = [](const ChartPoint &point, const std::vector<int> &modes) { return as_column(point.lambda)(modes).mean(); };
+    const std::complex<double> before = mean(search.first, search.first_modes), after = mean(search.second, search.second_modes);
+    const auto                 value = [&](const double mu) {
+      const double    t = (mu - a) / (b - a);
+      ParameterValues others;
+      for (const auto &[name, numbers] : first.values)
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          others[name].push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
+      std::vector<std::complex<double>> lambda =
+        local_reduced_modes(small, system.at(mu, others), (1. + margin) * largest_circular_frequency).lambda;
+      if (lambda.size() < search.first_modes.size())
+        return std::numeric_limits<double>::quiet_NaN();
+      const auto expected = (1. - t) * before + t * after;
+      std::sort(lambda.begin(), lambda.end(),
+                                [&](const auto &x, const auto &y) { return std::abs(x - expected) < std::abs(y - expected); });
+      switch (search.function)
+        {
+          case ModeFunction::growth:
+            return lambda[0].real();
+          case ModeFunction::discriminant:
+            return ((lambda[0] - lambda[1]) * (lambda[0] - lambda[1])).real();
+          case ModeFunction::frequency:
+            return lambda[0].imag() - search.bound;
+        }
+      return std::numeric_limits<double>::quiet_NaN();
+    };
+    const double at_a = value(a), at_b = value(b);
+    if (!(at_a * at_b < 0.))
+      return {};
+    // A value that is not a number ends the search there
+    constexpr double resolution = 1e-10;
+    std::uintmax_t   n_steps    = 50;
+    const auto       bracket    = boost::math::tools::toms748_solve(
+               value, a, b, at_a, at_b, [](const double x, const double y) { return std::abs(x - y) <= resolution; }, n_steps);
+    const double result = 0.5 * (bracket.first + bracket.second);
+    return result > a && result < b ? std::optional(result) : std::nullopt;
   }
 
   double ChartModel::largest_error(const ChartPoint &point) const
@@ -103,11 +192,11 @@ namespace Squeal
     residuals.extend(model);
   }
 
-  MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance, const int maximum) const
+  DenseMatrix ChartModel::principal_parts(const DenseMatrix             &real_modes,
+                                          const std::vector<ChartPoint> &charts,
+                                          const double                   tolerance) const
   {
-    const SparseMatrix &M = *system.mass;
-    const MultiVector  &T = model.basis();
-    DenseMatrix         Y;
+    DenseMatrix Y;
     for (const ChartPoint &chart : charts)
       for (const ComplexDenseMatrix *X : {&chart.right, &chart.left})
         {
@@ -115,24 +204,32 @@ namespace Squeal
           const Eigen::VectorXcd scales = as_column(chart.lambda).cwiseAbs().cwiseInverse().cast<std::complex<double>>();
           Y                             = append_columns(Y, halves(orthonormal_in_clusters(*X, chart.lambda) * scales.asDiagonal()));
         }
-    const DenseMatrix R = gram(T, M * real_modes);
-    Y -= R * (R.transpose() * Y);
+    Y -= real_modes * (real_modes.transpose() * Y);
 
     // Strain energy: K_r = V diag(w) Vᵀ, the squares of Y are those of √w VᵀY
-    const auto [w, V]          = agreed(T.communicator(), symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
-    const DenseMatrix Y_w      = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);
-    const auto [squares, axes] = agreed(T.communicator(), symmetric_eigenpairs(Y_w * Y_w.transpose())); // ascending
-    const int r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
-    if (first == r)
-      return real_modes;
-    const DenseMatrix Z                    = as_column(w).cwiseSqrt().cwiseInverse().asDiagonal() * axes.rightCols(r - first);
-    constexpr double  dependence_tolerance = 1e-10;
-    const auto        rest                 = orthonormalize_if_any(M, &real_modes, T * DenseMatrix(V * Z), dependence_tolerance);
-    const int         n_rest               = rest ? std::min(rest->n_columns(), maximum - real_modes.n_columns()) : 0;
+    const MPI_Comm communicator = inverse.map().communicator();
+    const auto [w, V]           = agreed(communicator, symmetric_eigenpairs(model.stiffness() + shift * shift * model.mass()));
+    const DenseMatrix Y_w       = as_column(w).cwiseSqrt().asDiagonal() * (V.transpose() * Y);
+    const auto [squares, axes]  = agreed(communicator, symmetric_eigenpairs(Y_w * Y_w.transpose())); // ascending
+    const Eigen::Index r = model.size(), first = std::lower_bound(squares.begin(), squares.end(), tolerance) - squares.begin();
+    const DenseMatrix  Z = as_column(w).cwiseSqrt().cwiseInverse().asDiagonal() * axes.rightCols(r - first);
+    return V * Z;
+  }
+
+  MultiVector ChartModel::compressed_basis(const std::vector<ChartPoint> &charts, const double tolerance, const int maximum) const
+  {
+    const SparseMatrix &M     = *system.mass;
+    const MultiVector  &T     = model.basis();
+    const DenseMatrix   parts = principal_parts(gram(T, M * *real_modes), charts, tolerance);
+    if (parts.cols() == 0)
+      return *real_modes;
+    constexpr double dependence_tolerance = 1e-10;
+    const auto       rest                 = orthonormalize_if_any(M, real_modes, T * parts, dependence_tolerance);
+    const int        n_rest               = rest ? std::min(rest->n_columns(), maximum - real_modes->n_columns()) : 0;
     if (n_rest <= 0)
-      return real_modes;
+      return *real_modes;
     const MultiVector largest = view(*rest, 0, n_rest);
-    return join({&real_modes, &largest});
+    return join({real_modes, &largest});
   }
 
   void ChartModel::restart(const MultiVector &vectors)

@@ -13,8 +13,12 @@ namespace Squeal
     constexpr double nearby = 0.1;
     /// Part of δ², or of Re λ, that an approach must leave to be worth a look.
     constexpr double remaining = 0.3;
+    /// What coupling adds to the difference of two λ, over that difference, below which they do not interact.
+    constexpr double interacting = 0.1;
     /// Steps of a search that may halve less than the interval before it is halved.
     constexpr int patience = 2;
+    /// Steps of a search that a prediction may miss before the interval is halved; each has two values.
+    constexpr int most_predictions = 5;
 
     bool located(const TrackedModes &modes, const EventSearch &search)
     {
@@ -48,10 +52,46 @@ namespace Squeal
       return std::clamp(x + (x < middle ? 0.5 : -0.5) * margin, l + margin, r - margin);
     }
 
+    /// Both sides of where the zero is expected, closer to each other than the tolerance; nothing if that is not known.
+    std::vector<double> predictions(const TrackedModes &modes, const EventSearch &search, const PredictZero &predict)
+    {
+      const int k = search.interval;
+      if (!predict || search.at_once || search.multiple || search.kind == EventSearch::real_axis ||
+          modes.intervals[k].stalls > most_predictions)
+        return {};
+      ZeroSearch asked{search.kind == EventSearch::growth      ? ModeFunction::growth :
+                       search.kind == EventSearch::coalescence ? ModeFunction::discriminant :
+                                                                 ModeFunction::frequency,
+                       modes.options.largest_circular_frequency,
+                       modes.points[k],
+                       modes.points[k + 1],
+                       {},
+                       {}};
+      for (const int branch : {search.branch, search.partner})
+        if (branch >= 0)
+          {
+            asked.first_modes.push_back(modes.mode(branch, k));
+            asked.second_modes.push_back(modes.mode(branch, k + 1));
+          }
+      for (const auto *numbers : {&asked.first_modes, &asked.second_modes})
+        if (std::any_of(numbers->begin(), numbers->end(), [](const int mode) { return mode < 0; }))
+          return {};
+      const auto zero = predict(asked);
+      if (!zero)
+        return {};
+      std::vector<double> result;
+      const double        half = 0.3 * modes.tolerance(k);
+      for (const double value : {*zero - half, *zero + half})
+        if (value > modes.mu(k) && value < modes.mu(k + 1))
+          result.push_back(value);
+      return result;
+    }
+
     /**
      * Where branches that change places in a step would meet if they interact.
      * With λ_a diagonal and B = X Λ_b X⁻¹ for Φ_b = Φ_a X, the 2 × 2 problem is linear
-     * between; at the meeting point t its δ² is 4 t² B_12 B_21.
+     * between; at the meeting point t of the frequencies its δ² is (Re λ_1 − Re λ_2)² + 4 t² B_12 B_21. Modes of other growth
+     * rates do not meet.
      */
     std::vector<double> interactions(const TrackedModes &modes, const int k)
     {
@@ -75,6 +115,8 @@ namespace Squeal
             const Complex product      = -X->X(0, 0) * X->inverse(0, 1) * X->X(1, 1) * X->inverse(1, 0) * after * after;
             const Complex discriminant = 4. * t * t * product;
             const double  gap          = std::sqrt(std::abs(discriminant));
+            if (gap < interacting * std::abs((1. - t) * before.real() + t * after.real()))
+              continue;
             // Frequencies that only repel each other do so over gap / slope
             const bool repel =
               discriminant.real() < 0. && modes.verdict(p, k) == Verdict::neutral && modes.verdict(q, k) == Verdict::neutral;
@@ -165,12 +207,20 @@ namespace Squeal
     }
   } // namespace
 
-  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches)
+  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict)
   {
+    const std::size_t left = std::max(0, modes.options.maximum_refinements - modes.n_refinements);
+    if (left == 0)
+      return {};
     std::vector<double> wanted;
     for (const EventSearch &search : searches)
       if (!located(modes, search))
-        wanted.push_back(proposal(modes, search));
+        {
+          const auto predicted = predictions(modes, search, predict);
+          wanted.insert(wanted.end(), predicted.begin(), predicted.end());
+          if (predicted.empty())
+            wanted.push_back(proposal(modes, search));
+        }
     for (int k = 0; k + 1 < modes.n_points(); ++k)
       if (modes.width(k) > modes.options.smallest_step)
         {
@@ -189,7 +239,6 @@ namespace Squeal
         result.push_back(value);
 
     // The last evaluations are spread over the range
-    const std::size_t left = std::max(0, modes.options.maximum_refinements - modes.n_refinements);
     if (result.size() > left)
       {
         for (std::size_t i = 0; i < left; ++i)

@@ -97,8 +97,8 @@ namespace Squeal
    */
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
-  /// Friction coefficients that would tell more.
-  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches);
+  /// Friction coefficients that would tell more; @p predict may be empty.
+  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict);
 
   /// The chart, with what the searches have found.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);

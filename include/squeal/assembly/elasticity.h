@@ -42,6 +42,9 @@ namespace Squeal
    */
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials);
 
+  /// Values of the parameters of body_terms(), but for stiffnesses of zero.
+  ParameterValues body_values(const Model &model, const MaterialParameters &materials);
+
   /// M, C and K of the bodies, the sum of body_terms(); C is null if no material is damped.
   SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials);
 } // namespace Squeal

@@ -25,6 +25,9 @@ namespace Squeal
     return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
   }
 
+  /// A X, where columns of zeros cost nothing: the imaginary parts of neutral modes are such.
+  DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
+
   /// A X of a real and a complex matrix: one real product with [Re X, Im X].
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X);
 

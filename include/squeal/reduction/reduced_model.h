@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/contact/coupled_system.h>
+#include <squeal/contact/system_family.h>
 
 #include <map>
 #include <memory>
@@ -30,16 +30,33 @@ namespace Squeal
     /// Appends the columns of @p vectors, n × k, to the basis.
     void extend(const MultiVector &vectors);
 
+    /// The model on the basis TZ, Z: r × k; it refers to this basis.
+    ReducedModel restricted(const DenseMatrix &Z) const;
+
+    /**
+     * The model of a member of the family that is this one's system, on the basis TZ; it refers to this basis.
+     *
+     * @param Z r × k
+     */
+    ReducedModel restricted(const SystemMember &member, const DenseMatrix &Z) const;
+
     /// r
     int size() const
     {
       return mass_matrix.rows();
     }
 
-    /// T, n × r.
-    const MultiVector &basis() const
+    /// T, n × r. All processes must call.
+    const MultiVector &basis() const;
+
+    /// T X and TᵀY; the basis of a restricted model need not be formed for them. All processes must call.
+    MultiVector times_basis(const DenseMatrix &X) const;
+    DenseMatrix basis_products(const MultiVector &Y) const;
+
+    /// Whether the basis is a part of another model's.
+    bool is_restricted() const
     {
-      return *T;
+      return parent != nullptr;
     }
 
     const CoupledSystem &full_order() const
@@ -73,8 +90,13 @@ namespace Squeal
     }
 
   private:
+    /// TᵀM_cT and TᵀK_cT from the terms.
+    void find_norms();
+
     const CoupledSystem                         *system;
-    std::unique_ptr<MultiVector>                 T;
+    mutable std::shared_ptr<const MultiVector>   T;      ///< null as long as nobody asks for that of a restricted model:
+    std::shared_ptr<const MultiVector>           parent; ///< TZ of these
+    DenseMatrix                                  Z;
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;

@@ -22,8 +22,8 @@ namespace Squeal
    *
    *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
-   * with short y, z. The columns of W are A T of the sparse terms but K_c, with the rows (θ λ^p − σ) φ_r of y, σ = s² for
-   * M_c and zero for others; and of terms θ L diag(d) Rᵀ the factors: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with
+   * with short y, z. The columns of W are A T of the sparse terms, with the rows (θ λ^p − σ) φ_r of y, σ A being the part of
+   * the term in S, but those of which nothing is left; and of terms θ L diag(d) Rᵀ the factors: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with
    * θ λ^p diag(d) LᵀT ψ_r of z. Reduced modes make residuals orthogonal to T, so that the
    * part along S T is known to cancel that of W y along it, and
    *
@@ -50,6 +50,12 @@ namespace Squeal
     /// Forgets the basis; the next extend() begins another one.
     void clear();
 
+    /**
+     * The residuals of a member of the family that is this one's system, of the model that ReducedModel::restricted() makes with the
+     * same Z. S stays that of the family: by what the stiffness of the member differs from it, energies of residuals do, too.
+     */
+    ProjectedResiduals restricted(const SystemMember &member, const DenseMatrix &Z) const;
+
     /// Products for reduced modes λ, φ_r and ψ_r (r × k).
     ResidualProducts products(const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
@@ -57,6 +63,9 @@ namespace Squeal
                               const ComplexDenseMatrix                &left) const;
 
   private:
+    /// Finds the parts of W without their numbers; @p values as above.
+    ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values);
+
     /// Coefficients y, or z of the transposed problem, real and imaginary halves.
     DenseMatrix coefficients(const ParameterValues                   &values,
                              const std::vector<std::complex<double>> &lambda,
@@ -66,8 +75,8 @@ namespace Squeal
     /// Products of the factors with a block of vectors.
     DenseMatrix factor_products(const MultiVector &X) const;
 
-    /// The bracket from its parts.
-    void assemble(const ReducedModel &model);
+    /// The bracket from its parts: when it is needed, which for a family it is not.
+    void assemble() const;
 
     /// A T of a sparse term.
     struct Sparse
@@ -75,7 +84,8 @@ namespace Squeal
       const Term              *term;
       std::size_t              number;          ///< among the terms of the system
       double                   sign;            ///< Aᵀ = sign A
-      double                   sigma;           ///< part of the term in S
+      double                   sigma;           ///< part of the term in S; of the difference of K_c from S, zero
+      DenseMatrix              projected;       ///< TᵀA T
       DenseMatrix              factor_products; ///< of the factors with S⁻¹ A T
       std::vector<DenseMatrix> products;        ///< (A' T)ᵀ S⁻¹ A T with each sparse term A'
     };
@@ -93,7 +103,7 @@ namespace Squeal
 
     const CoupledSystem                         &system;
     const UpdatedInverse                        &inverse;
-    double                                       shift;
+    double                                       shift = 0.;
     std::vector<Sparse>                          sparse;
     std::vector<const Term *>                    low_rank;
     std::vector<Factor>                          factors; ///< those of left residuals only come first, those of right residuals only last
@@ -101,6 +111,7 @@ namespace Squeal
     DenseMatrix                                  factor_gram;                           ///< Fᵀ S⁻¹ F of all factors
     std::map<const LowRankFactor *, DenseMatrix> motions;                               ///< FᵀT
     int                                          r = 0;                                 ///< size of the basis
-    DenseMatrix                                  left_columns, right_block; ///< of the bracket: what left and right residuals need
+    DenseMatrix                                  pencil;                                ///< TᵀST
+    mutable DenseMatrix                          left_columns, right_block; ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal

@@ -23,8 +23,12 @@ namespace Squeal
   /// Where the results of a phase of the work on a contact set are kept.
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
 
-  /// Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run.
-  SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients, ChartStore &store);
+  /**
+   * Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run.
+   *
+   * @param store keeps points, and what the basis grows by for thresholds; null: neither is done
+   */
+  SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients, ChartStore *store);
 
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
   void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts);

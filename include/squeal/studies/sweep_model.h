@@ -18,6 +18,13 @@ namespace Squeal
     /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
     SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
 
+    /// From what is found already; @p reduced is a model of the system that @p frictionless has.
+    SweepModel(const SweepPlan            &plan,
+               const ContactRegime        &regime,
+               Run                        &run,
+               FrictionlessModes           frictionless,
+               std::unique_ptr<ChartModel> reduced);
+
     /// Modes of a line, known ones or new ones, which @p store keeps unless it is null. All processes must call.
     std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients, ChartStore *store = nullptr);
 
@@ -46,6 +53,12 @@ namespace Squeal
     std::unique_ptr<ChartModel>                  reduced;
     std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
   };
+
+  /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
+  inline constexpr double band_margin = 0.05;
+
+  /// The damping of the contact where a sweep's is largest.
+  const OperatingPoint &most_damped(const ContactRegime &regime);
 
   /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run.
   void evaluate_points(SweepModel &model, ChartStore &store);

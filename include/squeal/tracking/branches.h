@@ -2,6 +2,7 @@
 
 #include <squeal/base/enum_table.h>
 #include <squeal/tracking/chart_point.h>
+#include <squeal/tracking/zero_search.h>
 
 #include <complex>
 #include <functional>
@@ -119,8 +120,8 @@ namespace Squeal
    * A branch that grows at one end of a step but not at the other has a
    * threshold between. At a coalescence δ²(μ) = (λ_1 − λ_2)² is analytic, real and
    * has a simple zero, while λ has a branch point; elsewhere the zero of Re λ is
-   * wanted. Zeros are enclosed by inverse quadratic interpolation and
-   * bisection until the interval is no wider than the tolerance. Modes that are
+   * wanted. Zeros are enclosed closely on both sides of where @p predict expects them, else by inverse quadratic interpolation and
+   * bisection, until the interval is no wider than the tolerance. Modes that are
    * neutral at the first point and grow from there on, such as
    * a double mode of the frictionless problem, have their onset at the first point;
    * where growth emerges from the rounding errors of a multiple mode only later,
@@ -138,5 +139,8 @@ namespace Squeal
    *
    * Throws Error if the grid is not ascending or an option not positive.
    */
-  StabilityChart stability_chart(const std::vector<double> &grid, const EvaluateChart &evaluate, const ChartOptions &options);
+  StabilityChart stability_chart(const std::vector<double> &grid,
+                                 const EvaluateChart       &evaluate,
+                                 const ChartOptions        &options,
+                                 const PredictZero         &predict = {});
 } // namespace Squeal

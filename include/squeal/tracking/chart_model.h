@@ -2,8 +2,11 @@
 
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/tracking/chart_point.h>
+#include <squeal/tracking/zero_search.h>
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 namespace Squeal
 {
@@ -41,6 +44,22 @@ namespace Squeal
                double                largest_circular_frequency,
                double                margin);
 
+    /**
+     * The model of a member of a family from what is projected of that. It has no real modes to be compressed around, and does
+     * not grow: its family does.
+     *
+     * @param inverse   factor of the family, which serves all members
+     * @param model     restricted to the @p member
+     * @param residuals likewise
+     */
+    ChartModel(const CoupledSystem  &member,
+               const UpdatedInverse &inverse,
+               double                shift,
+               ReducedModel          model,
+               ProjectedResiduals    residuals,
+               double                largest_circular_frequency,
+               double                margin);
+
     /// Vectors in the basis.
     int size() const;
 
@@ -48,6 +67,13 @@ namespace Squeal
 
     /// Modes with their estimates. Only this process works, and no other need.
     ChartPoint evaluate(const OperatingPoint &point) const;
+
+    /**
+     * Where between two points the function of a search is zero by the reduced model in the span of the modes concerned, right and
+     * left, at both points: it has their λ and dλ/dμ there. The other parameters of the system vary linearly between the points.
+     * Only this process works, and no other need.
+     */
+    std::optional<double> predicted_zero(const ZeroSearch &search, const OperatingPoint &first, const OperatingPoint &second) const;
 
     /// Largest estimated |δλ| / |λ| of the modes inside the band.
     double largest_error(const ChartPoint &point) const;
@@ -70,11 +96,17 @@ namespace Squeal
     void extend(const MultiVector &vectors);
 
     /**
-     * A smaller basis for about the same: the real modes, and the principal axes in the
-     * K_c-norm of what modes of the @p charts, right and left, of unit
-     * strain energy, have outside of them. Axes are left out whose squares are below
-     * @p tolerance, and the last ones where there would be more than @p maximum vectors; errors of λ are products of those of
-     * right and left vectors. All processes must call.
+     * Principal axes in the K_c-norm of what modes of the @p charts, right and left, of unit strain energy, have outside of the
+     * real modes, as coordinates in the basis. Axes are left out whose squares are below @p tolerance; errors of λ are products of
+     * those of right and left vectors. All processes must call.
+     *
+     * @param real_modes their coordinates
+     */
+    DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
+
+    /**
+     * A smaller basis for about the same: the real modes, and their principal_parts(), the last ones left out
+     * where there would be more than @p maximum vectors. All processes must call.
      */
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
@@ -84,7 +116,7 @@ namespace Squeal
   private:
     const CoupledSystem  &system;
     const UpdatedInverse &inverse;
-    const MultiVector    &real_modes;
+    const MultiVector    *real_modes = nullptr; ///< null: of a member of a family
     double                shift, largest_circular_frequency, margin;
     ReducedModel          model;
     ProjectedResiduals    residuals;

@@ -1,0 +1,144 @@
+#include "solutions.h"
+
+#include <squeal/bases/static_modes.h>
+#include <squeal/contact/system_family.h>
+#include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/replicate.h>
+#include <squeal/reduction/residual_products.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  constexpr double mu = 0.4;
+
+  /// Designs on one mesh: other pins, another mount, another damping.
+  std::vector<MaterialParameters> designs()
+  {
+    std::vector<MaterialParameters> result(3, damped(mounted()));
+    result[1].pin.young_modulus *= 1.2;
+    result[1].pin.rayleigh_beta = 2e-6;
+    result[2].pin.density *= 0.9;
+    result[2].mounts = {{"disc_bore", 0., 7.80e10, 1.50e10}};
+    return result;
+  }
+
+  struct Family
+  {
+    Family()
+      : s(mesh_of(skewed_pins), designs().front(), operating(RadialDissipation::consistent))
+    {
+      std::vector<ParameterValues> values;
+      for (const MaterialParameters &materials : designs())
+        values.push_back(body_values(s.model, materials));
+      terms  = term_family(body_terms(s.model, designs().front()).terms, values);
+      system = coupled_family(terms, s.contact, s.damping);
+    }
+
+    /// The same by its own matrices.
+    CoupledSystem direct(const std::size_t design) const
+    {
+      return couple(assembled(design), s.contact, s.damping);
+    }
+
+    std::vector<Term> assembled(const std::size_t design) const
+    {
+      const BodyTerms bodies = body_terms(s.model, designs()[design]);
+      return merged(bodies.terms, bodies.values);
+    }
+
+    Scene         s;
+    TermFamily    terms;
+    CoupledSystem system;
+  };
+
+  double distance(const SparseMatrix &A, const SparseMatrix &B)
+  {
+    return max_norm(*add(1., A, -1., B)) / max_norm(B);
+  }
+} // namespace
+
+TEST(Families, HaveAsFewTermsAsTheirMembersDifferIn)
+{
+  const Family family;
+  // Stiffness: pins, mount along the axis, the rest; mass: pins, disc; damping: pins by beta E, pins by alpha rho, disc
+  std::map<int, int> n;
+  for (const Term &term : family.terms.terms)
+    ++n[term.power];
+  EXPECT_EQ(n[0], 3);
+  EXPECT_EQ(n[1], 3);
+  EXPECT_EQ(n[2], 2);
+}
+
+TEST(Families, MembersAreTheSystemsOfTheirDesigns)
+{
+  const Family family;
+  for (std::size_t design = 0; design < 3; ++design)
+    {
+      const SystemMember  member = member_of(family.system, family.terms.members[design]);
+      const CoupledSystem direct = family.direct(design);
+      EXPECT_EQ(member.system.terms.size(), direct.terms.size());
+      EXPECT_LT(distance(*member.system.mass, *direct.mass), 1e-14);
+      EXPECT_LT(distance(*member.system.stiffness, *direct.stiffness), 1e-14);
+      const SecondOrderSystem ours = with_friction(member.system, mu), others = with_friction(direct, mu);
+      EXPECT_LT(distance(*ours.mass, *others.mass), 1e-14);
+      EXPECT_LT(distance(*ours.damping, *others.damping), 1e-14);
+      EXPECT_LT(distance(*ours.stiffness, *others.stiffness), 1e-14);
+    }
+}
+
+TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
+{
+  const Family         family;
+  const UpdatedInverse inverse(undamped(family.system), 0., FactorizationLibrary::automatic);
+  const auto           real = real_modes(family.system);
+  const MultiVector    T    = orthonormalize(
+          *family.system.mass, nullptr, join_all({*real.vectors, friction_response(family.system, inverse, *real.vectors, Side::right)}), 1e-8);
+  ReducedModel       model(family.system);
+  ProjectedResiduals residuals(family.system, inverse, 0., family.system.values);
+  model.extend(view(T, 0, 5));
+  residuals.extend(model);
+  model.extend(view(T, 5, T.n_columns() - 5));
+  residuals.extend(model);
+
+  const DenseMatrix Z = DenseMatrix::Random(T.n_columns(), T.n_columns() - 4);
+  for (std::size_t design = 0; design < 3; ++design)
+    {
+      const SystemMember  member = member_of(family.system, family.terms.members[design]);
+      const ReducedModel  small  = model.restricted(member, Z);
+      const CoupledSystem direct = family.direct(design);
+      ReducedModel        other(direct);
+      other.extend(T * Z);
+      EXPECT_LT(max_norm(DenseMatrix(replicate(small.basis()) - replicate(other.basis()))), 1e-12 * max_norm(replicate(other.basis())));
+      const ReducedPencil ours = small.at(member.system.at(mu)), others = other.at(direct.at(mu));
+      EXPECT_LT(max_norm(ours.mass - others.mass), 1e-12 * max_norm(others.mass));
+      EXPECT_LT(max_norm(ours.damping - others.damping), 1e-12 * max_norm(others.damping));
+      EXPECT_LT(max_norm(ours.stiffness - others.stiffness), 1e-12 * max_norm(others.stiffness));
+      EXPECT_LT(max_norm(small.stiffness() - other.stiffness()), 1e-12 * max_norm(other.stiffness()));
+
+      const ParameterValues values          = member.system.at(mu);
+      const ReducedModes    modes           = local_reduced_modes(small, values, omega_max);
+      const auto            direct_products = residual_vectors(member.system, inverse, small, modes).products();
+      const auto            products        = residuals.restricted(member, Z).products(values, modes.lambda, modes.right, modes.left);
+      ASSERT_GT(modes.lambda.size(), 3u);
+      const ComplexDenseMatrix KR = small.stiffness() * modes.right, KL = small.stiffness() * modes.left;
+      double                   largest = 0.;
+      for (int j = 0; j < static_cast<int>(modes.lambda.size()); ++j)
+        {
+          const double right = std::abs(modes.right.col(j).dot(KR.col(j))), left = std::abs(modes.left.col(j).dot(KL.col(j)));
+          largest = std::max(largest, direct_products.right_energies[j] / right);
+          EXPECT_NEAR(products.right_energies[j], direct_products.right_energies[j], 1e-10 * right);
+          EXPECT_NEAR(products.left_energies[j], direct_products.left_energies[j], 1e-10 * left);
+          for (int i = 0; i < static_cast<int>(modes.lambda.size()); ++i)
+            EXPECT_LT(std::abs(products.coupling(i, j) - direct_products.coupling(i, j)), 1e-10 * std::sqrt(right * left));
+        }
+      EXPECT_GT(largest, 1e-9); // there is something to compare
+
+      // A model of a model
+      const DenseMatrix  Y     = DenseMatrix::Random(Z.cols(), 6);
+      const ReducedModel least = small.restricted(Y);
+      EXPECT_LT(max_norm(least.at(values).stiffness - Y.transpose() * ours.stiffness * Y), 1e-12 * max_norm(ours.stiffness) * 36.);
+      EXPECT_LT(max_norm(DenseMatrix(replicate(least.basis()) - replicate(T * DenseMatrix(Z * Y)))), 1e-11 * max_norm(replicate(T)) * 36.);
+    }
+}
