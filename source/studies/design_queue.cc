@@ -8,6 +8,7 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
@@ -61,14 +62,23 @@ namespace Squeal
       return place == std::string::npos ? "" : single_spaced(text.substr(place + mark.size()));
     }
 
-    /// A design that is being solved.
+    /// Designs that are being solved by one process, one after the other.
     struct Worker
     {
-      int                            design;
+      std::vector<int>               designs; ///< all of them
+      std::vector<int>               left;    ///< of which no result has been seen
       fs::path                       log;
       std::unique_ptr<WorkerProcess> process;
       Stopwatch                      stopwatch;
     };
+
+    std::string list_of(const std::vector<int> &numbers)
+    {
+      std::string result;
+      for (const int number : numbers)
+        result += (result.empty() ? "" : ",") + std::to_string(number);
+      return result;
+    }
   } // namespace
 
   DesignStore::DesignStore(const fs::path &folder, const std::string &key, const MPI_Comm communicator)
@@ -94,9 +104,18 @@ namespace Squeal
       throw FileError(problem[0], problem[1], problem[2]);
   }
 
+  DesignStore::DesignStore(const fs::path &folder)
+    : folder(folder)
+  {}
+
   fs::path DesignStore::folder_of(const int design) const
   {
     return folder / text("design-", design);
+  }
+
+  fs::path DesignStore::folder_of(const std::vector<int> &designs) const
+  {
+    return designs.size() == 1 ? folder_of(designs.front()) : folder / text("designs-from-", designs.front());
   }
 
   std::optional<DesignResult> DesignStore::find(const int design) const
@@ -121,47 +140,70 @@ namespace Squeal
     fs::remove_all(folder);
   }
 
-  void solve_side_by_side(const std::vector<int>                          &designs,
+  void solve_side_by_side(const std::vector<std::vector<int>>             &batches,
                           const unsigned int                               n_side_by_side,
                           const DesignStore                               &store,
                           const std::function<DesignResult(int)>          &unfinished,
                           const std::function<void(const DesignResult &)> &report,
                           const std::vector<std::string>                  &given)
   {
-    const auto start = [&](const int design) {
-      const fs::path           folder    = store.folder_of(design);
+    const auto start = [&](const std::vector<int> &designs, const std::vector<int> &left) {
+      const fs::path           folder    = store.folder_of(designs);
       std::vector<std::string> arguments = given;
-      arguments.push_back("--designs=" + std::to_string(design));
+      arguments.push_back("--designs=" + list_of(designs));
       arguments.push_back("--output=" + folder.string());
       const fs::path log = folder.string() + ".log";
-      return Worker{design, log, std::make_unique<WorkerProcess>(arguments, log), {}};
+      return Worker{designs, left, log, std::make_unique<WorkerProcess>(arguments, log), {}};
     };
-    const auto finish = [&](const Worker &worker, const std::string &end) {
-      std::optional<DesignResult> result = store.find(worker.design);
-      if (!result)
-        {
-          const std::string error = last_error(worker.log);
-          result                  = unfinished(worker.design);
-          result->reason          = error.empty() ? "its process was " + end : error;
-          result->seconds         = worker.stopwatch.cost().seconds;
-          store.keep(*result);
-        }
-      report(*result);
+    const auto report_found = [&](Worker &worker) {
+      const auto is_found = [&](const int design) {
+        const std::optional<DesignResult> result = store.find(design);
+        if (result)
+          report(*result);
+        return result.has_value();
+      };
+      worker.left.erase(std::remove_if(worker.left.begin(), worker.left.end(), is_found), worker.left.end());
+    };
+    /// What a process leaves when it ends is the fault of the design that it was at.
+    const auto blame_next = [&](Worker &worker, const std::string &end) {
+      const std::string error  = last_error(worker.log);
+      DesignResult      result = unfinished(worker.left.front());
+      result.reason            = error.empty() ? "its process was " + end : error;
+      result.seconds           = worker.stopwatch.cost().seconds;
+      store.keep(result);
+      report(result);
+      worker.left.erase(worker.left.begin());
     };
 
     std::vector<Worker> workers;
-    for (auto next = designs.begin(); next != designs.end() || !workers.empty();)
+    for (auto next = batches.begin(); next != batches.end() || !workers.empty();)
       {
-        while (next != designs.end() && workers.size() < n_side_by_side)
-          workers.push_back(start(*next++));
+        for (; next != batches.end() && workers.size() < n_side_by_side; ++next)
+          {
+            std::vector<int> left;
+            std::copy_if(next->begin(), next->end(), std::back_inserter(left), [&](const int design) { return !store.find(design); });
+            if (!left.empty())
+              workers.push_back(start(*next, left));
+          }
         for (auto worker = workers.begin(); worker != workers.end();)
-          if (const auto end = worker->process->end())
-            {
-              finish(*worker, *end);
+          {
+            const auto end = worker->process->end();
+            report_found(*worker);
+            if (!end)
+              {
+                ++worker;
+                continue;
+              }
+            if (!worker->left.empty())
+              blame_next(*worker, *end);
+            if (worker->left.empty())
               worker = workers.erase(worker);
-            }
-          else
-            ++worker;
+            else
+              {
+                *worker = start(worker->designs, worker->left);
+                ++worker;
+              }
+          }
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
       }
   }

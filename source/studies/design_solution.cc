@@ -13,21 +13,6 @@ namespace Squeal
 {
   namespace
   {
-    /// The sweep of a design: what only adds to the results of a single run is left out.
-    Parameters sweep_of(const Parameters &design)
-    {
-      Parameters       result   = design;
-      SweepParameters &sweep    = result.sweep;
-      sweep.compare_dissipation = false;
-      sweep.map_parameter       = MapParameter::none;
-      sweep.mode_shapes         = {};
-      sweep.planes              = {};
-      sweep.counts              = {};
-      result.output             = {};
-      result.designs            = {};
-      return result;
-    }
-
     bool is_in_band(const SweepModel &model, const ChartPoint &point, const int mode)
     {
       return mode >= 0 && model.is_in_band(point.lambda[mode]);
@@ -196,19 +181,65 @@ namespace Squeal
           }
     }
 
-    /// Modes in the band at the first friction coefficient beside the real ones that inertia counts.
-    void compare_counts(const SweepModel &model, const SweepChart &sweep, DesignResult &result)
+    /// Modes in the band at the first friction coefficient beside the real ones that inertia counts, those of a rigid body included.
+    void compare_counts(const SweepModel &model, const SweepChart &sweep, const int n_counted, DesignResult &result)
     {
-      const SymmetricModes &real  = model.frictionless.real;
-      const double          limit = model.largest_circular_frequency * model.largest_circular_frequency;
-      const ChartCount     &first = sweep.chart.counts.front();
-      result.n_modes              = first.n_modes + first.n_overdamped;
-      result.n_counted            = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
+      const ChartCount &first = sweep.chart.counts.front();
+      result.n_modes          = first.n_modes + first.n_overdamped;
+      result.n_counted        = n_counted - model.frictionless.real.n_rigid_body;
       // Damping and friction move modes across the end of the band
       if (first.friction_coefficient == 0. && !model.frictionless.linearisation.coupled.has_damping())
         result.is_complete = result.is_complete && result.n_modes == result.n_counted;
     }
+    DesignResult begun_result(const Scene &scene)
+    {
+      DesignResult result;
+      result.outcome     = DesignOutcome::solved;
+      result.is_complete = true;
+      result.n_dofs      = scene.model->free_map().n();
+      return result;
+    }
+
+    void finish(DesignResult &result)
+    {
+      std::stable_sort(result.thresholds.begin(), result.thresholds.end(),
+                       [](const DesignThreshold &a, const DesignThreshold &b) { return a.friction_coefficient < b.friction_coefficient; });
+      for (const DesignThreshold &threshold : result.thresholds)
+        if (threshold.event == to_string(ThresholdEvent::onset))
+          {
+            result.onset =
+              DesignGrowth{threshold.friction_coefficient, threshold.uncertainty, threshold.label, threshold.frequency, 0., 0.};
+            break;
+          }
+    }
   } // namespace
+
+  Parameters sweep_of(const Parameters &design)
+  {
+    Parameters       result   = design;
+    SweepParameters &sweep    = result.sweep;
+    sweep.compare_dissipation = false;
+    sweep.map_parameter       = MapParameter::none;
+    sweep.mode_shapes         = {};
+    sweep.planes              = {};
+    sweep.counts              = {};
+    result.output             = {};
+    result.designs            = {};
+    return result;
+  }
+
+  DesignResult solve_member(DesignFamily &family, const std::size_t design, const ReferenceModes &reference)
+  {
+    const Stopwatch            stopwatch;
+    const DesignFamily::Member member     = family.solve(design);
+    double                     largest_mu = 0.;
+    DesignResult               result     = begun_result(family.shared_scene());
+    take_over(*member.model, member.chart, reference, largest_mu, result);
+    compare_counts(*member.model, member.chart, member.n_counted, result);
+    finish(result);
+    result.seconds = stopwatch.cost().seconds;
+    return result;
+  }
 
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run)
   {
@@ -224,10 +255,7 @@ namespace Squeal
     const SweepPlan                      plan = sweep_plan(scene, part);
     std::vector<std::vector<SweepChart>> charts(plan.lines.size());
     double                               largest_friction_coefficient = 0.; // of the charts so far
-    DesignResult                         result;
-    result.outcome     = DesignOutcome::solved;
-    result.is_complete = true;
-    result.n_dofs      = scene.model->free_map().n();
+    DesignResult                         result                       = begun_result(scene);
     for (const ContactRegime &regime : plan.regimes)
       {
         SweepModel model(plan, regime, part);
@@ -242,17 +270,13 @@ namespace Squeal
           {
             take_over(model, charts[0][s], reference, largest_friction_coefficient, result);
             if (s == 0)
-              compare_counts(model, charts[0][s], result);
+              {
+                const double limit = model.largest_circular_frequency * model.largest_circular_frequency;
+                compare_counts(model, charts[0][s], static_cast<int>(n_in_band(model.frictionless.real.eigenvalues, limit)), result);
+              }
           }
       }
-    std::stable_sort(result.thresholds.begin(), result.thresholds.end(),
-                     [](const DesignThreshold &a, const DesignThreshold &b) { return a.friction_coefficient < b.friction_coefficient; });
-    for (const DesignThreshold &threshold : result.thresholds)
-      if (threshold.event == to_string(ThresholdEvent::onset))
-        {
-          result.onset = DesignGrowth{threshold.friction_coefficient, threshold.uncertainty, threshold.label, threshold.frequency, 0., 0.};
-          break;
-        }
+    finish(result);
     checkpoint.remove();
     result.seconds = stopwatch.cost().seconds;
     return result;

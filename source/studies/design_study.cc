@@ -1,3 +1,4 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/parameters/design_plan.h>
@@ -57,8 +58,8 @@ namespace Squeal
       return work;
     }
 
-    /// Solves a design in this process.
-    DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference)
+    /// Solves a design in this process, alone; @p folder keeps what is found of an unfinished one.
+    DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference, const std::string &folder)
     {
       DesignResult    result = unfinished(run, work.plan, design);
       const Stopwatch stopwatch;
@@ -70,7 +71,7 @@ namespace Squeal
         }
       try
         {
-          DesignResult solved = solve_design(*parameters, reference, checkpoint_folder(run.folder().name()), run);
+          DesignResult solved = solve_design(*parameters, reference, folder, run);
           solved.number       = design;
           solved.values       = result.values;
           return solved;
@@ -79,45 +80,113 @@ namespace Squeal
         {
           throw; // nothing that the design is to blame for
         }
-      catch (const MeshError &error)
-        {
-          result.outcome = DesignOutcome::refused;
-          result.reason  = in_one_line(error);
-        }
-      catch (const ParameterError &error)
-        {
-          result.outcome = DesignOutcome::refused;
-          result.reason  = in_one_line(error);
-        }
       catch (const Error &error)
         {
-          result.reason = in_one_line(error);
+          const bool makes_no_sense = dynamic_cast<const MeshError *>(&error) || dynamic_cast<const ParameterError *>(&error);
+          result.outcome            = makes_no_sense ? DesignOutcome::refused : DesignOutcome::failed;
+          result.reason             = in_one_line(error);
         }
       result.seconds = stopwatch.cost().seconds;
       return result;
     }
 
+    /**
+     * Solves designs that share a mesh one after the other in this process, each by the basis that those before it have left. What
+     * the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
+     */
+    void solve_family_here(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
+    {
+      std::vector<Parameters> designs;
+      for (const int design : work.designs)
+        {
+          std::string reason;
+          designs.push_back(sweep_of(*parameters_of(run, work.plan, design, reason)));
+        }
+      Run                         part(designs.front(), run, run.progress);
+      std::optional<DesignFamily> family;
+      try
+        {
+          family.emplace(designs, part);
+        }
+      catch (const FileError &)
+        {
+          throw;
+        }
+      catch (const Error &)
+        {
+          // What is wrong each of them tells in its row
+          for (const int design : work.designs)
+            if (!store.find(design))
+              store.keep(solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string())));
+          return;
+        }
+      ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
+                                 design_key(run, family->shared_scene(), work.plan), run.communicator,
+                                 circular_frequency(run.parameters.discretization.maximum_frequency));
+      for (std::size_t i = 0; i < designs.size(); ++i)
+        {
+          const int                         design = work.designs[i];
+          const std::unique_ptr<ChartStore> kept   = checkpoint.part(text("design ", design), family->map());
+          if (store.find(design))
+            {
+              for (const MultiVector &block : kept->basis())
+                family->extend(block);
+              family->take_growth();
+              continue;
+            }
+          DesignResult result;
+          try
+            {
+              result = solve_member(*family, i, reference);
+            }
+          catch (const FileError &)
+            {
+              throw;
+            }
+          catch (const Error &error)
+            {
+              run.progress.note(text("  design ", design, " is solved alone: ", in_one_line(error)));
+              result = solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string()));
+            }
+          result.number = design;
+          result.values = unfinished(run, work.plan, design).values;
+          // A run that was ended between both has left the same blocks
+          const bool is_kept = !kept->basis().empty();
+          for (const MultiVector &block : family->take_growth())
+            if (!is_kept)
+              kept->keep(block);
+          store.keep(result);
+        }
+      checkpoint.remove();
+    }
   } // namespace
 
   /**
    * `Study = geometry`: sweeps of many designs, each meshed anew, with their thresholds; modes named by those of the scene that they
-   * resemble. Each design is solved in a process of its own, which is this study of one design.
+   * resemble. Each design is solved in a process of its own, which is this study of one design; designs that share a mesh are solved
+   * together, in a process that is this study of them.
    */
   static void run_design_study(Scene &scene, Run &run)
   {
     const DesignWork           work = work_of(run);
     std::vector<DesignResult>  results;
-    const bool                 is_one = work.designs.size() == 1;
     std::optional<DesignStore> store;
-    if (is_one)
+    const fs::path             above   = fs::path(run.folder().name()).parent_path();
+    const bool                 is_part = fs::exists(above / DesignStore::reference_file); // of a study that has left its modes there
+    if (is_part && work.designs.size() > 1)
       {
-        const fs::path       folder = fs::path(run.folder().name()).parent_path();
-        const ReferenceModes modes  = design_reference(scene, run, folder / DesignStore::reference_file);
+        solve_family_here(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
+        run.finish();
+        return;
+      }
+    if (work.designs.size() == 1)
+      {
+        const ReferenceModes modes = design_reference(scene, run, above / DesignStore::reference_file);
         run.progress.begin(text("Design ", work.designs.front()));
-        results.push_back(solve_here(run, work, work.designs.front(), modes));
+        results.push_back(solve_here(run, work, work.designs.front(), modes, checkpoint_folder(run.folder().name())));
         run.progress.finish();
         // For the study of which this is a part
-        if (fs::exists(folder / DesignStore::reference_file))
+        if (is_part)
           {
             const std::vector<char> packed = dealii::Utilities::pack(results.front(), false);
             run.folder().write(DesignStore::result_file,

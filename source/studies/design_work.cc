@@ -5,6 +5,7 @@
 #include <squeal/base/version.h>
 #include <squeal/base/worker_process.h>
 #include <squeal/geometry/problem_size.h>
+#include <squeal/studies/design_solution.h>
 #include <squeal/studies/design_work.h>
 #include <squeal/studies/parameter_usage.h>
 
@@ -16,6 +17,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <ostream>
 #include <sstream>
 #include <thread>
@@ -91,6 +93,46 @@ namespace Squeal
       const Stopwatch   stopwatch;
     };
 
+    /// Designs of fewer than this are solved one by one: what they share costs more than it saves.
+    constexpr std::size_t least_family = 4;
+
+    /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
+    constexpr std::size_t largest_batch = 25;
+
+    /**
+     * Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the
+     * same number; the others alone.
+     */
+    std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
+    {
+      std::map<std::string, std::vector<int>> families;
+      std::vector<std::vector<int>>           result, alone;
+      for (const int design : work.designs)
+        {
+          std::string       reason;
+          const auto        parameters = parameters_of(run, work.plan, design, reason);
+          const std::string key        = parameters ? family_key(sweep_of(*parameters)) : "";
+          if (key.empty())
+            alone.push_back({design});
+          else
+            families[key].push_back(design);
+        }
+      for (const auto &[key, designs] : families)
+        if (designs.size() < least_family)
+          for (const int design : designs)
+            alone.push_back({design});
+        else
+          {
+            const std::size_t n = (designs.size() + largest_batch - 1) / largest_batch;
+            for (std::size_t i = 0; i < n; ++i)
+              result.emplace_back(designs.begin() + static_cast<std::ptrdiff_t>(designs.size() * i / n),
+                                  designs.begin() + static_cast<std::ptrdiff_t>(designs.size() * (i + 1) / n));
+          }
+      std::sort(result.begin(), result.end());
+      std::sort(alone.begin(), alone.end());
+      result.insert(result.end(), alone.begin(), alone.end());
+      return result;
+    }
   } // namespace
 
   std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
@@ -164,33 +206,34 @@ namespace Squeal
                                       const std::vector<std::string> &arguments)
   {
     const fs::path file = store.folder / DesignStore::reference_file;
-    {
-      const ReferenceModes modes = design_reference(scene, run, file);
-      if (run.is_root && !fs::exists(file))
-        {
-          const std::vector<char> packed = dealii::Utilities::pack(modes, false);
-          replace_file(file, {packed.data(), packed.size()});
-        }
-    }
+    if (!MPI::broadcast(run.communicator, run.is_root && fs::exists(file), 0))
+      {
+        const ReferenceModes modes = design_reference(scene, run, file);
+        if (run.is_root)
+          {
+            const std::vector<char> packed = dealii::Utilities::pack(modes, false);
+            replace_file(file, {packed.data(), packed.size()});
+          }
+      }
     run.progress.begin("Designs");
-    std::vector<int> left;
-    std::size_t      n_known = 0;
-    for (const int design : work.designs)
-      if (store.find(design))
-        ++n_known;
-      else
-        left.push_back(design);
+    const auto        batches = batches_of(run, work);
+    const std::size_t n_known =
+      std::count_if(work.designs.begin(), work.designs.end(), [&](const int design) { return store.find(design).has_value(); });
     MPI_Barrier(run.communicator);
     if (n_known > 0)
       run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
     const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
               me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
-    std::vector<int> mine;
-    for (std::size_t i = 0; i < left.size(); ++i)
+    std::vector<std::vector<int>> mine;
+    std::size_t                   n_mine = 0;
+    for (std::size_t i = 0; i < batches.size(); ++i)
       if (static_cast<int>(i) % n_ranks == me)
-        mine.push_back(left[i]);
+        {
+          mine.push_back(batches[i]);
+          n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
+        }
     const unsigned int n_here = n_side_by_side(scene, run);
-    Reporter           report(run, n_known + mine.size(), n_known);
+    Reporter           report(run, n_known + n_mine, n_known);
     solve_side_by_side(
       mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);
     MPI_Barrier(run.communicator);

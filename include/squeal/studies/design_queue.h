@@ -24,8 +24,14 @@ namespace Squeal
      */
     DesignStore(const std::filesystem::path &folder, const std::string &key, MPI_Comm communicator);
 
-    /// Folder in which a process of its own leaves the results of a design.
+    /// For a process that solves designs of the study that is kept there.
+    explicit DesignStore(const std::filesystem::path &folder);
+
+    /// Folder with the result of a design.
     std::filesystem::path folder_of(int design) const;
+
+    /// Folder in which a process of its own writes what it finds of designs.
+    std::filesystem::path folder_of(const std::vector<int> &designs) const;
 
     /// What has been found of a design; nothing if it is not finished.
     std::optional<DesignResult> find(int design) const;
@@ -46,16 +52,16 @@ namespace Squeal
   };
 
   /**
-   * Solves designs in processes of their own (base/worker_process.h), several side by side, those of the list that belong to this MPI
-   * process. Whatever happens to one, its result says so and the others go on.
+   * Solves designs in processes of their own (base/worker_process.h), several side by side. Whatever happens to one, its
+   * result says so and the others go on.
    *
-   * @param designs      numbers of those that are not finished
+   * @param batches      numbers of designs that one process solves, one after the other; finished ones among them cost nothing
    * @param n_side_by_side processes of this MPI process at a time
    * @param arguments    of the command line, from which a process reads the designs
    * @param unfinished   result of a design without what is to be found
    * @param report       of a design that is finished
    */
-  void solve_side_by_side(const std::vector<int>                          &designs,
+  void solve_side_by_side(const std::vector<std::vector<int>>             &batches,
                           unsigned int                                     n_side_by_side,
                           const DesignStore                               &store,
                           const std::function<DesignResult(int)>          &unfinished,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/studies/design_family.h>
 #include <squeal/studies/design_results.h>
 #include <squeal/studies/reference_modes.h>
 
@@ -7,6 +8,9 @@
 
 namespace Squeal
 {
+  /// The sweep of a design: what only adds to the results of a single run is left out.
+  Parameters sweep_of(const Parameters &design);
+
   /**
    * Follows the modes of a scene over the friction coefficients of the sweep, and says what a study of designs wants to know of them.
    *
@@ -18,4 +22,7 @@ namespace Squeal
    * Throws Error where the design cannot be meshed or solved.
    */
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run);
+
+  /// The same of a design of a family.
+  DesignResult solve_member(DesignFamily &family, std::size_t design, const ReferenceModes &reference);
 } // namespace Squeal

@@ -1,0 +1,89 @@
+"""Designs that share a mesh: solved by one basis, held against the same designs solved alone, interrupted and resumed, and told apart
+from designs that cannot share it."""
+
+import signal
+
+from program import ProgramTest, read_table
+
+STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8", "Operation/Radial dissipation=none"]
+VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900, 3070; "
+             "Mounts/Elastic mounts[3] = 1.6e10, 1.88e10")
+TABLES = ["designs.csv", "design_thresholds.csv", "design_modes.csv"]
+TIME = "time [s]"
+
+
+def tables(folder):
+    """All tables but the times, which no two runs share."""
+    return {name: [{key: value for key, value in row.items() if key != TIME} for row in read_table(folder / name)] for name in TABLES}
+
+
+class FamiliesTest(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.study = cls.run_scene("study", *STUDY, VARIABLES)
+
+    def test_designs_are_those_that_are_solved_alone(self):
+        together = {row["design [-]"]: row for row in read_table(self.study / "designs.csv")}
+        thresholds = read_table(self.study / "design_thresholds.csv")
+        modes = read_table(self.study / "design_modes.csv")
+        self.assertEqual(len(together), 8)
+        for number in ("1", "4", "8"):
+            single = self.run_design(f"single_{number}", number)
+            row, alone = together[number], read_table(single / "designs.csv")[0]
+            for name in ("outcome", "modes [-]", "modes counted [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]",
+                         "label of largest", "label of first onset", "dofs [-]"):
+                self.assertEqual(row[name], alone[name], name)
+            self.assertEqual(row["complete [-]"], "1")
+            self.assertLessEqual(float(row["estimated error of lambda [-]"]), 1e-6)
+
+            mine = [t for t in thresholds if t["design [-]"] == number]
+            others = read_table(single / "design_thresholds.csv")
+            self.assertEqual(len(mine), len(others))
+            self.assertGreater(len(mine), 0)
+            for one, other in zip(mine, others):
+                self.assertEqual([one[name] for name in ("event", "mechanism")], [other[name] for name in ("event", "mechanism")])
+                self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
+                                     float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
+
+            # Within what both estimate, mode by mode
+            frequencies = [[float(mode["frequency at smallest mu [Hz]"]) for mode in table if mode["design [-]"] == number]
+                           for table in (modes, read_table(single / "design_modes.csv"))]
+            self.assertEqual(len(frequencies[0]), len(frequencies[1]))
+            for one, other in zip(*frequencies):
+                self.assertAlmostEqual(one, other, delta=2e-6 * other)
+
+    def test_killed_and_resumed(self):
+        self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (4, signal.SIGTERM), (6, signal.SIGKILL)))
+        # What the basis has grown by is known, not only the results
+        self.assertTrue((self.folder / "killed.checkpoint" / "designs-from-1-basis.checkpoint").exists())
+        again = self.run_scene("killed", *STUDY, VARIABLES)
+        self.assertEqual(tables(again), tables(self.study))
+        self.assertFalse((self.folder / "killed.checkpoint").exists())
+
+    def test_damped_designs(self):
+        damped = ["Study=geometry", "Sweep/Number of friction coefficients=4", "Operation/Radial dissipation=consistent",
+                  "Pin material/Rayleigh beta=1e-6"]
+        variables = "Designs/Variables=Pin material/Rayleigh beta = 1e-6, 2e-6; Operation/Load per side = 500, 1000"
+        study = self.run_scene("damped", *damped, variables)
+        single = self.run_design("damped_single", "3", *damped, variables)
+        row, alone = read_table(study / "designs.csv")[2], read_table(single / "designs.csv")[0]
+        for name in ("outcome", "modes [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]"):
+            self.assertEqual(row[name], alone[name], name)
+        rates = {row["largest divergence rate [%]"] for row in read_table(study / "designs.csv")}
+        self.assertEqual(len(rates), 4)
+        self.assertAlmostEqual(float(row["largest divergence rate [%]"]), float(alone["largest divergence rate [%]"]),
+                               delta=1e-3 * float(alone["largest divergence rate [%]"]))
+
+    def test_a_common_fault_is_told_in_every_row(self):
+        study = self.run_scene("fault", *STUDY, VARIABLES, "Designs/Variables=Pin material/Young modulus = 1, 2, 3, 4")
+        rows = read_table(study / "designs.csv")
+        self.assertEqual([row["outcome"] for row in rows], ["refused"] * 4)
+        for row in rows:
+            self.assertNotEqual(row["reason"], "")
+
+    def run_design(self, output, number, *overrides):
+        settings = [word for text in overrides or (*STUDY, VARIABLES) for word in ("--set", text)]
+        process = self.call("scene.prm", "--output", output, "--designs", number, *settings)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return self.folder / output
