@@ -60,8 +60,17 @@ namespace Squeal
 
   MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
   {
-    MultiVector Y(B.map(), B.n_columns());
-    factor->apply(B, Y);
+    MultiVector            Y(B.map(), B.n_columns());
+    const std::vector<int> columns = nonzero_columns(B); // imaginary parts of neutral modes are zero
+    if (static_cast<int>(columns.size()) == B.n_columns())
+      factor->apply(B, Y);
+    else if (!columns.empty())
+      {
+        const MultiVector some = selected(B, columns);
+        MultiVector       found(B.map(), some.n_columns());
+        factor->apply(some, found);
+        Y.local()(Eigen::all, columns) = found.local();
+      }
     return Y;
   }
 

@@ -154,7 +154,11 @@ namespace Squeal
     const SparseMatrix &M = *system.mass;
     if (directions.empty())
       return {};
-    const MultiVector X = compress(M, model, join_all(directions));
+    const MultiVector      all     = join_all(directions);
+    const std::vector<int> columns = nonzero_columns(all); // imaginary parts of neutral modes are zero
+    if (columns.empty())
+      return {};
+    const MultiVector X = compress(M, model, selected(all, columns));
     if (!model.is_restricted())
       return orthonormalize_if_any(M, &model.basis(), X, dependence_tolerance);
     auto result = orthonormalize_if_any(M, nullptr, X, dependence_tolerance);

@@ -223,6 +223,23 @@ namespace Squeal
     return norms;
   }
 
+  std::vector<int> nonzero_columns(const MultiVector &X)
+  {
+    const std::vector<double> norms = column_norms(X);
+    std::vector<int>          result;
+    for (int j = 0; j < X.n_columns(); ++j)
+      if (norms[j] != 0.) // NaN included
+        result.push_back(j);
+    return result;
+  }
+
+  MultiVector selected(const MultiVector &X, const std::vector<int> &columns)
+  {
+    MultiVector result(X.map(), static_cast<int>(columns.size()), false);
+    result.local() = X.local()(Eigen::all, columns);
+    return result;
+  }
+
   MultiVector unit_vectors(const RowMap &map)
   {
     MultiVector result(map, map.n());

@@ -138,6 +138,12 @@ namespace Squeal
   /// Euclidean norms of the columns.
   std::vector<double> column_norms(const MultiVector &X);
 
+  /// Numbers of the columns that are not zero.
+  std::vector<int> nonzero_columns(const MultiVector &X);
+
+  /// Some columns, copied, by their numbers.
+  MultiVector selected(const MultiVector &X, const std::vector<int> &columns);
+
   /// The identity matrix as vectors, for maps of a few rows (contact nodes).
   MultiVector unit_vectors(const RowMap &map);
 
