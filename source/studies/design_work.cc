@@ -34,6 +34,9 @@ namespace Squeal
     /// Modes of the scene are found so far beyond the band that those of stiffer and softer designs find their likes [-].
     constexpr double reference_margin = 0.2;
 
+    /// Vectors in the basis of a family of designs, about.
+    constexpr double usual_family_basis = 500.;
+
     /// Values of the variables in a design, as the scene has them where the design leaves them open.
     std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
     {
@@ -45,7 +48,7 @@ namespace Squeal
     }
 
     /// Designs that one MPI process solves side by side: by cores, and by the memory that each takes.
-    unsigned int n_side_by_side(const Scene &scene, const Run &run)
+    unsigned int n_side_by_side(const Scene &scene, const Run &run, const bool has_families)
     {
       if (run.parameters.designs.n_processes > 0)
         return run.parameters.designs.n_processes;
@@ -54,10 +57,12 @@ namespace Squeal
       MPI_Comm_split_type(run.communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
       MPI_Comm_size(machine, &n_here);
       MPI_Comm_free(&machine);
-      const unsigned int degree    = degree_of(run.parameters.discretization.element);
-      const double       bytes     = expected_size(scene.mesh, degree).memory(degree, run.parameters.solvers.maximum_modes);
-      const double       by_cores  = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
-      const double       by_memory = available_memory() / bytes / n_here;
+      const unsigned int degree = degree_of(run.parameters.discretization.element);
+      // The basis of a family is there twice when it grows
+      const double bytes_of_basis = has_families ? 2. * sizeof(double) * usual_family_basis * scene.model->free_map().n() : 0.;
+      const double bytes          = bytes_of_basis + expected_size(scene.mesh, degree).memory(degree, run.parameters.solvers.maximum_modes);
+      const double by_cores       = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
+      const double by_memory      = available_memory() / bytes / n_here;
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
@@ -232,7 +237,8 @@ namespace Squeal
           mine.push_back(batches[i]);
           n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
         }
-    const unsigned int n_here = n_side_by_side(scene, run);
+    const bool has_families   = std::any_of(batches.begin(), batches.end(), [](const std::vector<int> &batch) { return batch.size() > 1; });
+    const unsigned int n_here = n_side_by_side(scene, run, has_families);
     Reporter           report(run, n_known + n_mine, n_known);
     solve_side_by_side(
       mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);

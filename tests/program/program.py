@@ -99,6 +99,12 @@ def read_table(path):
         return list(csv.DictReader(file))
 
 
+def design_tables(folder):
+    """All tables of a study of designs but the times, which no two runs share."""
+    return {name: [{key: value for key, value in row.items() if key != "time [s]"} for row in read_table(folder / f"{name}.csv")]
+            for name in ("designs", "design_thresholds", "design_modes")}
+
+
 def header(path):
     with open(path, encoding="utf-8") as file:
         return file.readline().rstrip("\n")

@@ -7,17 +7,10 @@ import signal
 import subprocess
 import time
 
-from program import EXECUTABLE, ProgramTest, read_table
+from program import EXECUTABLE, ProgramTest, design_tables, read_table
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, -1"
-TABLES = ["designs.csv", "design_thresholds.csv", "design_modes.csv"]
-TIME = "time [s]"
-
-
-def tables(folder):
-    """All tables but the times, which no two runs share."""
-    return {name: [{key: value for key, value in row.items() if key != TIME} for row in read_table(folder / name)] for name in TABLES}
 
 
 class DesignsTest(ProgramTest):
@@ -85,9 +78,9 @@ class DesignsTest(ProgramTest):
 
     def test_one_design_alone_is_the_same(self):
         one = self.run_scene_of_designs("one", "2")
-        self.assertEqual(tables(one)["designs.csv"], [tables(self.study)["designs.csv"][1]])
+        self.assertEqual(design_tables(one)["designs"], [design_tables(self.study)["designs"][1]])
         two = self.run_scene_of_designs("two", "1, 5-5")
-        self.assertEqual(tables(two)["designs.csv"], [tables(self.study)["designs.csv"][i] for i in (0, 4)])
+        self.assertEqual(design_tables(two)["designs"], [design_tables(self.study)["designs"][i] for i in (0, 4)])
 
     def run_scene_of_designs(self, output, designs):
         settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
@@ -106,7 +99,7 @@ class DesignsTest(ProgramTest):
 
     def test_several_processes(self):
         # Of modes with one λ, as of equal pins, rounding chooses the shapes, and with them the overlaps
-        found, expected = (tables(folder) for folder in (self.run_scene("parallel", *STUDY, VARIABLES, n_processes=2), self.study))
+        found, expected = (design_tables(folder) for folder in (self.run_scene("parallel", *STUDY, VARIABLES, n_processes=2), self.study))
         for rows in (*found.values(), *expected.values()):
             for row in rows:
                 row.pop("overlap with reference [-]", None)
@@ -131,7 +124,7 @@ class DesignsTest(ProgramTest):
         process = self.call("scene.prm", "--output", "killed", *settings)
         self.assertEqual(process.returncode, 0, process.stderr)
         self.assertIn(f"{n_known} of 6 designs are known", process.stdout)
-        self.assertEqual(tables(self.folder / "killed"), tables(self.study))
+        self.assertEqual(design_tables(self.folder / "killed"), design_tables(self.study))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     @staticmethod

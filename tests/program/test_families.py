@@ -3,18 +3,11 @@ from designs that cannot share it."""
 
 import signal
 
-from program import ProgramTest, read_table
+from program import ProgramTest, design_tables, read_table
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8", "Operation/Radial dissipation=none"]
 VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900, 3070; "
              "Mounts/Elastic mounts[3] = 1.6e10, 1.88e10")
-TABLES = ["designs.csv", "design_thresholds.csv", "design_modes.csv"]
-TIME = "time [s]"
-
-
-def tables(folder):
-    """All tables but the times, which no two runs share."""
-    return {name: [{key: value for key, value in row.items() if key != TIME} for row in read_table(folder / name)] for name in TABLES}
 
 
 class FamiliesTest(ProgramTest):
@@ -58,7 +51,7 @@ class FamiliesTest(ProgramTest):
         # What the basis has grown by is known, not only the results
         self.assertTrue((self.folder / "killed.checkpoint" / "designs-from-1-basis.checkpoint").exists())
         again = self.run_scene("killed", *STUDY, VARIABLES)
-        self.assertEqual(tables(again), tables(self.study))
+        self.assertEqual(design_tables(again), design_tables(self.study))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 
     def test_damped_designs(self):
