@@ -117,8 +117,11 @@ namespace Squeal
       const double    t = (mu - a) / (b - a);
       ParameterValues others;
       for (const auto &[name, numbers] : first.values)
-        for (std::size_t i = 0; i < numbers.size(); ++i)
-          others[name].push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
+        {
+          std::vector<double> &between = others[name]; // where there are no numbers, too: they mean zeros
+          for (std::size_t i = 0; i < numbers.size(); ++i)
+            between.push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
+        }
       std::vector<std::complex<double>> lambda =
         local_reduced_modes(small, system.at(mu, others), (1. + margin) * largest_circular_frequency).lambda;
       if (lambda.size() < search.first_modes.size())
