@@ -3,11 +3,9 @@
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
 #include <squeal/sensitivity/term_products.h>
 #include <squeal/studies/sensitivity_parameters.h>
-#include <squeal/studies/sweep_charts.h>
 #include <squeal/studies/sweep_model.h>
 
 #include <complex>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +22,8 @@ namespace Squeal
   /// A sweep with its terms kept apart, as far as the derivatives of its eigenvalues need.
   struct SensitivityModel
   {
+    static constexpr int main_line = 0; ///< of the sweep
+
     SweepModel                              &sweep; ///< of the main line
     const BodyTerms                         &bodies;
     const std::vector<SensitivityParameter> &parameters;
@@ -39,57 +39,11 @@ namespace Squeal
 
     /// Rates of the friction coefficient and of the contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
+
+    /// Modes of a point of the main line, as the basis grows by them.
+    ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    /// Grows the basis by the residuals of modes and forgets what was evaluated; returns why it cannot, or nothing. All processes must call.
+    std::string grow(const std::vector<ChartModel::ModesAt> &sets, unsigned int maximum_basis);
   };
-
-  /// What of one mode or of several has derivatives.
-  enum class Differentiated
-  {
-    eigenvalue, ///< λ of a simple mode
-    pair,       ///< the mean of two that nearly coalesce
-    cluster     ///< the mean of several that nothing separates
-  };
-
-  template <>
-  inline constexpr EnumName<Differentiated> enum_table<Differentiated>[] = {{Differentiated::eigenvalue, "lambda"},
-                                                                            {Differentiated::pair, "mean of a coalescing pair"},
-                                                                            {Differentiated::cluster, "mean of equal eigenvalues"}};
-
-  /// Derivatives of a mode at the operating friction coefficient.
-  struct ModeSensitivity
-  {
-    std::complex<double>              lambda; ///< [rad/s]
-    ModeLabel                         label;
-    bool                              is_unstable;
-    Differentiated                    kind;
-    std::vector<std::complex<double>> derivatives; ///< dλ/dp of each parameter, or of the mean
-    std::vector<std::complex<double>> changes; ///< by the last growth of the basis: real and imaginary parts are estimates of the errors
-  };
-
-  /// Derivatives of a threshold.
-  struct ThresholdSensitivity
-  {
-    const Threshold    *threshold;
-    std::string         obstacle;    ///< why there are none; empty
-    std::vector<double> derivatives; ///< dμ_c/dp of each parameter; empty with an obstacle
-    std::vector<double> errors;      ///< estimated
-  };
-
-  /**
-   * Derivatives of modes at the friction coefficient of the operation: of the growing ones, or the least damped. Grows the basis by their
-   * residuals until the derivatives change no more than the tolerance, as a step of the run.
-   */
-  std::vector<ModeSensitivity> mode_sensitivities(SensitivityModel &model, Run &run);
-
-  /**
-   * Derivatives of the thresholds of a chart of the main line, with a basis that is grown once by the residuals of their modes, as a step of the run.
-   *
-   * At a coalescence δ² = (λ_1 − λ_2)² is analytic and zero:
-   *
-   *   dμ_c/dp = −(∂δ²/∂p) / (∂δ²/∂μ)
-   *
-   * with values at μ_c from three distances on either side (value_at_centre()); where one mode ceases to decay
-   *
-   *   dμ_c/dp = −Re(∂λ/∂p) / Re(∂λ/∂μ).
-   */
-  std::vector<ThresholdSensitivity> threshold_sensitivities(SensitivityModel &model, const SweepChart &chart, Run &run);
 } // namespace Squeal

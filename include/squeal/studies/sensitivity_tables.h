@@ -1,6 +1,7 @@
 #pragma once
 
-#include <squeal/studies/sensitivity_model.h>
+#include <squeal/studies/sensitivity_modes.h>
+#include <squeal/studies/sensitivity_thresholds.h>
 
 namespace Squeal
 {
