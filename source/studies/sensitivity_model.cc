@@ -36,6 +36,9 @@ namespace Squeal
     const auto         k     = static_cast<int>(modes.size());
     const auto         r_n   = normal_reactions(coupled, triples.lambda, view(triples.right, 0, k), view(triples.right, k, k));
 
+    // C_m belongs to the coupled coordinates: no part of it is a reaction
+    const auto of_damped_modes = modal_damping ? modal_damping->along(body_rates(), triples) : std::vector<ComplexDenseMatrix>();
+
     SensitivityProducts result{triples.lambda, of_contact.by_lambda(values), {}};
     for (const SensitivityParameter &parameter : parameters)
       {
@@ -46,6 +49,10 @@ namespace Squeal
           N += of_contact.along(values, contact_rates(parameter, mu));
         if (parameter.contact)
           N += by_moved_contact(*parameter.contact, mu, alone, r_n);
+        if (modal_damping)
+          N += of_damped_modes[result.N.size()] * as_column(triples.lambda).asDiagonal();
+        if (parameter.modal_ratio >= 0)
+          N += of_contact.along(values, {{SystemParameter::modal_damping, modal_damping->rates_of_ratio(parameter.modal_ratio)}});
         result.N.push_back(std::move(N));
       }
     return result;
@@ -82,6 +89,19 @@ namespace Squeal
             for (Eigen::Index j = 0; j < k; ++j)
               result.col(j) += sign / motion.step * apart.lambda[j] * forms.col(j);
           }
+      }
+    return result;
+  }
+
+  std::vector<BodyRates> SensitivityModel::body_rates() const
+  {
+    std::vector<BodyRates> result;
+    for (const SensitivityParameter &parameter : parameters)
+      {
+        BodyRates rates;
+        rates.add_along(bodies.terms, bodies.values, parameter.body_rates);
+        rates.add(parameter.derivative, bodies.values);
+        result.push_back(std::move(rates));
       }
     return result;
   }

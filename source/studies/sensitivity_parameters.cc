@@ -117,6 +117,19 @@ namespace Squeal
                             {},
                             true});
 
+    const auto &ratios = parameters.damping.modal_ratios;
+    for (std::size_t i = 0; i < ratios.size(); ++i)
+      result.push_back({text("Damping/Modal damping ratio: ", exact_text(ratios[i].frequency), " Hz"),
+                        "",
+                        "-",
+                        ratios[i].ratio,
+                        {},
+                        {},
+                        nullptr,
+                        {},
+                        false,
+                        static_cast<int>(i)});
+
     result.push_back(
       {"Operation/Friction coefficient", "", "-", operation.friction_coefficient, {}, {}, &OperationParameters::friction_coefficient});
     const bool is_damped = parameters.has_contact_damping();

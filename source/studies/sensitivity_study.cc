@@ -1,8 +1,8 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/exceptions.h>
 #include <squeal/studies/sensitivity_tables.h>
 
 #include <algorithm>
+#include <optional>
 #include <ostream>
 
 namespace Squeal
@@ -64,11 +64,15 @@ namespace Squeal
           text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
     }
 
-    void check_sensitivity(const Parameters &parameters)
+    /// Of the modal damping that the coupled system of a sweep has; nothing without it.
+    std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
     {
-      if (!parameters.damping.modal_ratios.empty())
-        throw ParameterError("the modes that modal damping belongs to change with every parameter, which derivatives leave out",
-                             "parameter Damping/Modal damping ratio", "leave it out, or set Rayleigh damping of the materials");
+      if (damping.modal_ratios.empty())
+        return {};
+      const FrictionlessModes &modes   = sweep.frictionless;
+      const CoupledSystem     &coupled = modes.linearisation.coupled;
+      return std::optional<ModalDampingDerivatives>(std::in_place, coupled, modes.inverse->frictionless(), modes.real, damping,
+                                                    static_cast<int>(coupled.values.at(SystemParameter::modal_damping).size()));
     }
   } // namespace
 
@@ -104,7 +108,7 @@ namespace Squeal
         chart = follow_branches(sweep, 0, grid, &store);
       }
 
-    SensitivityModel                   model{sweep, bodies, parameters};
+    SensitivityModel                   model{sweep, bodies, parameters, modal_damping_derivatives(sweep, p.damping)};
     const bool                         reactions_are_held = p.needs_steady_sliding() && p.has_contact_damping();
     const std::vector<ModeSensitivity> modes              = mode_sensitivities(model, run);
     report(modes.front(), parameters, run);
@@ -131,7 +135,6 @@ namespace Squeal
                             {"Sweep/Number of friction coefficients", no_thresholds},
                             {"Sweep/Threshold tolerance", no_thresholds}};
     study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
-    study.check          = check_sensitivity;
     return study;
   }();
 } // namespace Squeal

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
+#include <squeal/sensitivity/modal_damping.h>
 #include <squeal/sensitivity/term_products.h>
 #include <squeal/studies/sensitivity_parameters.h>
 #include <squeal/studies/sweep_model.h>
 
 #include <complex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ namespace Squeal
     SweepModel                              &sweep; ///< of the main line
     const BodyTerms                         &bodies;
     const std::vector<SensitivityParameter> &parameters;
+    std::optional<ModalDampingDerivatives>   modal_damping = {}; ///< none without it
 
     /// Products of modes of a point of the main line. All processes must call.
     SensitivityProducts products(const ChartPoint &point, const std::vector<int> &modes) const;
@@ -39,6 +42,9 @@ namespace Squeal
 
     /// Rates of the friction coefficient and of the contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
+
+    /// dK/dp and dM/dp of the bodies for each parameter, which change the modes of modal damping.
+    std::vector<BodyRates> body_rates() const;
 
     /// Modes of a point of the main line, as the basis grows by them.
     ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;
