@@ -20,6 +20,9 @@ THRESHOLDS = ["Sweep/First friction coefficient=0.05", "Sweep/Last friction coef
 # Twelve digits are printed: what two of a frequency may leave of their difference, over twice the step [-]
 PRINTED = 5e-12
 
+# What the uncertainty of thresholds leaves open of their differences, with respect to ln p [-]
+RESOLUTION = 2e-6
+
 COLUMNS = ["mode [-]", "label", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "parameter", "only of", "value", "unit",
            "growth rate per 1 % [1/s]", "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "growth rate per unit [1/s]",
            "frequency per unit [Hz]", "estimated error of the growth rate per unit [1/s]", "estimated error of the frequency per unit [Hz]",
@@ -224,15 +227,31 @@ class Sensitivity(ProgramTest):
         self.check_thresholds(rows, "Pin material/Density", RICH)
         self.check_thresholds(rows, "Operation/Load per side", RICH)
 
-    def check_thresholds(self, rows, path, scene):
+    def test_thresholds_on_moved_meshes(self):
+        """The same of lengths and places, beside sweeps on meshes whose nodes have been moved here."""
+        folder = self.run_scene("thresholds_moving", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
+        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
+        mesh = (self.run_scene("still", "Band/Maximum frequency=1000") / "mesh.msh").read_text(encoding="utf-8")
+        for path, pin in [("Disc thickness", ""), ("Pin height", ""), ("Disc outer radius", ""), ("Pin diameter", ""),
+                          ("Top pin radii", "pin_top_2"), ("Bottom pin angles", "pin_bottom_1")]:
+            def on_moved_mesh(value, change, velocity=motion(path, pin)):
+                (self.folder / "moved.msh").write_text(with_moved_nodes(mesh, velocity, value * change), encoding="utf-8")
+                return ["Geometry/File=moved.msh"]
+            # An error of 1e-4 of the largest one stands out from what the differences resolve
+            self.assertGreater(self.check_thresholds(rows, "Geometry/" + path, [], pin, on_moved_mesh), RESOLUTION / (1e-4 - 1e-5))
+
+    def check_thresholds(self, rows, path, scene, pin="", overrides=None):
+        """Returns the largest difference. `overrides` are those with which the parameter has another value, by its value and the relative
+        change."""
+        overrides = overrides or (lambda value, change: [override(path, value * (1 + change))])
         step = 2e-5
-        rows = [row for row in rows if row["parameter"] == path]
+        rows = [row for row in rows if row["parameter"] == path and row["only of"] == pin]
         self.assertGreaterEqual(len(rows), 3)
         value = float(rows[0]["value"])
-        found = {}
+        found, largest = {}, 0.0
         for side in (-1, 1):
             folder = self.run_scene("shifted", "Study=sweep", "Sweep/Compare dissipation=false", *THRESHOLDS, *scene,
-                                    override(path, value * (1 + side * step)))
+                                    *overrides(value, side * step))
             found[side] = [(float(row["mu [-]"]), row["event"]) for row in read_table(folder / "thresholds.csv")]
         for row in rows:
             here = float(row["mu [-]"])
@@ -241,7 +260,9 @@ class Sensitivity(ProgramTest):
             difference = (there[1] - there[-1]) / (2 * step)
             with self.subTest(parameter=path, mu=here, label=row["label"]):
                 # Thresholds are known to 1e-10, that of A0-0 with its small slope of the growth rate to 4e-8
-                self.assertLessEqual(abs(float(row["mu per unit [-]"]) * value - difference), 1e-5 * abs(difference) + 2e-6)
+                self.assertLessEqual(abs(float(row["mu per unit [-]"]) * value - difference), 1e-5 * abs(difference) + RESOLUTION)
+            largest = max(largest, abs(difference))
+        return largest
 
     def test_geometry(self):
         """Lengths and places beside runs on meshes whose nodes have been moved here."""
