@@ -72,9 +72,13 @@ namespace Squeal
             contact.size() * (is_quadratic ? nodes_per_surface_vertex : 1.)};
   }
 
-  void check_memory(const ProblemSize &size, const unsigned int degree, const double n_modes, const std::string &where)
+  void check_memory(const ProblemSize &size,
+                    const unsigned int degree,
+                    const double       n_modes,
+                    const std::string &where,
+                    const double       further)
   {
-    const double needed = size.memory(degree, n_modes), available = available_memory();
+    const double needed = size.memory(degree, n_modes) + further, available = available_memory();
     if (!(needed > available))
       return;
     throw MeshError(text("The scene has about ", size.hexahedra, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,

@@ -119,7 +119,10 @@ namespace Squeal
     ProblemSize        size    = expected_size(mesh, degree);
     if (parameters.solves_by(ComplexSolver::residual_iteration))
       size.contact_nodes = 0.; // no attachment modes
-    const double bytes = size.memory(degree, std::min<double>(n_modes, allowed));
+    const double solved  = std::min<double>(n_modes, allowed);
+    const Study &study   = *parameters.study;
+    const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, solved);
+    const double bytes   = size.memory(degree, solved) + further;
     run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9,
                            " GB of memory; ", available_memory() / 1e9, " GB are available"));
     run.measure("expected modes [-]", n_modes);
@@ -135,6 +138,6 @@ namespace Squeal
     if (n_modes > allowed)
       run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
                     ": lower Band/Maximum frequency, or check units"));
-    check_memory(size, degree, std::min<double>(n_modes, allowed), parameters.geometry.path());
+    check_memory(size, degree, solved, parameters.geometry.path(), further);
   }
 } // namespace Squeal

@@ -131,17 +131,26 @@ namespace Squeal
     return {sweep.plan.point(main_line, point.friction_coefficient, sweep.regime.closed), &point, modes};
   }
 
-  std::string SensitivityModel::grow(const std::vector<ChartModel::ModesAt> &sets, const unsigned int maximum_basis)
+  std::string SensitivityModel::grow(const std::vector<std::vector<ChartModel::ModesAt>> &groups, const unsigned int maximum_basis)
   {
     ChartModel &reduced = *sweep.reduced;
-    const auto  vectors = reduced.new_vectors(sets);
-    if (!vectors)
-      return "rounding errors leave no new direction";
-    if (reduced.size() + vectors->n_columns() > static_cast<int>(maximum_basis))
-      return text("the basis would exceed ", maximum_basis, " vectors");
-    reduced.extend(*vectors);
+    const int   size    = reduced.size();
+    std::string obstacle;
+    for (const std::vector<ChartModel::ModesAt> &group : groups)
+      if (const auto vectors = reduced.new_vectors(group))
+        {
+          if (reduced.size() + vectors->n_columns() > static_cast<int>(maximum_basis))
+            {
+              obstacle = text("the basis would exceed ", maximum_basis, " vectors");
+              break;
+            }
+          reduced.extend(*vectors);
+        }
     // Points that were evaluated with a smaller basis do not count
-    sweep.known.clear();
-    return "";
+    if (reduced.size() > size)
+      sweep.known.clear();
+    else if (obstacle.empty())
+      obstacle = "rounding errors leave no new direction";
+    return obstacle;
   }
 } // namespace Squeal

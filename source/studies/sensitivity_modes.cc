@@ -188,7 +188,7 @@ namespace Squeal
         if (n_growths == most_growths)
           why_stopped = text("after ", most_growths, " growths of the basis they still change by ", change);
         else
-          why_stopped = model.grow({model.modes_at(point, modes)}, run.parameters.sweep.maximum_basis);
+          why_stopped = model.grow({{model.modes_at(point, modes)}}, run.parameters.sweep.maximum_basis);
         if (!why_stopped.empty())
           break;
         ++n_growths;

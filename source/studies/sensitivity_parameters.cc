@@ -158,6 +158,15 @@ namespace Squeal
       ContactInterface interface;
     };
 
+    /// The matrix without entries that are zero: where no node moves, nothing changes.
+    std::shared_ptr<const SparseMatrix> without_zeros(const SparseMatrix &A)
+    {
+      return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int i, SparseMatrix::Row &row) {
+        A.get_row(i, row);
+        row.erase(std::remove_if(row.begin(), row.end(), [](const auto &entry) { return entry.second == 0.; }), row.end());
+      });
+    }
+
     MovedScene moved_scene(const Scene &scene, const MeshMotion &motion, const double change, const Run &run)
     {
       const Parameters &parameters = run.parameters;
@@ -202,6 +211,8 @@ namespace Squeal
           }
         // One matrix of each kind instead of one for each body
         parameter.derivative = merged(parameter.derivative, bodies.values);
+        for (Term &term : parameter.derivative)
+          term.matrix = without_zeros(*term.matrix);
         if (motion.moves_contact)
           parameter.contact = std::make_shared<ContactMotion>(ContactMotion{before.interface, after.interface,
                                                                             contact_operators(*scene.model, before.interface),

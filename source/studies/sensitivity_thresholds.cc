@@ -212,14 +212,19 @@ namespace Squeal
     };
 
     run.progress.begin("Derivatives of thresholds");
-    std::vector<ThresholdSensitivity> result = find("threshold ");
-    std::vector<ChartModel::ModesAt>  sets;
+    std::vector<ThresholdSensitivity>             result = find("threshold ");
+    std::vector<std::vector<ChartModel::ModesAt>> groups;
     for (const ThresholdDerivatives &threshold : thresholds)
-      for (const ThresholdSample &sample : threshold.samples())
-        sets.push_back(model.modes_at(sweep.known.at({SensitivityModel::main_line, sample.friction_coefficient}), sample.modes));
-    if (!sets.empty())
+      if (!threshold.samples().empty())
+        {
+          groups.emplace_back();
+          for (const ThresholdSample &sample : threshold.samples())
+            groups.back().push_back(
+              model.modes_at(sweep.known.at({SensitivityModel::main_line, sample.friction_coefficient}), sample.modes));
+        }
+    if (!groups.empty())
       {
-        const std::string why_not = model.grow(sets, run.parameters.sweep.maximum_basis);
+        const std::string why_not = model.grow(groups, run.parameters.sweep.maximum_basis);
         if (!why_not.empty())
           run.warn("derivatives of thresholds are those of the basis of the sweep: " + why_not);
         else

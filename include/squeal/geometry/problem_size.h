@@ -30,6 +30,6 @@ namespace Squeal
   /// Of a mesh, with elements of the given degree.
   ProblemSize expected_size(const HexMesh &mesh, unsigned int degree);
 
-  /// Throws MeshError with these numbers if the memory exceeds what is available.
-  void check_memory(const ProblemSize &size, unsigned int degree, double n_modes, const std::string &where);
+  /// Throws MeshError with these numbers if the memory, and what a study takes further [byte], exceeds what is available.
+  void check_memory(const ProblemSize &size, unsigned int degree, double n_modes, const std::string &where, double further = 0.);
 } // namespace Squeal

@@ -5,6 +5,7 @@
 namespace Squeal
 {
   struct Parameters;
+  struct ProblemSize;
   class Run;
   struct Scene;
 
@@ -49,6 +50,9 @@ namespace Squeal
 
     /// Whether some of its modes have radial dissipation, whatever the parameters say.
     bool adds_dissipation = false;
+
+    /// Memory that it takes beside what modes of the scene do [byte]; null: little.
+    double (*further_memory)(const Parameters &, const ProblemSize &, double n_modes) = nullptr;
 
     /// Throws ParameterError where parameters do not fit the study; null: nothing to check.
     void (*check)(const Parameters &) = nullptr;

@@ -49,7 +49,10 @@ namespace Squeal
     /// Modes of a point of the main line, as the basis grows by them.
     ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;
 
-    /// Grows the basis by the residuals of modes and forgets what was evaluated; returns why it cannot, or nothing. All processes must call.
-    std::string grow(const std::vector<ChartModel::ModesAt> &sets, unsigned int maximum_basis);
+    /**
+     * Grows the basis by the residuals of groups of modes, one group after the other, as the vectors of one take less memory than those of all, and
+     * forgets what was evaluated; returns why it cannot, or nothing. All processes must call.
+     */
+    std::string grow(const std::vector<std::vector<ChartModel::ModesAt>> &groups, unsigned int maximum_basis);
   };
 } // namespace Squeal
