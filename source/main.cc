@@ -4,6 +4,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/interruption.h>
 #include <squeal/base/mpi_environment.h>
+#include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
@@ -172,9 +173,7 @@ int main(int argc, char **argv)
   const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
   Squeal::Progress progress(screen, live && is_root);
 
-  std::string command = argv[0];
-  for (int i = 1; i < argc; ++i)
-    command += " " + std::string(argv[i]);
+  const std::string command = Squeal::shell_command({argv, argv + argc});
   try
     {
       run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress, interruption);

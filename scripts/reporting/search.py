@@ -124,7 +124,8 @@ def best_section(results, search):
         if row[LARGEST] and abs(number(full["mu [-]"]) - number(row["mu of largest [-]"])) < 1e-9:
             text += f"; the sweep of the search has {digits(number(row[LARGEST]))} % there"
         notes.append(text + ".")
-    program = (results.record.get("command", "").split() or ["squeal"])[0]
+    # The first word of the command, in which blanks may stand between quotes
+    program = re.match(r"(?:[^\s'\\]|\\.|'[^']*')*", results.record.get("command", ""))[0] or "squeal"
     return {"id": "best", "title": f"The best design, number {search.best['design [-]']}",
             "facts": {"columns": ["parameter", "scene", "range", "best"], "rows": facts}, "notes": notes,
             "caption": "Its parameter file is best.prm beside this page; to sweep it by itself:",

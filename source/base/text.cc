@@ -1,5 +1,6 @@
 #include <squeal/base/text.h>
 
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim_all.hpp>
 
 #include <algorithm>
@@ -13,6 +14,9 @@ namespace Squeal
   {
     /// Characters of a longer text that a message shows.
     constexpr std::size_t largest_length = 80;
+
+    /// Characters that mean themselves to every shell, those of Python's shlex.quote; bytes of other alphabets are quoted.
+    constexpr const char *plain_characters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789@%+=:,./_-";
   } // namespace
 
   std::string exact_text(const double value)
@@ -68,6 +72,18 @@ namespace Squeal
   std::string in_quotes(const std::string &text)
   {
     return "`" + legible(text) + "`";
+  }
+
+  std::string shell_command(const std::vector<std::string> &words)
+  {
+    std::string result;
+    for (const std::string &word : words)
+      {
+        const bool is_plain = !word.empty() && word.find_first_not_of(plain_characters) == std::string::npos;
+        // Between single quotes everything means itself, but for their end
+        result += (result.empty() ? "" : " ") + (is_plain ? word : "'" + boost::replace_all_copy(word, "'", R"('\'')") + "'");
+      }
+    return result;
   }
 
   std::string first_difference(const std::string &there, const std::string &here)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 using namespace Squeal;
 
@@ -42,6 +43,28 @@ TEST(Text, LongAndInvisibleTextsAreMadeLegible)
   // Not through the two bytes of a letter
   EXPECT_EQ(legible(std::string(79, 'x') + "\u00b5m"), std::string(79, 'x') + "... (82 characters)");
   EXPECT_EQ(single_spaced(" a \t b\n"), "a b");
+}
+
+TEST(Text, CommandsAreQuotedForAShell)
+{
+  EXPECT_EQ(shell_command({"squeal", "prm/sweep.prm", "--set", "Geometry/Element size=0.04"}),
+            "squeal prm/sweep.prm --set 'Geometry/Element size=0.04'");
+  EXPECT_EQ(shell_command({"it's"}), R"('it'\''s')");
+  EXPECT_EQ(shell_command({"a", ""}), "a ''");
+
+  // What a shell makes of it
+  const std::vector<std::string> words   = {"a b", "",  "$HOME",     "`id`", "it's", "\"",         "\\",
+                                            "*",   "~", "a;b|c&d>e", "!x",   "#",    "two\nlines", "\u00b5"};
+  const std::string              command = "printf '%s\\0' " + shell_command(words);
+  FILE *const                    shell   = ::popen(command.c_str(), "r");
+  ASSERT_NE(shell, nullptr);
+  std::string printed, expected;
+  for (int byte = std::fgetc(shell); byte != EOF; byte = std::fgetc(shell))
+    printed += static_cast<char>(byte);
+  EXPECT_EQ(::pclose(shell), 0);
+  for (const std::string &word : words)
+    expected += word + '\0';
+  EXPECT_EQ(printed, expected);
 }
 
 TEST(Text, TheFirstDifferenceIsNamed)

@@ -5,13 +5,14 @@ import json
 import math
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
 import time
 import unittest
 
-from program import ProgramTest, read_table
+from program import EXECUTABLE, ProgramTest, read_table
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "report.py"
 sys.path.insert(0, str(SCRIPT.parent))
@@ -297,6 +298,17 @@ class Reports(ProgramTest):
         again = self.run_scene("again")
         self.addCleanup(shutil.rmtree, again)
         self.assertFalse((again / "report.html").exists())
+
+    def test_how_to_repeat_it(self):
+        """What the page shows goes into a shell as it is."""
+        for name, overrides in SCENES.items():
+            command = html.unescape(re.search(r'<section id="repeat">.*?<pre>(.*?)</pre>', self.page(name), re.S)[1])
+            settings = [word for text in overrides for word in ("--set", text)]
+            self.assertEqual(shlex.split(command), [EXECUTABLE, "scene.prm", "--output", name, *settings])
+        process = subprocess.run(command + " --dry-run", shell=True, cwd=self.folder, capture_output=True, text=True, check=False)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        best = html.unescape(re.search(r'<section id="best">.*?<pre>(.*?)</pre>', self.page("search"), re.S)[1])
+        self.assertEqual(shlex.split(best)[0], EXECUTABLE)
 
     def test_no_results(self):
         process = subprocess.run([sys.executable, "-B", SCRIPT, self.folder / "none"], capture_output=True, text=True, check=False)

@@ -39,6 +39,9 @@ namespace Squeal
   /// The same between back-quotes.
   std::string in_quotes(const std::string &text);
 
+  /// Words of a command line as one text that a POSIX shell splits into the same words: quoted where they need it.
+  std::string shell_command(const std::vector<std::string> &words);
+
   /// The first lines in which two texts differ, for a message: "`a = 1` there, `a = 2` here", or "nothing" where a text ends.
   std::string first_difference(const std::string &there, const std::string &here);
 } // namespace Squeal

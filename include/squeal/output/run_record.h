@@ -15,7 +15,7 @@ namespace Squeal
   /// What a run was: enough to repeat it and to compare its cost.
   struct RunRecord
   {
-    std::string                                 command;     ///< as typed
+    std::string                                 command;     ///< that repeats it in a shell
     int                                         n_processes; ///< of MPI
     int                                         blas_threads;
     std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...

@@ -19,7 +19,7 @@ namespace Squeal
   /// What the command line adds to the parameters.
   struct RunOptions
   {
-    std::string command;  ///< as typed, for the run record
+    std::string command;  ///< that repeats the run in a shell, for the run record
     std::string revision; ///< of the program's sources
     std::string output;   ///< result folder
     bool        dry_run = false;
