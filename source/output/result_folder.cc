@@ -314,11 +314,15 @@ namespace Squeal
       move_to_place(unfinished, place, replaced);
   }
 
-  std::vector<std::string> ResultFolder::commit()
+  std::vector<std::string> ResultFolder::commit(const std::function<void()> &afterwards)
   {
-    const auto held = uninterrupted();
     if (!is_root)
-      return {};
+      {
+        if (afterwards)
+          afterwards();
+        return {};
+      }
+    const auto held = uninterrupted();
     check_complete(unfinished, written);
     // The folder must not take its name with files that a failure of the machine could cut.
     if (const int problem = store(unfinished); problem != 0)
@@ -347,6 +351,8 @@ namespace Squeal
         if (problem)
           remarks.push_back("the former results in `" + former.string() + "` cannot be deleted: " + problem.message());
       }
+    if (afterwards)
+      afterwards();
     return remarks;
   }
 

@@ -206,9 +206,10 @@ namespace Squeal
       }
 
     write_designs(work.plan.names, results, run);
-    run.finish();
-    if (store && run.is_root)
-      store->remove();
+    run.finish([&] {
+      if (store && run.is_root)
+        store->remove();
+    });
   }
 
   extern const Study design_study = [] {

@@ -70,14 +70,14 @@ namespace Squeal
     store_table(name, table);
   }
 
-  void Run::finish()
+  void Run::finish(const std::function<void()> &afterwards)
   {
     Parameters repeated    = parameters;
     repeated.geometry.file = copy_of(parameters.geometry.path()).name;
     results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     record.files = results->files();
     results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
-    for (const std::string &remark : results->commit())
+    for (const std::string &remark : results->commit(afterwards))
       progress.note("  note: " + remark);
     std::string names;
     for (const std::string &name : tables)

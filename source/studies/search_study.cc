@@ -419,8 +419,7 @@ namespace Squeal
     run.store_table("search", search_table(evaluations, values.size()));
     run.write_table("full_order", full_order_table(checked));
     write_parameter_file(*design, "best.prm", run);
-    run.finish();
-    evaluations.forget();
+    run.finish([&] { evaluations.forget(); });
   }
 
   extern const Study search_study = [] {

@@ -281,8 +281,7 @@ namespace Squeal
       }
     if (!map.empty())
       run.store_table("map", map_table(map, parameters.sweep.map_parameter));
-    run.finish();
-    checkpoint.remove();
+    run.finish([&] { checkpoint.remove(); });
   }
 
   extern const Study sweep_study = [] {

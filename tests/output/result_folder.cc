@@ -1,19 +1,24 @@
 #include "files.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/interruption.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <ostream>
 #include <sstream>
+#include <thread>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
@@ -167,6 +172,32 @@ TEST_F(SafeFolders, AreForOneRunAtATime)
   // The first one goes on undisturbed.
   folder.write("table.csv", [](std::ostream &stream) { stream << "here"; });
   EXPECT_EQ(content(results + ".unfinished/table.csv"), "here");
+}
+
+TEST_F(SafeFolders, TakeWhatOnlyAnUnfinishedRunNeedsWithThem)
+{
+  const fs::path checkpoint = results + ".checkpoint";
+  put(checkpoint / "sweep.archive", "so far");
+  const pid_t process = ::fork();
+  if (process == 0)
+    {
+      Interruption interruption;
+      ResultFolder folder(results, true, "", &interruption);
+      folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+      folder.commit([&] {
+        ::kill(::getpid(), SIGTERM);
+        // Time in which the signal would end the process
+        std::this_thread::sleep_for(std::chrono::milliseconds(300));
+        fs::remove_all(checkpoint);
+      });
+      std::this_thread::sleep_for(std::chrono::seconds(10));
+      ::_exit(0);
+    }
+  int status = 0;
+  ASSERT_EQ(::waitpid(process, &status, 0), process);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+  EXPECT_EQ(files(), (Names{"results/run.json"}));
 }
 
 TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)

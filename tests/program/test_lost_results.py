@@ -251,6 +251,35 @@ class TimedRuns(LostResults):
         shutil.rmtree(cls.folder / "timed")
 
 
+class Checkpoints(LostResults):
+    """What only an unfinished study needs goes with the signal that comes when results are in their place."""
+    VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030"
+    QUICK = ["Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3", "Sweep/Number of friction coefficients=3"]
+    STUDIES = {"sweep": ["Study=sweep"], "designs": ["Study=geometry", f"{VARIABLES}, 0.034"],
+               "search": ["Study=search", f"{VARIABLES} to 0.034", "Search/Samples=2", "Search/Evaluations=3"]}
+
+    # So many files that a signal comes before they are removed
+    MANY = 20000
+
+    def test_signal_while_a_checkpoint_is_removed(self):
+        for name, study in self.STUDIES.items():
+            with self.subTest(name):
+                more = self.folder / f"{name}.more"
+                more.mkdir()
+                for number in range(self.MANY):
+                    (more / str(number)).touch()
+                process = self.start(name, *study, *self.QUICK)
+                checkpoint = self.folder / f"{name}.checkpoint"
+                self.wait_for(checkpoint.is_dir, process)
+                more.rename(checkpoint / "more")
+                self.wait_for((self.folder / name / "run.json").is_file, process)
+                process.send_signal(signal.SIGTERM)
+                process.communicate(timeout=60)
+                # It may have been over before the signal came
+                self.assertIn(process.returncode, (0, 128 + signal.SIGTERM))
+                self.assertFalse(checkpoint.exists())
+
+
 class Signals(TimedRuns):
     TRIALS = 40
 

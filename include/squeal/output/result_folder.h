@@ -54,10 +54,13 @@ namespace Squeal
      * Gives the folder its name. Nothing happens to earlier results unless all
      * files are there to their last byte. Returns what the user should know, one line each.
      *
+     * @param afterwards done when the results are in their place, on all processes; a signal waits until it is done, too, so that
+     *                   what only an unfinished run needs goes with the run
+     *
      * Throws FileError if files are missing, or the folder cannot be put in its
      * place; in the latter case the message says where the results are.
      */
-    std::vector<std::string> commit();
+    std::vector<std::string> commit(const std::function<void()> &afterwards = {});
 
     /// Name of the finished folder, as the user has it.
     const std::string &name() const;

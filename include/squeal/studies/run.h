@@ -9,6 +9,7 @@
 
 #include <mpi.h>
 
+#include <functional>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -82,8 +83,12 @@ namespace Squeal
     /// Writes NAME.csv and shows the table.
     void write_table(const std::string &name, const Table &table);
 
-    /// Writes the parameters as used and the run record, and gives the folder its name.
-    void finish();
+    /**
+     * Writes the parameters as used and the run record, and gives the folder its name.
+     *
+     * @param afterwards removes what only an unfinished run needs; no signal comes between the results and that
+     */
+    void finish(const std::function<void()> &afterwards = {});
 
   private:
     RunRecord                     record;
