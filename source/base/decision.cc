@@ -14,6 +14,32 @@ namespace Squeal
     }
   } // namespace
 
+  void merge(std::vector<DecisionRecord> &whole, const std::vector<DecisionRecord> &part)
+  {
+    for (const DecisionRecord &record : part)
+      {
+        const auto known = std::find_if(whole.begin(), whole.end(), [&](const auto &other) { return other.quantity == record.quantity; });
+        if (known == whole.end())
+          {
+            whole.push_back(record);
+            continue;
+          }
+        if (record.below > known->below)
+          {
+            known->below    = record.below;
+            known->below_in = record.below_in;
+          }
+        if (record.above < known->above)
+          {
+            known->above    = record.above;
+            known->above_in = record.above_in;
+          }
+        known->n_below += record.n_below;
+        known->n_above += record.n_above;
+      }
+    std::sort(whole.begin(), whole.end(), [](const auto &x, const auto &y) { return x.quantity < y.quantity; });
+  }
+
   Decision::Decision(const char *quantity, const double threshold)
     : record{quantity, threshold}
   {
@@ -56,5 +82,12 @@ namespace Squeal
   {
     for (DecisionRecord *record : registry())
       *record = {record->quantity, record->threshold};
+  }
+
+  std::vector<DecisionRecord> Decision::take()
+  {
+    std::vector<DecisionRecord> result = records();
+    forget();
+    return result;
   }
 } // namespace Squeal

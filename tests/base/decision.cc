@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 using namespace Squeal;
 
@@ -37,4 +38,45 @@ TEST(Decision, KeepsTheNearestValueOnEitherSide)
 
   Decision::forget();
   EXPECT_EQ(record().quantity, "");
+}
+
+TEST(Decision, RecordsOfPartsAreMerged)
+{
+  const double inf = std::numeric_limits<double>::infinity();
+  // The whole was asked for the first quantity only; parts have no value on one side of the second
+  std::vector<DecisionRecord> whole = {{"b", 1e-8, 1e-16, 1e-3, 2, 1, "", ""}};
+  merge(whole, {{"b", 1e-8, 1e-12, 1e-3, 3, 4, "one", "one"}, {"a", 1e-6, 0., 1e-2, 0, 5, "", "one"}});
+  merge(whole, {{"b", 1e-8, 1e-14, 1e-5, 1, 1, "two", "two"}, {"a", 1e-6, 1e-9, inf, 1, 0, "two", ""}});
+  ASSERT_EQ(whole.size(), 2u);
+
+  EXPECT_EQ(whole[0].quantity, "a");
+  EXPECT_EQ(whole[0].threshold, 1e-6);
+  EXPECT_EQ(whole[0].below, 1e-9);
+  EXPECT_EQ(whole[0].below_in, "two");
+  EXPECT_EQ(whole[0].above, 1e-2);
+  EXPECT_EQ(whole[0].above_in, "one");
+  EXPECT_EQ(whole[0].n_below, 1);
+  EXPECT_EQ(whole[0].n_above, 5);
+
+  EXPECT_EQ(whole[1].quantity, "b");
+  EXPECT_EQ(whole[1].below, 1e-12);
+  EXPECT_EQ(whole[1].below_in, "one");
+  EXPECT_EQ(whole[1].above, 1e-5);
+  EXPECT_EQ(whole[1].above_in, "two");
+  EXPECT_EQ(whole[1].n_below, 6);
+  EXPECT_EQ(whole[1].n_above, 6);
+
+  // Of equal values the first one stays
+  merge(whole, {{"b", 1e-8, 1e-12, 1e-5, 0, 0, "three", "three"}});
+  EXPECT_EQ(whole[1].below_in, "one");
+  EXPECT_EQ(whole[1].above_in, "two");
+}
+
+TEST(Decision, WhatIsTakenIsForgotten)
+{
+  const Decision decision("thing / other", 1e-8);
+  EXPECT_FALSE(decision.exceeded_by(1e-16));
+  const auto taken = Decision::take();
+  EXPECT_EQ(std::count_if(taken.begin(), taken.end(), [](const DecisionRecord &r) { return r.quantity == "thing / other"; }), 1);
+  EXPECT_TRUE(Decision::records().empty());
 }

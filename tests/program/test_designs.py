@@ -1,5 +1,6 @@
 """Studies of designs, held against single runs of the same designs, interrupted and resumed, and told of designs that make no sense."""
 
+import json
 import os
 import re
 import shutil
@@ -60,6 +61,31 @@ class DesignsTest(ProgramTest):
             below = [float(b["divergence rate [%]"]) for b in branches if float(b["mu [-]"]) < weak - 1e-5]
             self.assertLessEqual(max(below), 0.01)
             self.assertTrue(any(float(b["divergence rate [%]"]) > 0.01 for b in branches))
+
+    def test_decisions_of_designs_are_in_the_record(self):
+        """Of every quantity the smallest margin of all designs, and the design to which it belongs."""
+        singles = {f"design {number}": self.decisions(self.run_scene_of_designs(f"decisions_{number}", str(number))) for number in (1, 2, 4, 5)}
+        found = self.decisions(self.study)
+        of_designs = 0
+        for quantity in set().union(*singles.values()):
+            for side, nearest in (("below", max), ("above", min)):
+                key = f"nearest {side}"
+                values = [single[quantity][key] for single in singles.values()
+                          if quantity in single and single[quantity][key] not in (None, 0)]
+                if not values:
+                    continue
+                self.assertEqual(found[quantity][key], nearest(values), (quantity, side))
+                # What the scene itself has comes first
+                if where := found[quantity].get(f"{key} in"):
+                    self.assertEqual(singles[where][quantity][key], nearest(values), (quantity, side))
+                    of_designs += 1
+        self.assertGreater(of_designs, 4)
+        self.assertIn("difference of two eigenvalues / their modulus", found)
+
+    @staticmethod
+    def decisions(folder):
+        record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
+        return {decision["quantity"]: decision for decision in record["decisions"]}
 
     def test_modes_have_the_names_of_the_scene(self):
         scene = self.run_scene("scene")
@@ -180,3 +206,12 @@ class DesignsTest(ProgramTest):
         self.assertIn("not those of an unfinished study", process.stderr)
         self.assertEqual((self.folder / "mine.checkpoint" / "letter.txt").read_text(encoding="utf-8"), "keep me")
         shutil.rmtree(self.folder / "mine.checkpoint")
+
+    def test_results_of_another_format_are_not_read(self):
+        (self.folder / "former.checkpoint").mkdir()
+        (self.folder / "former.checkpoint" / "study.key").write_text("squeal designs 1\n", encoding="utf-8")
+        settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
+        process = self.call("scene.prm", "--output", "former", *settings)
+        self.assertEqual(process.returncode, 1)
+        self.assertIn("another version of the program lies there: `squeal designs 1` there, `squeal designs 2` here", process.stderr)
+        shutil.rmtree(self.folder / "former.checkpoint")

@@ -7,13 +7,14 @@
 
 namespace Squeal
 {
-  /// What a decision has been asked, on this process.
+  /// What a decision has been asked, on this process or in several parts of a run.
   struct DecisionRecord
   {
     std::string quantity;
-    double      threshold;
+    double      threshold = 0.;
     double      below = 0., above = std::numeric_limits<double>::infinity(); ///< nearest values on either side, where there were any
     long        n_below = 0, n_above = 0;                                    ///< how often each side was taken
+    std::string below_in = {}, above_in = {}; ///< parts of the run to which the nearest values belong; empty: the run itself
 
     /// Orders of magnitude between the threshold and the nearest value on either side; infinite where there is none.
     double margin_below() const
@@ -24,7 +25,19 @@ namespace Squeal
     {
       return std::log10(above / threshold);
     }
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &quantity &threshold &below &above &n_below &n_above &below_in &above_in;
+    }
   };
+
+  /**
+   * Takes records of a part of the run into those of the whole: of every quantity the nearest values of all, and how often each side
+   * was taken. Of equal values the one that was there first stays. The result is ascending by name.
+   */
+  void merge(std::vector<DecisionRecord> &whole, const std::vector<DecisionRecord> &part);
 
   /**
    * A threshold between what counts and what rounding leaves, such as the rank
@@ -57,6 +70,9 @@ namespace Squeal
 
     /// Forgets what was asked so far.
     static void forget();
+
+    /// Every decision that has been asked, and forgets it: the decisions of one of several parts.
+    static std::vector<DecisionRecord> take();
 
   private:
     mutable DecisionRecord record;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/base/decision.h>
 #include <squeal/base/progress.h>
 #include <squeal/output/result_files.h>
 
@@ -18,11 +19,12 @@ namespace Squeal
     std::string                                 command;     ///< that repeats it in a shell
     int                                         n_processes; ///< of MPI
     int                                         blas_threads;
-    std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...
-    std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
-    std::vector<std::string>                    warnings;             ///< doubts about the input
-    FileSizes                                   files    = {};        ///< what the run has written, but for the record itself
-    std::string                                 revision = "unknown"; ///< of the program's sources
+    std::vector<std::pair<std::string, long>>   counts;                ///< elements, dofs, contact nodes, modes, ...
+    std::vector<std::pair<std::string, double>> quantities;            ///< worst element quality, ...
+    std::vector<std::string>                    warnings;              ///< doubts about the input
+    FileSizes                                   files     = {};        ///< what the run has written, but for the record itself
+    std::string                                 revision  = "unknown"; ///< of the program's sources
+    std::vector<DecisionRecord>                 decisions = {};        ///< of parts of the run that other processes have computed
   };
 
   /// Versions, revision, machine, counts, time and peak memory of each step, the margins of decisions, and files, as JSON.
