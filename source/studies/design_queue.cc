@@ -127,6 +127,11 @@ namespace Squeal
     return dealii::Utilities::unpack<DesignResult>(std::vector<char>(packed.begin(), packed.end()), false);
   }
 
+  std::size_t DesignStore::n_known(const std::vector<int> &designs) const
+  {
+    return std::count_if(designs.begin(), designs.end(), [&](const int design) { return find(design).has_value(); });
+  }
+
   void DesignStore::keep(const DesignResult &result) const
   {
     const fs::path          place  = folder_of(result.number);

@@ -206,6 +206,8 @@ namespace Squeal
     else
       {
         store.emplace(checkpoint_folder(run.folder().name()), design_key(run, scene, work.plan), run.communicator);
+        if (const std::size_t n_known = store->n_known(work.designs); n_known > 0)
+          run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
         results = solve_all(scene, run, work, *store, run.options.again);
         for (const int design : work.designs)
           {

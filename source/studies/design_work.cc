@@ -222,11 +222,8 @@ namespace Squeal
       }
     run.progress.begin("Designs");
     const auto        batches = batches_of(run, work);
-    const std::size_t n_known =
-      std::count_if(work.designs.begin(), work.designs.end(), [&](const int design) { return store.find(design).has_value(); });
+    const std::size_t n_known = store.n_known(work.designs);
     MPI_Barrier(run.communicator);
-    if (n_known > 0)
-      run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
     const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
               me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
     std::vector<std::vector<int>> mine;

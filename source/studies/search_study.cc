@@ -58,6 +58,11 @@ namespace Squeal
       {
         for (const DesignVariable &variable : variables)
           plan.names.push_back(variable.name);
+        // All at once: the rounds of the interrupted search come again one by one
+        std::vector<int> designs(run.parameters.search.n_evaluations);
+        std::iota(designs.begin(), designs.end(), 1);
+        if (const std::size_t n_known = store.n_known(designs); n_known > 0)
+          run.progress.note(text("  an interrupted search goes on: ", n_known, " designs are known"));
       }
 
       /// Values of the objective at some points, new ones solved side by side; none where the budget does not suffice.

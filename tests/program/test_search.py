@@ -1,5 +1,6 @@
 """Searches for quiet designs: budgets, what they report, held against single runs and full order; interrupted and resumed."""
 
+import re
 import signal
 import unittest
 
@@ -64,7 +65,12 @@ class SearchTest(ProgramTest):
     def test_killed_and_resumed(self):
         self.interrupt("killed", SEARCH, ((2, signal.SIGKILL), (5, signal.SIGTERM)))
         self.assertGreaterEqual(len(self.known_designs("killed")), 5)
-        resumed = self.run_scene("killed", *SEARCH)
+        n_known = len(self.known_designs("killed"))
+        process = self.call("scene.prm", "--output", "killed", *(word for text in SEARCH for word in ("--set", text)))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        # Said once, not with every round that comes again
+        self.assertEqual(re.findall("an interrupted .*", process.stdout), [f"an interrupted search goes on: {n_known} designs are known"])
+        resumed = self.folder / "killed"
         self.assertEqual(read_table(resumed / "search.csv"), read_table(self.search / "search.csv"))
         self.assertFalse((self.folder / "killed.checkpoint").exists())
 

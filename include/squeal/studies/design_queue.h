@@ -36,6 +36,9 @@ namespace Squeal
     /// What has been found of a design; nothing if it is not finished.
     std::optional<DesignResult> find(int design) const;
 
+    /// How many of some designs are finished.
+    std::size_t n_known(const std::vector<int> &designs) const;
+
     /// Keeps what became of a design that no process of its own has finished.
     void keep(const DesignResult &result) const;
 
