@@ -21,6 +21,7 @@
 #include <ostream>
 #include <sstream>
 #include <thread>
+#include <utility>
 
 namespace Squeal
 {
@@ -104,19 +105,34 @@ namespace Squeal
     /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
     constexpr std::size_t largest_batch = 25;
 
+    /// Who says what becomes of designs.
+    struct Schedule
+    {
+      std::vector<std::vector<int>> batches; ///< designs that one process solves
+      std::vector<DesignResult>     refused; ///< by their parameters: no process is needed to say so
+    };
+
     /**
      * Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the
      * same number; the others alone.
      */
-    std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
+    Schedule schedule_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;
-      std::vector<std::vector<int>>           result, alone;
+      std::vector<std::vector<int>>           alone;
+      Schedule                                schedule;
+      auto &[result, refused] = schedule;
       for (const int design : work.designs)
         {
-          std::string       reason;
-          const auto        parameters = parameters_of(run, work.plan, design, reason);
-          const std::string key        = parameters ? family_key(sweep_of(*parameters)) : "";
+          DesignResult unsolved   = unfinished(run, work.plan, design);
+          const auto   parameters = parameters_of(run, work.plan, design, unsolved.reason);
+          if (!parameters)
+            {
+              unsolved.outcome = DesignOutcome::refused;
+              refused.push_back(std::move(unsolved));
+              continue;
+            }
+          const std::string key = family_key(sweep_of(*parameters));
           if (key.empty())
             alone.push_back({design});
           else
@@ -136,7 +152,7 @@ namespace Squeal
       std::sort(result.begin(), result.end());
       std::sort(alone.begin(), alone.end());
       result.insert(result.end(), alone.begin(), alone.end());
-      return result;
+      return schedule;
     }
   } // namespace
 
@@ -221,8 +237,8 @@ namespace Squeal
           }
       }
     run.progress.begin("Designs");
-    const auto        batches = batches_of(run, work);
-    const std::size_t n_known = store.n_known(work.designs);
+    const auto [batches, refused] = schedule_of(run, work);
+    const std::size_t n_known     = store.n_known(work.designs);
     MPI_Barrier(run.communicator);
     const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
               me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
@@ -234,9 +250,19 @@ namespace Squeal
           mine.push_back(batches[i]);
           n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
         }
+    std::vector<DesignResult> to_keep; // of this process
+    if (run.is_root)
+      std::copy_if(refused.begin(), refused.end(), std::back_inserter(to_keep),
+                   [&](const DesignResult &design) { return !store.find(design.number); });
+    n_mine += to_keep.size();
     const bool has_families   = std::any_of(batches.begin(), batches.end(), [](const std::vector<int> &batch) { return batch.size() > 1; });
     const unsigned int n_here = n_side_by_side(scene, run, has_families);
     Reporter           report(run, n_known + n_mine, n_known);
+    for (const DesignResult &design : to_keep)
+      {
+        store.keep(design);
+        report(design);
+      }
     solve_side_by_side(
       mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);
     MPI_Barrier(run.communicator);

@@ -132,14 +132,15 @@ class DesignsTest(ProgramTest):
         self.assertEqual(found, expected)
 
     def test_killed_and_resumed(self):
-        self.interrupt("killed", (*STUDY, VARIABLES), ((1, signal.SIGKILL), (2, signal.SIGTERM), (3, signal.SIGKILL)))
+        # The two that are refused are known at once
+        self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (3, signal.SIGTERM), (4, signal.SIGKILL)))
         # Its processes end with it
         deadline = time.monotonic() + 60
         while self.processes_of("killed.checkpoint") and time.monotonic() < deadline:
             time.sleep(0.1)
         self.assertEqual(self.processes_of("killed.checkpoint"), [])
         n_known = len(self.known_designs("killed"))
-        self.assertGreaterEqual(n_known, 3)
+        self.assertGreaterEqual(n_known, 4)
 
         # Another study does not go on with it
         settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
@@ -215,3 +216,16 @@ class DesignsTest(ProgramTest):
         self.assertEqual(process.returncode, 1)
         self.assertIn("another version of the program lies there: `squeal designs 1` there, `squeal designs 2` here", process.stderr)
         shutil.rmtree(self.folder / "former.checkpoint")
+
+    def test_designs_that_their_parameters_refuse_need_no_process(self):
+        settings = [word for text in (*STUDY, VARIABLES, "Designs/Processes=1") for word in ("--set", text)]
+        process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "refused", *settings], cwd=self.folder, stdout=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        deadline = time.monotonic() + 60
+        while not self.known_designs("refused") and time.monotonic() < deadline:
+            time.sleep(0.01)
+        time.sleep(0.2)
+        known = {file.parent.name for file in self.known_designs("refused")}
+        self.assertLessEqual({"design-3", "design-6"}, known)
+        self.assertEqual(process.wait(timeout=300), 0)
+        self.assertEqual(design_tables(self.folder / "refused"), design_tables(self.study))
