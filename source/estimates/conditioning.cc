@@ -16,7 +16,7 @@ namespace Squeal
   {
     constexpr int n_lanczos_steps = 15;
     /// Of a Lanczos vector beside the one before: the space is exhausted.
-    constexpr double negligible = 1e-14;
+    constexpr double negligible_beta = 1e-14;
 
     /// λ closer than this part of them are one multiple eigenvalue.
     constexpr double width_of_clusters = 1e-7;
@@ -40,7 +40,7 @@ namespace Squeal
           T(size, size) = alpha;
           beta          = column_norms(w)[0];
           ++size;
-          if (size == std::min(n_lanczos_steps, map.n()) || !(beta > negligible * std::abs(alpha)))
+          if (size == std::min(n_lanczos_steps, map.n()) || !(beta > negligible_beta * std::abs(alpha)))
             break;
           T(size, size - 1) = T(size - 1, size) = beta;
           before                                = q;

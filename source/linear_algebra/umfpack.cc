@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    const Decision regular("smallest / largest pivot of a sparse LU factor", 1e-16);
+    const Decision sparse_regular("smallest / largest pivot of a sparse LU factor", 1e-16);
 
     class UmfpackFactorization : public Factorization
     {
@@ -37,7 +37,7 @@ namespace Squeal
         umfpack_di_free_symbolic(&symbolic);
 
         const bool singular = factorised == UMFPACK_WARNING_singular_matrix ||
-                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !regular.exceeded_by(info[UMFPACK_RCOND]));
+                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !sparse_regular.exceeded_by(info[UMFPACK_RCOND]));
         if (analysed != UMFPACK_OK || factorised != UMFPACK_OK || singular)
           umfpack_di_free_numeric(&numeric);
         if (singular)
