@@ -43,24 +43,13 @@ namespace Squeal
       else
         {
           low_rank.push_back(&term);
-          for (const bool transposed : {false, true})
-            {
-              const LowRankFactor *factor = &term.target(transposed);
-              auto known = std::find_if(factors.begin(), factors.end(), [factor](const Factor &f) { return f.factor == factor; });
-              if (known == factors.end())
-                known = factors.insert(known, {factor, 0, false, false});
-              (transposed ? known->in_left : known->in_right) = true;
-            }
+          for (const LowRankFactor *factor : {term.left.get(), term.right.get()})
+            if (number_of(*factor) == static_cast<int>(factors.size()))
+              {
+                factors.push_back({factor, n_factor_columns});
+                n_factor_columns += factor->rank();
+              }
         }
-    std::stable_sort(factors.begin(), factors.end(),
-                     [](const Factor &a, const Factor &b) { return a.in_right - a.in_left < b.in_right - b.in_left; });
-    int first = 0;
-    for (Factor &f : factors)
-      {
-        f.first = first;
-        first += f.factor->rank();
-        (!f.in_right ? n_left : !f.in_left ? n_right : n_shared) += f.factor->rank();
-      }
   }
 
   ProjectedResiduals::ProjectedResiduals(const CoupledSystem   &system,
@@ -87,15 +76,10 @@ namespace Squeal
 
   DenseMatrix ProjectedResiduals::factor_products(const MultiVector &X) const
   {
-    DenseMatrix result(n_left + n_shared + n_right, X.n_columns());
+    DenseMatrix result(n_factor_columns, X.n_columns());
     for (const Factor &f : factors)
       result.middleRows(f.first, f.factor->rank()) = f.factor->transpose_times(X);
     return result;
-  }
-
-  int ProjectedResiduals::column_of(const Factor &factor) const
-  {
-    return factor.first + (factor.in_right ? static_cast<int>(sparse.size()) * r : 0);
   }
 
   void ProjectedResiduals::clear()
@@ -196,7 +180,7 @@ namespace Squeal
       return sum;
     };
     const auto combined = [&](const DenseMatrix &X) {
-      DenseMatrix Y(result.n_left + result.n_shared + result.n_right, X.cols());
+      DenseMatrix Y(result.n_factor_columns, X.cols());
       for (const Factor &f : result.factors)
         Y.middleRows(f.first, f.factor->rank()) =
           part_of(f, [&](const Factor &g) -> DenseMatrix { return X.middleRows(g.first, g.factor->rank()); });
@@ -229,31 +213,91 @@ namespace Squeal
     return result;
   }
 
+  int ProjectedResiduals::number_of(const LowRankFactor &factor) const
+  {
+    return static_cast<int>(std::find_if(factors.begin(), factors.end(), [&factor](const Factor &f) { return f.factor == &factor; }) -
+                            factors.begin());
+  }
+
+  bool ProjectedResiduals::is_column_term(const Term &term) const
+  {
+    return term.weights.empty() && term.left->rank() > r;
+  }
+
+  void ProjectedResiduals::find_blocks() const
+  {
+    blocks.clear();
+    for (int s = 0; s < static_cast<int>(sparse.size()); ++s)
+      blocks.push_back({s, -1, nullptr, true, true, r});
+    for (const Term *term : low_rank)
+      if (const bool is_symmetric = term->left == term->right; is_column_term(*term))
+        {
+          blocks.push_back({-1, number_of(*term->left), term, is_symmetric, true, r});
+          if (!is_symmetric)
+            blocks.push_back({-1, number_of(*term->right), term, true, false, r});
+        }
+    for (int f = 0; f < static_cast<int>(factors.size()); ++f)
+      {
+        Block block{-1, f, nullptr, false, false, factors[f].factor->rank()};
+        for (const Term *term : low_rank)
+          if (!is_column_term(*term))
+            {
+              block.in_left  = block.in_left || &term->target(true) == factors[f].factor;
+              block.in_right = block.in_right || &term->target(false) == factors[f].factor;
+            }
+        if (block.in_left || block.in_right)
+          blocks.push_back(block);
+      }
+    std::stable_sort(blocks.begin(), blocks.end(),
+                     [](const Block &a, const Block &b) { return a.in_right - a.in_left < b.in_right - b.in_left; });
+    n_columns = n_in_left = n_left_only = 0;
+    for (Block &block : blocks)
+      {
+        block.first = n_columns;
+        n_columns += block.n;
+        n_in_left += block.in_left ? block.n : 0;
+        n_left_only += block.in_right ? 0 : block.n;
+      }
+  }
+
   void ProjectedResiduals::assemble() const
   {
-    const int n_sparse = static_cast<int>(sparse.size()) * r, size = n_sparse + n_left + n_shared + n_right;
+    find_blocks();
+    // Columns of W that belong to a factor F are F C
+    const auto gram_of = [&](const Factor &f, const Factor &g) {
+      return factor_gram.block(f.first, g.first, f.factor->rank(), g.factor->rank());
+    };
+    const auto times_coefficients = [&](const Block &block, const auto &rows) -> DenseMatrix {
+      return block.term != nullptr ? DenseMatrix(rows * motions.at(&block.term->source(!block.in_right))) : DenseMatrix(rows);
+    };
 
     // Wᵀ S⁻¹ W and Tᵀ W
-    DenseMatrix G = DenseMatrix::Zero(size, size), H(r, size);
-    for (const Factor &f : factors)
+    DenseMatrix G(n_columns, n_columns), H(r, n_columns);
+    for (const Block &b : blocks)
       {
-        const int column = column_of(f), rank = f.factor->rank();
-        for (const Factor &g : factors)
-          G.block(column_of(g), column, g.factor->rank(), rank) = factor_gram.block(g.first, f.first, g.factor->rank(), rank);
-        H.middleCols(column, rank) = motions.at(f.factor).transpose();
-      }
-    for (std::size_t k = 0; k < sparse.size(); ++k)
-      {
-        const int column = n_left + static_cast<int>(k) * r;
-        for (std::size_t l = 0; l < sparse.size(); ++l)
-          G.block(n_left + static_cast<int>(l) * r, column, r, r) = sparse[k].products[l];
-        for (const Factor &f : factors)
+        H.middleCols(b.first, b.n) =
+          b.sparse >= 0 ? sparse[b.sparse].projected : times_coefficients(b, motions.at(factors[b.factor].factor).transpose());
+        for (const Block &a : blocks)
           {
-            const auto part                               = sparse[k].factor_products.middleRows(f.first, f.factor->rank());
-            G.block(column_of(f), column, part.rows(), r) = part;
-            G.block(column, column_of(f), r, part.rows()) = part.transpose();
+            if (a.first > b.first)
+              break;
+            const auto product = [&]() -> DenseMatrix {
+              if (a.sparse >= 0 && b.sparse >= 0)
+                return sparse[b.sparse].products[a.sparse];
+              if (a.sparse >= 0 || b.sparse >= 0)
+                {
+                  const Block      &of_factor = a.sparse >= 0 ? b : a;
+                  const Factor     &f         = factors[of_factor.factor];
+                  const auto        rows      = sparse[std::max(a.sparse, b.sparse)].factor_products.middleRows(f.first, f.factor->rank());
+                  const DenseMatrix columns   = times_coefficients(of_factor, rows.transpose());
+                  return a.sparse >= 0 ? columns : DenseMatrix(columns.transpose());
+                }
+              const DenseMatrix columns = times_coefficients(b, gram_of(factors[a.factor], factors[b.factor]));
+              return times_coefficients(a, columns.transpose()).transpose();
+            };
+            G.block(a.first, b.first, a.n, b.n) = product();
+            G.block(b.first, a.first, b.n, a.n) = G.block(a.first, b.first, a.n, b.n).transpose().eval();
           }
-        H.middleCols(column, r) = sparse[k].projected;
       }
 
     // Every vector by its own energy: those of motions of light bodies may be many powers of ten beyond those of modes of the band
@@ -261,8 +305,8 @@ namespace Squeal
     const RealLU          lu    = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
     H                           = scale.asDiagonal() * H;
     G -= H.transpose() * lu.solve(H);
-    left_columns = G.leftCols(size - n_right);
-    right_block  = G.bottomRightCorner(size - n_left, size - n_left);
+    left_columns = G.leftCols(n_in_left);
+    right_block  = G.bottomRightCorner(n_columns - n_left_only, n_columns - n_left_only);
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
@@ -270,29 +314,36 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  transposed) const
   {
-    const int          first  = transposed ? 0 : n_left; // column of W that belongs to the first row
-    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), lambda.size());
+    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), vectors.cols());
     // θ λ^p of each mode
     const auto theta = [&](const Term &term) {
       return as_column(lambda).unaryExpr([&](const Complex &l) { return term.factor(l, values); }).eval();
     };
-
-    for (std::size_t s = 0; s < sparse.size(); ++s)
-      {
-        const Eigen::VectorXcd factor = (transposed ? sparse[s].sign : 1.) * theta(*sparse[s].term).array() - sparse[s].sigma;
-        result.middleRows(n_left - first + static_cast<int>(s) * r, r) += vectors * factor.asDiagonal();
-      }
     std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
-    for (const Term *term : low_rank)
+    const auto                                          motions_of_modes = [&](const LowRankFactor &factor) -> const ComplexDenseMatrix                                          &{
+      const auto [place, is_new] = moved.emplace(&factor, ComplexDenseMatrix());
+      if (is_new)
+        place->second = multiply(motions.at(&factor), vectors);
+      return place->second;
+    };
+
+    for (const Block &block : blocks)
       {
-        if (term->vanishes(values))
+        if (!(transposed ? block.in_left : block.in_right))
           continue;
-        const LowRankFactor &source = term->source(transposed), &target = term->target(transposed);
-        if (moved.count(&source) == 0)
-          moved[&source] = multiply(motions.at(&source), vectors);
-        const auto factor = std::find_if(factors.begin(), factors.end(), [&target](const Factor &f) { return f.factor == &target; });
-        result.middleRows(column_of(*factor) - first, target.rank()) +=
-          term->weighted(moved.at(&source), values) * theta(*term).asDiagonal();
+        auto rows = result.middleRows(block.first - (transposed ? 0 : n_left_only), block.n);
+        if (block.sparse >= 0)
+          {
+            const Sparse          &part   = sparse[block.sparse];
+            const Eigen::VectorXcd factor = (transposed ? part.sign : 1.) * theta(*part.term).array() - part.sigma;
+            rows                          = vectors * factor.asDiagonal();
+          }
+        else if (block.term != nullptr)
+          rows = vectors * theta(*block.term).asDiagonal();
+        else
+          for (const Term *term : low_rank)
+            if (&term->target(transposed) == factors[block.factor].factor && !is_column_term(*term) && !term->vanishes(values))
+              rows += term->weighted(motions_of_modes(term->source(transposed)), values) * theta(*term).asDiagonal();
       }
     return halves(result);
   }

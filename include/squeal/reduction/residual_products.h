@@ -22,10 +22,11 @@ namespace Squeal
    *
    *   Q(λ) T φ_r  = S T φ_r + W y,   Q(λ)ᵀ T ψ_r = S T ψ_r + W z,   S = K_c + s² M_c,
    *
-   * with short y, z. The columns of W are A T of the sparse terms, with the rows (θ λ^p − σ) φ_r of y, σ A being the part of
-   * the term in S, but those of which nothing is left; and of terms θ L diag(d) Rᵀ the factors: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with
-   * θ λ^p diag(d) LᵀT ψ_r of z. Reduced modes make residuals orthogonal to T, so that the
-   * part along S T is known to cancel that of W y along it, and
+   * with short y, z. The columns of W are A T of the terms θ A, with the rows (θ λ^p − σ) φ_r of y, σ A being the part of the term in S,
+   * but those of which nothing is left. Of terms θ L diag(d) Rᵀ they are the factors where the weights d are parameters or
+   * the factors have fewer columns: L with the rows θ λ^p diag(d) RᵀT φ_r of y, R with θ λ^p diag(d) LᵀT ψ_r of z; else they are
+   * L RᵀT for y and R LᵀT for z. Reduced modes make residuals orthogonal to T, so that the part along S T is known to cancel that of
+   * W y along it, and
    *
    *   Lᵀ S⁻¹ R = zᵀ (Wᵀ S⁻¹ W − Wᵀ T (TᵀST)⁻¹ TᵀW) y.
    *
@@ -94,24 +95,40 @@ namespace Squeal
     struct Factor
     {
       const LowRankFactor *factor;
-      int                  first = 0;         ///< among the columns of all factors
-      bool                 in_left, in_right; ///< whether left or right residuals have it
+      int                  first; ///< among the columns of all factors
     };
 
-    /// First column in W.
-    int column_of(const Factor &factor) const;
+    /// Columns of W with coefficients of their own.
+    struct Block
+    {
+      int         sparse;            ///< number of the sparse term, or -1
+      int         factor;            ///< number of the factor, or -1
+      const Term *term;              ///< of which they are L RᵀT, or R LᵀT in left residuals; null: they are the factor
+      bool        in_left, in_right; ///< whether left or right residuals have them
+      int         n;
+      int         first = 0; ///< in W
+    };
+
+    int number_of(const LowRankFactor &factor) const;
+
+    /// Whether W has A T of a term of low rank instead of its factors.
+    bool is_column_term(const Term &term) const;
+
+    void find_blocks() const;
 
     const CoupledSystem                         &system;
     const UpdatedInverse                        &inverse;
     double                                       shift = 0.;
     std::vector<Sparse>                          sparse;
     std::vector<const Term *>                    low_rank;
-    std::vector<Factor>                          factors; ///< those of left residuals only come first, those of right residuals only last
-    int                                          n_left = 0, n_shared = 0, n_right = 0; ///< columns of these three kinds
-    DenseMatrix                                  factor_gram;                           ///< Fᵀ S⁻¹ F of all factors
-    std::map<const LowRankFactor *, DenseMatrix> motions;                               ///< FᵀT
-    int                                          r = 0;                                 ///< size of the basis
-    DenseMatrix                                  pencil;                                ///< TᵀST
-    mutable DenseMatrix                          left_columns, right_block; ///< of the bracket: what left and right residuals need
+    std::vector<Factor>                          factors;
+    int                                          n_factor_columns = 0;
+    DenseMatrix                                  factor_gram;          ///< Fᵀ S⁻¹ F of all factors
+    std::map<const LowRankFactor *, DenseMatrix> motions;              ///< FᵀT
+    int                                          r = 0;                ///< size of the basis
+    DenseMatrix                                  pencil;               ///< TᵀST
+    mutable std::vector<Block>                   blocks;               ///< those of left residuals only first, of right ones only last
+    mutable int         n_columns = 0, n_in_left = 0, n_left_only = 0; ///< of W: all, of left residuals, of these only
+    mutable DenseMatrix left_columns, right_block;                     ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal
