@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Squeal
 {
@@ -15,6 +16,8 @@ namespace Squeal
     constexpr double remaining = 0.3;
     /// What coupling adds to the difference of two λ, over that difference, below which they do not interact.
     constexpr double interacting = 0.1;
+    /// Part of a step within which several approaches are looked at once.
+    constexpr double one_look = 0.2;
     /// Steps of a search that may halve less than the interval before it is halved.
     constexpr int patience = 2;
     /// Steps of a search that a prediction may miss before the interval is halved; each has two values.
@@ -133,7 +136,10 @@ namespace Squeal
     /// Where a negative function comes close to zero within a step, closer than at its ends.
     std::optional<double> peak_within(const TrackedModes &modes, const EventSearch &search)
     {
-      const int           k = search.interval;
+      const int    k    = search.interval;
+      const double ends = std::max(*search_value(modes, search, k), *search_value(modes, search, k + 1));
+      if (ends >= 0.)
+        return std::nullopt;
       std::vector<double> x, f;
       for (int point = k - 1; point <= k + 2; ++point)
         if (const auto y = search_value(modes, search, point))
@@ -145,8 +151,7 @@ namespace Squeal
             x.push_back(modes.mu(point));
             f.push_back(*y);
           }
-      const double ends = std::max(*search_value(modes, search, k), *search_value(modes, search, k + 1));
-      if (x.size() < 3 || ends >= 0.)
+      if (x.size() < 3)
         return std::nullopt;
 
       double                peak = remaining * ends;
@@ -173,10 +178,25 @@ namespace Squeal
       return result;
     }
 
+    /// The middle one of values that follow each other within a distance of the first.
+    std::vector<double> one_of_each_cluster(std::vector<double> values, const double distance)
+    {
+      std::sort(values.begin(), values.end());
+      std::vector<double> result;
+      for (auto first = values.begin(); first != values.end();)
+        {
+          const auto last = std::find_if(first, values.end(), [&](const double x) { return x - *first > distance; });
+          result.push_back(*(first + (last - first) / 2));
+          first = last;
+        }
+      return result;
+    }
+
     /**
      * Where something may have happened that neither end of a step shows: Re λ of a
      * decaying mode, or δ² of two modes at some distance, is about to reach zero
-     * according to the polynomial through the points around.
+     * according to the polynomial through the points around. Of several approaches about one place, of pins that are alike, one is
+     * looked at for all: where that is not enough, the next round asks again.
      */
     std::vector<double> approaches(const TrackedModes &modes, const int k)
     {
@@ -203,11 +223,26 @@ namespace Squeal
                   look({EventSearch::coalescence, k, p, q, true});
               }
         }
+      return one_of_each_cluster(std::move(result), one_look * modes.width(k));
+    }
+
+    Surroundings surroundings(const TrackedModes &modes, const int k)
+    {
+      Surroundings result;
+      for (int i = 0; i < 4; ++i)
+        {
+          const int  point                = k - 1 + i;
+          const bool is_there             = point >= 0 && point < modes.n_points();
+          result.friction_coefficients[i] = is_there ? modes.mu(point) : std::numeric_limits<double>::infinity();
+        }
+      for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
+        if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
+          result.modes.push_back({modes.mode(b, k - 1), modes.mode(b, k), modes.mode(b, k + 1), modes.mode(b, k + 2)});
       return result;
     }
   } // namespace
 
-  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict)
+  std::vector<double> refinement_requests(TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict)
   {
     const std::size_t left = std::max(0, modes.options.maximum_refinements - modes.n_refinements);
     if (left == 0)
@@ -226,9 +261,14 @@ namespace Squeal
         {
           if (!modes.intervals[k].links->resolved)
             wanted.push_back(0.5 * (modes.mu(k) + modes.mu(k + 1)));
-          else
-            for (const auto &suspicions : {interactions(modes, k), approaches(modes, k)})
-              wanted.insert(wanted.end(), suspicions.begin(), suspicions.end());
+          else if (Surroundings here = surroundings(modes, k); !(modes.intervals[k].quiet == here))
+            {
+              const std::size_t before = wanted.size();
+              for (const auto &suspicions : {interactions(modes, k), approaches(modes, k)})
+                wanted.insert(wanted.end(), suspicions.begin(), suspicions.end());
+              if (wanted.size() == before)
+                modes.intervals[k].quiet = std::move(here);
+            }
         }
     std::sort(wanted.begin(), wanted.end());
 
