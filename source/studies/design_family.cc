@@ -21,7 +21,7 @@ namespace Squeal
 
     /// Squares of principal axes below this times the tolerance are left out of the basis of a design: at first, and for points
     /// that missed the tolerance.
-    constexpr double first_compression = 3., later_compression = 0.3;
+    constexpr double first_compression = 10., later_compression = 0.3;
 
     /// Growths for one point, beyond which a design is taken for too far from the others.
     constexpr int most_growths_for_point = 6;
