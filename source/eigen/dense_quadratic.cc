@@ -15,6 +15,8 @@ namespace Squeal
 
     /// Corrections larger than this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the value is defective.
     constexpr double largest_correction = 1e-6;
+    /// Part of λ that is imaginary, below which nothing takes it for oscillating.
+    constexpr double surely_real = 1e-13;
     /// λ oscillates; below, it is real.
     const Decision oscillating_dense("Im / modulus of an eigenvalue of a dense quadratic problem", 1e-12);
 
@@ -78,10 +80,16 @@ namespace Squeal
         companion.topRightCorner(r, r).setIdentity();
         companion.bottomRightCorner(r, r) = -factors.solve(*damping) / unit;
       }
-    const DenseEigenpairs pairs = eigenpairs(companion, true);
+    const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
+    // Vectors of hardly more than what is sorted out below
+    const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
+      const Complex lambda = lambda_of(of_companion);
+      return std::abs(lambda.imag()) <= largest_circular_frequency &&
+             (real_vectors == RealVectors::wanted || std::abs(lambda.imag()) > surely_real * std::abs(lambda));
+    });
 
     // ------------------------------------------------- values wanted, in order
-    const auto       value = [&](const int j) { return unit * (linear ? upper_root(pairs.values[j]) : pairs.values[j]); };
+    const auto       value = [&](const int j) { return lambda_of(pairs.values[j]); };
     std::vector<int> wanted;
     for (int j = 0; j < companion.rows(); ++j)
       {
@@ -107,13 +115,16 @@ namespace Squeal
     const int k = static_cast<int>(wanted.size());
     modes.right = ComplexDenseMatrix(r, k);
     // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
-    const ComplexDenseMatrix left_parts = pairs.left.bottomRows(r)(Eigen::all, wanted).conjugate();
+    std::vector<int> columns;
+    for (const int j : wanted)
+      columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
+    const ComplexDenseMatrix left_parts = pairs.left.bottomRows(r)(Eigen::all, columns).conjugate();
     modes.left                          = from_halves(factors.solve_transposed(halves(left_parts)));
     for (int j = 0; j < k; ++j)
       {
         modes.values.push_back(value(wanted[j]));
         const bool lower   = std::abs(modes.values[j]) > unit;
-        modes.right.col(j) = pairs.right.col(wanted[j]).segment(lower ? last : 0, r);
+        modes.right.col(j) = pairs.right.col(columns[j]).segment(lower ? last : 0, r);
         normalize(modes.right.col(j));
         normalize(modes.left.col(j));
       }

@@ -18,12 +18,12 @@ namespace Squeal
     }
 
     /// LAPACK stores the vector of a conjugate pair as two real columns, real part first.
-    ComplexDenseMatrix unpacked(const DenseMatrix &packed, const std::vector<double> &imaginary)
+    ComplexDenseMatrix unpacked(const DenseMatrix &packed, const std::vector<std::complex<double>> &values)
     {
       const std::complex<double> i(0., 1.);
       ComplexDenseMatrix         vectors = packed.cast<std::complex<double>>();
       for (Eigen::Index j = 0; j + 1 < packed.cols(); ++j)
-        if (imaginary[j] > 0.)
+        if (values[j].imag() > 0.)
           {
             vectors.col(j)     = packed.col(j) + i * packed.col(j + 1);
             vectors.col(j + 1) = vectors.col(j).conjugate();
@@ -63,23 +63,55 @@ namespace Squeal
     return result;
   }
 
-  DenseEigenpairs eigenpairs(DenseMatrix A, const bool left_vectors)
+  DenseEigenpairs eigenpairs(DenseMatrix A, const std::function<bool(const std::complex<double> &)> &is_wanted)
   {
-    const int n = A.rows();
-    if (n == 0)
-      return {};
-    std::vector<double> real(n), imaginary(n);
-    DenseMatrix         right(n, n), left(left_vectors ? n : 0, left_vectors ? n : 0);
-    check_lapack(LAPACKE_dgeev(LAPACK_COL_MAJOR, left_vectors ? 'V' : 'N', 'V', n, A.data(), n, real.data(), imaginary.data(), left.data(),
-                               n, right.data(), n),
-                 "dgeev");
-
+    const int       n = A.rows();
     DenseEigenpairs pairs;
-    std::transform(real.begin(), real.end(), imaginary.begin(), std::back_inserter(pairs.values),
-                   [](const double re, const double im) { return std::complex<double>(re, im); });
-    pairs.right = unpacked(right, imaginary);
-    if (left_vectors)
-      pairs.left = unpacked(left, imaginary);
+    if (n == 0)
+      return pairs;
+
+    // A = D Q T Qᵀ D⁻¹ by dgeev's steps, but vectors of T only where they are wanted
+    std::vector<double> scale(n), tau(std::max(n - 1, 1)), real(n), imaginary(n);
+    lapack_int          low = 0, high = 0;
+    check_lapack(LAPACKE_dgebal(LAPACK_COL_MAJOR, 'B', n, A.data(), n, &low, &high, scale.data()), "dgebal");
+    check_lapack(LAPACKE_dgehrd(LAPACK_COL_MAJOR, n, low, high, A.data(), n, tau.data()), "dgehrd");
+    DenseMatrix Q = A;
+    check_lapack(LAPACKE_dorghr(LAPACK_COL_MAJOR, n, low, high, Q.data(), n, tau.data()), "dorghr");
+    check_lapack(LAPACKE_dhseqr(LAPACK_COL_MAJOR, 'S', 'V', n, low, high, A.data(), n, real.data(), imaginary.data(), Q.data(), n),
+                 "dhseqr");
+    for (int j = 0; j < n; ++j)
+      pairs.values.emplace_back(real[j], imaginary[j]);
+
+    std::vector<lapack_logical>       selected(n, 0);
+    std::vector<std::complex<double>> of_vectors;
+    for (int j = 0; j < n; ++j)
+      {
+        const int last = j + (imaginary[j] > 0. ? 1 : 0); // of a conjugate pair
+        if (is_wanted(pairs.values[j]) || is_wanted(pairs.values[last]))
+          {
+            selected[j] = 1;
+            for (int i = j; i <= last; ++i)
+              {
+                pairs.numbers.push_back(i);
+                of_vectors.push_back(pairs.values[i]);
+              }
+          }
+        j = last;
+      }
+    const int  k = static_cast<int>(of_vectors.size());
+    lapack_int m = 0;
+    if (k == 0)
+      return pairs;
+    DenseMatrix right = DenseMatrix::Zero(n, k), left = right; // LAPACKE looks whether there are numbers in them
+    check_lapack(LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'B', 'S', selected.data(), n, A.data(), n, left.data(), n, right.data(), n, k, &m),
+                 "dtrevc");
+    const auto of_matrix = [&](const DenseMatrix &of_triangle, const char side) {
+      DenseMatrix vectors = Q * of_triangle;
+      check_lapack(LAPACKE_dgebak(LAPACK_COL_MAJOR, 'B', side, n, low, high, scale.data(), k, vectors.data(), n), "dgebak");
+      return ComplexDenseMatrix(unpacked(vectors, of_vectors).colwise().normalized());
+    };
+    pairs.right = of_matrix(right, 'R');
+    pairs.left  = of_matrix(left, 'L');
     return pairs;
   }
 } // namespace Squeal

@@ -44,7 +44,7 @@ namespace
     DenseMatrix A                 = DenseMatrix::Zero(4, 4);
     A.topRightCorner(2, 2)        = power(0.5);
     A.bottomLeftCorner(2, 2)      = -K_mu * power(-0.5);
-    const DenseEigenpairs pairs   = eigenpairs(A, true);
+    const DenseEigenpairs pairs   = eigenpairs(A);
     double                largest = 0.;
     for (int j = 0; j < 4; ++j)
       largest =

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 using namespace Squeal;
 
@@ -88,7 +90,7 @@ TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
   A(1, 2)       = -3.;
   A(2, 1)       = 3.;
   A(0, 1) = A(2, 0)           = 0.5;
-  const DenseEigenpairs pairs = eigenpairs(A, true);
+  const DenseEigenpairs pairs = eigenpairs(A);
 
   int n_complex = 0;
   for (int j = 0; j < 3; ++j)
@@ -98,6 +100,38 @@ TEST(DenseMatrices, EigenpairsOfANonsymmetricMatrix)
       EXPECT_LT((pairs.left.col(j).adjoint() * A - pairs.values[j] * pairs.left.col(j).adjoint()).norm(), 1e-14);
     }
   EXPECT_EQ(n_complex, 2);
+}
+
+TEST(DenseMatrices, VectorsOfTheWantedEigenvaluesOnly)
+{
+  // Badly scaled, so that balancing has something to do
+  DenseMatrix A = DenseMatrix::Random(15, 15);
+  for (int i = 0; i < 15; ++i)
+    A.row(i) *= std::pow(10., i % 4), A.col(i) /= std::pow(10., i % 4);
+  const auto            is_wanted = [](const std::complex<double> &l) { return l.imag() > 0. && l.real() > -0.5; };
+  const DenseEigenpairs pairs     = eigenpairs(A, is_wanted);
+  ASSERT_EQ(pairs.values.size(), 15u);
+  EXPECT_NEAR(std::accumulate(pairs.values.begin(), pairs.values.end(), std::complex<double>()).real(), A.trace(), 1e-12);
+  std::vector<int> expected;
+  for (int j = 0; j < 15; ++j)
+    if (is_wanted(pairs.values[j]) || is_wanted(std::conj(pairs.values[j])))
+      expected.push_back(j);
+  EXPECT_EQ(pairs.numbers, expected);
+  ASSERT_GT(expected.size(), 2u);
+  ASSERT_LT(expected.size(), 15u);
+  ASSERT_EQ(pairs.right.cols(), static_cast<int>(expected.size()));
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    {
+      const auto x = pairs.right.col(i), y = pairs.left.col(i);
+      const auto value = pairs.values[expected[i]];
+      EXPECT_NEAR(x.norm(), 1., 1e-14);
+      EXPECT_NEAR(y.norm(), 1., 1e-14);
+      EXPECT_LT((A * x - value * x).norm(), 1e-13 * A.norm());
+      EXPECT_LT((y.adjoint() * A - value * y.adjoint()).norm(), 1e-13 * A.norm());
+    }
+  const DenseEigenpairs none = eigenpairs(A, [](const std::complex<double> &) { return false; });
+  EXPECT_EQ(none.values.size(), 15u);
+  EXPECT_EQ(none.right.cols(), 0);
 }
 
 TEST(DenseMatrices, SingularValuesAndKernel)

@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/dense.h>
 
 #include <complex>
+#include <functional>
 #include <vector>
 
 namespace Squeal
@@ -29,14 +30,16 @@ namespace Squeal
   SingularValues singular_values(DenseMatrix A);
 
   /**
-   * Eigenvalues of a real square matrix with right and, where asked, left
-   * eigenvectors (LAPACK's dgeev: left vectors satisfy yᴴ A = λ yᴴ).
+   * Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one of those that are wanted: A x = λ x,
+   * yᴴ A = λ yᴴ. With a value goes its conjugate.
    */
   struct DenseEigenpairs
   {
-    std::vector<std::complex<double>> values;
-    ComplexDenseMatrix                right; ///< one column per value
-    ComplexDenseMatrix                left;  ///< empty unless asked for
+    std::vector<std::complex<double>> values;      ///< all of them
+    std::vector<int>                  numbers;     ///< of the values with vectors, ascending
+    ComplexDenseMatrix                right, left; ///< one column for each of these
   };
-  DenseEigenpairs eigenpairs(DenseMatrix A, bool left_vectors = false);
+  DenseEigenpairs eigenpairs(
+    DenseMatrix                                              A,
+    const std::function<bool(const std::complex<double> &)> &is_wanted = [](const std::complex<double> &) { return true; });
 } // namespace Squeal
