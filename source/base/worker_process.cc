@@ -8,8 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 
 extern char **environ;
@@ -26,8 +28,14 @@ namespace Squeal
                       "check permissions, free space, and limits on processes and memory");
     }
 
-    /// The environment without what tells a process of the MPI job that it belongs to: the other one is none of them.
-    std::vector<char *> environment_without_mpi()
+    /// Variables with which OpenBLAS lets users choose its threads.
+    constexpr std::array<const char *, 2> threads_of_blas = {{"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}};
+
+    /**
+     * The environment without what tells a process of the MPI job that it belongs to: the other one is none of them. @p threads is the
+     * variable that limits threads where the user does not.
+     */
+    std::vector<char *> environment_of_worker(std::string &threads)
     {
       std::vector<char *> result;
       for (char **variable = environ; *variable != nullptr; ++variable)
@@ -36,6 +44,8 @@ namespace Squeal
           if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0 && text.rfind("PMI_", 0) != 0)
             result.push_back(*variable);
         }
+      if (std::none_of(threads_of_blas.begin(), threads_of_blas.end(), [](const char *name) { return std::getenv(name) != nullptr; }))
+        result.push_back(threads.data());
       result.push_back(nullptr);
       return result;
     }
@@ -57,14 +67,15 @@ namespace Squeal
     return std::max(1, CPU_COUNT(&cores));
   }
 
-  WorkerProcess::WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log)
+  WorkerProcess::WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log, const unsigned int n_threads)
   {
     // The copy of this process may do little before it becomes another program: all it needs is made ready here
     std::vector<char *> words = {const_cast<char *>("squeal")};
     for (const std::string &argument : arguments)
       words.push_back(const_cast<char *>(argument.c_str()));
     words.push_back(nullptr);
-    const std::vector<char *> environment = environment_without_mpi();
+    std::string               threads     = std::string(threads_of_blas.front()) + "=" + std::to_string(n_threads);
+    const std::vector<char *> environment = environment_of_worker(threads);
     const int                 printed     = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     const int                 no_input    = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
     if (printed < 0 || no_input < 0)

@@ -158,7 +158,11 @@ namespace Squeal
       arguments.push_back("--designs=" + list_of(designs));
       arguments.push_back("--output=" + folder.string());
       const fs::path log = folder.string() + ".log";
-      return Worker{designs, left, log, std::make_unique<WorkerProcess>(arguments, log), {}};
+      return Worker{designs,
+                    left,
+                    log,
+                    std::make_unique<WorkerProcess>(arguments, log, std::max(1u, n_usable_cores() / n_side_by_side)),
+                    {}};
     };
     const auto report_found = [&](Worker &worker) {
       const auto is_found = [&](const int design) {

@@ -52,13 +52,13 @@ TEST(DISABLED_Worker, Sleeps)
 
 TEST(WorkerProcess, SaysHowItEnded)
 {
-  WorkerProcess success({"--gtest_list_tests"}, log_file());
+  WorkerProcess success({"--gtest_list_tests"}, log_file(), 1);
   EXPECT_EQ(end_of(success), "");
   std::ifstream     stream(log_file());
   const std::string printed{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_NE(printed.find("WorkerProcess."), std::string::npos);
 
-  WorkerProcess crash(only("DISABLED_Worker.Crashes"), log_file());
+  WorkerProcess crash(only("DISABLED_Worker.Crashes"), log_file(), 1);
   EXPECT_EQ(end_of(crash), "killed by SIGKILL");
   EXPECT_EQ(crash.end(), "killed by SIGKILL");
   fs::remove(log_file());
@@ -68,7 +68,7 @@ TEST(WorkerProcess, EndsWithItsOwner)
 {
   const auto start = std::chrono::steady_clock::now();
   {
-    WorkerProcess process(only("DISABLED_Worker.Sleeps"), log_file());
+    WorkerProcess process(only("DISABLED_Worker.Sleeps"), log_file(), 1);
     EXPECT_FALSE(process.end());
   }
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::minutes(5));
@@ -78,7 +78,7 @@ TEST(WorkerProcess, EndsWithItsOwner)
 TEST(WorkerProcess, NeedsItsLog)
 {
   const std::vector<std::string> none;
-  EXPECT_THROW(WorkerProcess(none, "/nonexistent/folder/log"), FileError);
+  EXPECT_THROW(WorkerProcess(none, "/nonexistent/folder/log", 1), FileError);
 }
 
 TEST(UsableCores, ThereIsOneAtLeast)

@@ -24,10 +24,11 @@ namespace Squeal
      *
      * @param arguments behind the name of the program
      * @param log       file that takes what it prints
+     * @param n_threads of its linear algebra, where the user has not chosen their number: more threads than cores wait for each other
      *
      * Throws FileError if it cannot be started.
      */
-    WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log);
+    WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log, unsigned int n_threads);
 
     /// Tells it to end, and waits until it has.
     ~WorkerProcess();
