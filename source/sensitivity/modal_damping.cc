@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/sensitivity/modal_damping.h>
 

@@ -105,7 +105,7 @@ namespace Squeal
     /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
     constexpr std::size_t largest_batch = 25;
 
-    /// Who says what becomes of designs.
+    /// What becomes of each design.
     struct Schedule
     {
       std::vector<std::vector<int>> batches; ///< designs that one process solves
