@@ -113,7 +113,9 @@ namespace Squeal
 
     // ------------------------------------------------- vectors
     const int k = static_cast<int>(wanted.size());
-    modes.right = ComplexDenseMatrix(r, k);
+    modes.right = modes.left = ComplexDenseMatrix(r, k);
+    if (k == 0)
+      return modes;
     // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
     std::vector<int> columns;
     for (const int j : wanted)
