@@ -2,9 +2,8 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/estimates/residual_iteration.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/studies/design_family.h>
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -43,12 +42,6 @@ namespace Squeal
         if (std::find(result.begin(), result.end(), i) == result.end())
           result.push_back(i);
       return result;
-    }
-
-    DenseMatrix orthonormal_columns(const DenseMatrix &X)
-    {
-      const Eigen::HouseholderQR<DenseMatrix> qr(X * X.colwise().norm().cwiseInverse().asDiagonal());
-      return qr.householderQ() * DenseMatrix::Identity(X.rows(), X.cols());
     }
 
     std::vector<ParameterValues> values_of(const std::vector<Parameters> &designs, const Model &model)

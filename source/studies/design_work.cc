@@ -212,8 +212,10 @@ namespace Squeal
         return dealii::Utilities::unpack<ReferenceModes>(packed, false);
       }
     run.progress.begin("Reference modes");
-    Progress                silent;
-    Run                     part(run.parameters, run, silent);
+    Progress   silent;
+    Parameters parameters             = run.parameters;
+    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // which asks for no attachment modes in advance
+    Run                     part(parameters, run, silent);
     const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
     ReferenceModes          result = reference_modes(modes, run.parameters.materials);
     run.progress.finish(text(result.names.size(), " modes of the scene as it is, by which those of designs are named"));

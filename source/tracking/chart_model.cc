@@ -1,10 +1,9 @@
 #include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/chart_model.h>
 #include <squeal/tracking/mode_links.h>
 
 #include <boost/math/tools/roots.hpp>
-
-#include <Eigen/QR>
 
 #include <algorithm>
 #include <cmath>
@@ -23,12 +22,10 @@ namespace Squeal
     DenseMatrix principal_columns(const DenseMatrix &X)
     {
       const auto [squares, axes] = symmetric_eigenpairs(X.transpose() * X); // ascending
-      const double      limit    = least_axis * least_axis * squares.back();
-      const auto        first    = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
-      const DenseMatrix Y        = X * axes.rightCols(static_cast<Eigen::Index>(squares.size()) - first);
+      const double limit         = least_axis * least_axis * squares.back();
+      const auto   first         = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
       // The small ones have lost their orthogonality
-      return Eigen::HouseholderQR<DenseMatrix>(Y * Y.colwise().norm().cwiseInverse().asDiagonal()).householderQ() *
-             DenseMatrix::Identity(Y.rows(), Y.cols());
+      return orthonormal_columns(X * axes.rightCols(static_cast<Eigen::Index>(squares.size()) - first));
     }
   } // namespace
 

@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/dense.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 
 #include <optional>
 
@@ -35,6 +36,13 @@ namespace Squeal
         basis.R = R * basis.R;
       }
     return basis;
+  }
+
+  /// Orthonormal basis of the span of the columns of X, none of them zero and as independent as they may be, by Householder's reflections.
+  inline DenseMatrix orthonormal_columns(const DenseMatrix &X)
+  {
+    const Eigen::HouseholderQR<DenseMatrix> qr(X * X.colwise().norm().cwiseInverse().asDiagonal());
+    return qr.householderQ() * DenseMatrix::Identity(X.rows(), X.cols());
   }
 
   /**
