@@ -134,7 +134,7 @@ def about_mode(row):
              f"{digits(number(row[FREQUENCY_CHANGE]))} Hz, {digits(number(row['growth rate per 1 % [1/s]']))} 1/s"]
     if row["derivative of"] != "lambda":
         parts.append("of the " + row["derivative of"])
-    return "<br>".join(parts + ([row["remark"]] if row["remark"] else []))
+    return "<br>".join(parts)
 
 
 def value_text(row):
@@ -166,7 +166,7 @@ def about_threshold(row):
     share = number(row[MU_CHANGE]) / number(row["mu [-]"])
     return "<br>".join([f"<b>{row['parameter']}</b> = {value_text(row)}",
                         f"one per cent more: μ changes by {digits(number(row[MU_CHANGE]))}, {100 * share:.3g} % of it",
-                        "from the " + row["derivative of"]] + ([row["remark"]] if row["remark"] else []))
+                        "from the " + row["derivative of"]])
 
 
 def notes_sections(results):
@@ -188,8 +188,6 @@ def notes_sections(results):
                 notes.append(f"{threshold_text(rows[0])} has no derivative: {rows[0]['remark']}.")
             elif error > ROUGH:
                 notes.append(f"{threshold_text(rows[0])}: estimated errors reach {100 * error:.2g} % of the largest derivative.")
-    remarks = {row["remark"] for rows in modes for row in rows if row["remark"]}
-    notes += [f"Rows with the remark “{remark}” leave out how that changes." for remark in sorted(remarks)]
     if all(rows[0]["derivative of"] == "lambda" for rows in modes):
         notes.insert(0, "No mode here is close to coalescing with another one: all derivatives of modes are those of simple eigenvalues.")
     return [{"id": "sensitivity_notes", "title": "Pairs near exceptional points, and limits", "notes": notes,

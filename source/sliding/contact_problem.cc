@@ -50,10 +50,17 @@ namespace Squeal
         balance_sizes           = problem.balance.cwiseAbs().rowwise().maxCoeff().unaryExpr(one_for_zero);
       }
 
-      /// Throws SolverError if the active set leaves the reactions undetermined.
-      Iterate solve(std::vector<bool> closed) const
+      /**
+       * Reactions, zero at open nodes, and motions below them, (n_c + n_z) × k, with which the closed nodes have no gap and the motions balance.
+       *
+       * @param initial_gap n_c × k
+       * @param forces      n_z × k
+       *
+       * Throws SolverError if the active set leaves the reactions undetermined.
+       */
+      DenseMatrix reactions_and_motions(const std::vector<bool> &closed, const DenseMatrix &initial_gap, const DenseMatrix &forces) const
       {
-        const int        n_z = problem.forces.size();
+        const int        n_z = problem.forces.size(), k = initial_gap.cols();
         std::vector<int> nodes;
         for (int c = 0; c < G.rows(); ++c)
           if (closed[c])
@@ -61,22 +68,36 @@ namespace Squeal
         const int n = nodes.size();
 
         // [G_CC/unit  B_C; L_C  0] [r; z/unit] = [−g_0/unit; f], columns of B and rows of L scaled to entries of 1
-        DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, 1);
+        DenseMatrix A = DenseMatrix::Zero(n + n_z, n + n_z), b(n + n_z, k);
         A << G(nodes, nodes) / unit, problem.motions(nodes, Eigen::all) * motion_sizes.cwiseInverse().asDiagonal(),
           balance_sizes.cwiseInverse().asDiagonal() * problem.balance(Eigen::all, nodes), DenseMatrix::Zero(n_z, n_z);
-        b << -as_column(problem.initial_gap)(nodes) / unit, as_column(problem.forces).cwiseQuotient(balance_sizes);
-        for (const int k : problem.held)
-          A(n + k, n + k) = 1.;
+        b << -initial_gap(nodes, Eigen::all) / unit, (forces.array().colwise() / balance_sizes.array()).matrix();
+        for (const int held : problem.held)
+          {
+            A(n + held, n + held) = 1.;
+            b.row(n + held).setZero();
+          }
         const RealLU lu = regular_lu(A, "steady sliding, equations of the closed contact nodes");
         DenseMatrix  x  = lu.solve(b);
         // One step of refinement: the reactions are to balance the load to rounding.
         x += lu.solve(b - A * x);
 
-        const Eigen::VectorXd z = unit * x.bottomRows(n_z).cwiseQuotient(motion_sizes);
-        Eigen::VectorXd       r = Eigen::VectorXd::Zero(G.rows());
-        r(nodes)                = x.topRows(n);
-        Eigen::VectorXd g       = as_column(problem.initial_gap) + problem.motions * z + G * r;
-        g(nodes).setZero();
+        DenseMatrix result        = DenseMatrix::Zero(G.rows() + n_z, k);
+        result(nodes, Eigen::all) = x.topRows(n);
+        result.bottomRows(n_z)    = unit * (x.bottomRows(n_z).array().colwise() / motion_sizes.array()).matrix();
+        return result;
+      }
+
+      /// Throws SolverError if the active set leaves the reactions undetermined.
+      Iterate solve(std::vector<bool> closed) const
+      {
+        const DenseMatrix     x = reactions_and_motions(closed, as_column(problem.initial_gap), as_column(problem.forces));
+        Eigen::VectorXd       r = x.col(0).head(G.rows());
+        const Eigen::VectorXd z = x.col(0).tail(x.rows() - G.rows());
+        Eigen::VectorXd       g = as_column(problem.initial_gap) + problem.motions * z + G * r;
+        for (int c = 0; c < G.rows(); ++c)
+          if (closed[c])
+            g[c] = 0.;
         const double largest_reaction = max_norm(r), largest_gap = std::max(max_norm(g), unit * largest_reaction);
         Iterate      result{{}, {}, 0., 0.};
         for (int c = 0; c < G.rows(); ++c)
@@ -232,6 +253,16 @@ namespace Squeal
                        best->pull, " N of tension and ", best->overlap, " m of overlap") :
                   "with all nodes closed, the reactions are not determined"),
       "steady sliding", "lower the friction coefficient or the gaps, or set Steady sliding/Contact state = equal load");
+  }
+
+  DenseMatrix reaction_rates(const ContactProblem    &problem,
+                             const std::vector<bool> &closed,
+                             const DenseMatrix       &gap_rates,
+                             const DenseMatrix       &force_rates)
+  {
+    return ActiveSetSolver(problem, problem.friction_coefficient)
+      .reactions_and_motions(closed, gap_rates, force_rates)
+      .topRows(gap_rates.rows());
   }
 
   ContactUniqueness contact_uniqueness(const ContactProblem &problem, const ContactSolution &solution, const unsigned int n_searches)

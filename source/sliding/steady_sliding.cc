@@ -39,23 +39,6 @@ namespace Squeal
       return {node.sliding.dot(node.position - centre), node.axis_distance() - std::hypot(centre[0], centre[1])};
     }
 
-    /// Gap of each node along the axis before the backplates move [m].
-    Eigen::VectorXd axial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters)
-    {
-      std::vector<PinGap> of_pin(model.component_names().size(), PinGap{"", 0.});
-      for (const PinGap &gap : parameters.gaps)
-        of_pin[pin_number(model.component_names(), gap.pin, "Steady sliding/Gaps")] = gap;
-      const auto      centres = face_centres(model, interface);
-      Eigen::VectorXd result(interface.size());
-      for (std::size_t c = 0; c < interface.size(); ++c)
-        {
-          const PinGap &gap            = of_pin[interface[c].pin];
-          const auto [along, outwards] = offsets(interface[c], centres[interface[c].pin]);
-          result[c]                    = gap.gap + gap.sliding_taper * along + gap.radial_taper * outwards;
-        }
-      return result;
-    }
-
     /// Force on the backplate along the axis for a unit reaction at a node with friction [-].
     double axial_force(const ContactNode &node, const double mu)
     {
@@ -147,6 +130,25 @@ namespace Squeal
       return problem;
     }
 
+    /// The problem with what it was made of.
+    struct CondensedSliding
+    {
+      Backplates                 plates;
+      Eigen::VectorXd            gaps;    ///< along the axis [m]
+      std::optional<MultiVector> motions; ///< of the disc
+      ContactProblem             problem;
+    };
+
+    CondensedSliding condensed(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters)
+    {
+      const auto &[model, interface, contact, system, response, Psi_n, Psi_t] = sliding;
+      const double          mu                                                = operation.friction_coefficient;
+      const Backplates      plates                                            = backplates(model, interface, operation, parameters);
+      const Eigen::VectorXd gaps                                              = axial_gaps(model, interface, parameters);
+      const auto            motions                                           = balanced_disc_motions(model, contact, system, response, mu);
+      return {plates, gaps, motions, contact_problem(sliding, plates, gaps, motions, parameters.displacement, mu)};
+    }
+
     /// u with the travel of the backplates of the pins.
     MultiVector with_backplates(const SlidingModel &sliding, MultiVector u, const std::vector<double> &approach)
     {
@@ -211,6 +213,22 @@ namespace Squeal
     }
   } // namespace
 
+  Eigen::VectorXd axial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters)
+  {
+    std::vector<PinGap> of_pin(model.component_names().size(), PinGap{"", 0.});
+    for (const PinGap &gap : parameters.gaps)
+      of_pin[pin_number(model.component_names(), gap.pin, "Steady sliding/Gaps")] = gap;
+    const auto      centres = face_centres(model, interface);
+    Eigen::VectorXd result(interface.size());
+    for (std::size_t c = 0; c < interface.size(); ++c)
+      {
+        const PinGap &gap            = of_pin[interface[c].pin];
+        const auto [along, outwards] = offsets(interface[c], centres[interface[c].pin]);
+        result[c]                    = gap.gap + gap.sliding_taper * along + gap.radial_taper * outwards;
+      }
+    return result;
+  }
+
   void check_sliding(const Model               &model,
                      const ContactInterface    &interface,
                      const OperationParameters &operation,
@@ -262,12 +280,9 @@ namespace Squeal
   {
     const auto &[model, interface, contact, system, response, Psi_n, Psi_t] = sliding;
     check_sliding(model, interface, operation, parameters);
-    const double          mu       = operation.friction_coefficient;
-    const Backplates      plates   = backplates(model, interface, operation, parameters);
-    const Eigen::VectorXd gaps     = axial_gaps(model, interface, parameters);
-    const auto            motions  = balanced_disc_motions(model, contact, system, response, mu);
-    const ContactProblem  problem  = contact_problem(sliding, plates, gaps, motions, parameters.displacement, mu);
-    const ContactSolution solution = solve_contact(problem);
+    const double mu                             = operation.friction_coefficient;
+    const auto [plates, gaps, motions, problem] = condensed(sliding, operation, parameters);
+    const ContactSolution solution              = solve_contact(problem);
 
     SlidingState state;
     state.reactions  = solution.reactions;
@@ -288,6 +303,23 @@ namespace Squeal
     state.total_displacement = std::make_shared<MultiVector>(with_backplates(sliding, u, state.approach));
     state.certificate        = certificate(sliding, plates, gaps, state, mu);
     return state;
+  }
+
+  DenseMatrix reaction_rates(const SlidingModel        &sliding,
+                             const OperationParameters &operation,
+                             const SlidingParameters   &parameters,
+                             const SlidingState        &state,
+                             const MultiVector         &force_rates,
+                             const DenseMatrix         &gap_rates)
+  {
+    const CondensedSliding scene    = condensed(sliding, operation, parameters);
+    const int              n_plates = scene.problem.forces.size() - (scene.motions ? scene.motions->n_columns() : 0);
+    DenseMatrix            gaps = gram(sliding.normal, force_rates), forces = DenseMatrix::Zero(scene.problem.forces.size(), gaps.cols());
+    for (Eigen::Index c = 0; c < gaps.rows(); ++c)
+      gaps.row(c) -= std::abs(sliding.interface[c].normal[2]) * gap_rates.row(c);
+    if (scene.motions)
+      forces.bottomRows(forces.rows() - n_plates) = gram(*scene.motions, force_rates);
+    return reaction_rates(scene.problem, state.closed, gaps, forces);
   }
 
   std::vector<PinContact> pin_contacts(const Model               &model,

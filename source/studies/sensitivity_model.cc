@@ -1,5 +1,7 @@
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/sliding/steady_sliding.h>
 #include <squeal/studies/sensitivity_model.h>
 
 #include <algorithm>
@@ -14,6 +16,37 @@ namespace Squeal
 
     /// Least friction coefficient, and slope [s/m], that steps are related to.
     constexpr double least_of_operation = 1e-2;
+
+    /**
+     * f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. A disc that only its drive keeps from turning has the moment of
+     * friction on its inertia, which changes as well: but torsion of a body of revolution moves no contact node along its normal.
+     */
+    MultiVector force_rates(const SlidingModel                      &sliding,
+                            const SlidingState                      &state,
+                            const double                             mu,
+                            const std::vector<SensitivityParameter> &parameters,
+                            const std::vector<BodyRates>            &rates)
+    {
+      const ContactOperators &contact = sliding.contact;
+      const MultiVector      &u       = *state.displacement;
+      const MultiVector       r       = distribute(as_column(state.reactions), contact.normal->rows());
+
+      MultiVector result(u.map(), static_cast<int>(parameters.size()));
+      for (std::size_t p = 0; p < parameters.size(); ++p)
+        {
+          const SensitivityParameter &parameter = parameters[p];
+          MultiVector                 f         = view(result, static_cast<int>(p), 1);
+          for (const auto &[factor, matrix] : rates[p].stiffness)
+            f += -factor * (*matrix * u);
+          if (parameter.contact)
+            {
+              const ContactMotion &motion = *parameter.contact;
+              f += mu / motion.step *
+                   (transpose_times(*motion.operators_after.tangential, r) - transpose_times(*motion.operators_before.tangential, r));
+            }
+        }
+      return result;
+    }
   } // namespace
 
   SensitivityProducts SensitivityModel::products(const ChartPoint &point, const std::vector<int> &modes) const
@@ -39,6 +72,8 @@ namespace Squeal
     // C_m belongs to the coupled coordinates: no part of it is a reaction
     const auto of_damped_modes = modal_damping ? modal_damping->along(body_rates(), triples) : std::vector<ComplexDenseMatrix>();
 
+    const std::vector<ParameterValues> &by_reactions = damping_rates(mu);
+
     SensitivityProducts result{triples.lambda, of_contact.by_lambda(values), {}};
     for (const SensitivityParameter &parameter : parameters)
       {
@@ -49,6 +84,8 @@ namespace Squeal
           N += of_contact.along(values, contact_rates(parameter, mu));
         if (parameter.contact)
           N += by_moved_contact(*parameter.contact, mu, alone, r_n);
+        if (!by_reactions.empty())
+          N += of_contact.along(values, by_reactions[result.N.size()]);
         if (modal_damping)
           N += of_damped_modes[result.N.size()] * as_column(triples.lambda).asDiagonal();
         if (parameter.modal_ratio >= 0)
@@ -102,6 +139,42 @@ namespace Squeal
         rates.add_along(bodies.terms, bodies.values, parameter.body_rates);
         rates.add(parameter.derivative, bodies.values);
         result.push_back(std::move(rates));
+      }
+    return result;
+  }
+
+  const std::vector<ParameterValues> &SensitivityModel::damping_rates(const double friction_coefficient) const
+  {
+    const auto [entry, is_new]              = known_damping_rates.try_emplace(friction_coefficient);
+    std::vector<ParameterValues> &result    = entry->second;
+    const SweepPlan              &plan      = sweep.plan;
+    const OperationParameters     operation = plan.lines[main_line].at(friction_coefficient);
+    if (!is_new || !plan.sliding || (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0.))
+      return result;
+
+    const ContactInterface &interface = plan.scene.interface;
+    const SlidingState      state     = *plan.sliding_state(operation);
+    DenseMatrix             gaps      = DenseMatrix::Zero(interface.size(), parameters.size());
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      if (const auto &motion = parameters[p].contact)
+        gaps.col(p) = (axial_gaps(*plan.scene.model, motion->after, plan.sliding_parameters) -
+                       axial_gaps(*plan.scene.model, motion->before, plan.sliding_parameters)) /
+                      motion->step;
+    const DenseMatrix rates = reaction_rates(*plan.sliding, operation, plan.sliding_parameters, state,
+                                             force_rates(*plan.sliding, state, friction_coefficient, parameters, body_rates()), gaps);
+
+    // Both kinds are proportional to |r|, and r ≤ 0
+    const std::vector<double> units(interface.size(), -1.);
+    const ContactDamping      per_newton{radial_dissipation(interface, units, operation), sliding_dissipation(units, operation)};
+    for (std::size_t p = 0; p < parameters.size(); ++p)
+      {
+        ContactDamping of_parameter = per_newton;
+        for (std::size_t c = 0; c < interface.size(); ++c)
+          {
+            of_parameter.radial[c] *= -rates(c, p);
+            of_parameter.sliding[c] *= -rates(c, p);
+          }
+        result.push_back(selected(of_parameter, sweep.regime.closed).values());
       }
     return result;
   }

@@ -19,16 +19,16 @@ namespace Squeal
       const char *name, *unit;
       double Material::*value;
       std::string (*parameter)(const std::string &body);
-      bool deforms, of_single_pins;
+      bool of_single_pins;
     };
 
     const std::vector<MaterialNumber> &material_numbers()
     {
       static const std::vector<MaterialNumber> all = {
-        {"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus, true, true},
-        {"Density", "kg/m^3", &Material::density, BodyParameter::density, false, true},
-        {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false, false},
-        {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false, false}};
+        {"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus, true},
+        {"Density", "kg/m^3", &Material::density, BodyParameter::density, true},
+        {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false},
+        {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false}};
       return all;
     }
 
@@ -38,8 +38,7 @@ namespace Squeal
                                      const std::vector<std::string> &bodies,
                                      const std::string              &single = "")
     {
-      SensitivityParameter result{
-        section + "/" + number.name, single, number.unit, material.*number.value, {}, {}, nullptr, {}, number.deforms};
+      SensitivityParameter result{section + "/" + number.name, single, number.unit, material.*number.value, {}, {}};
       for (const std::string &body : bodies)
         result.body_rates[number.parameter(body)] = {1.};
       return result;
@@ -56,7 +55,7 @@ namespace Squeal
       const double       nu = poisson_ratio(less), h = relative_step * std::min(0.5 - nu, 1. + nu);
       poisson_ratio(less) -= h;
       poisson_ratio(more) += h;
-      SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}, nullptr, {}, true};
+      SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}};
       const std::vector<Term> before = body_terms(*scene.model, less).terms, after = body_terms(*scene.model, more).terms;
       for (std::size_t k = 0; k < after.size(); ++k)
         for (const std::string &body : bodies)
@@ -112,10 +111,7 @@ namespace Squeal
                             "N/m^3",
                             stiffness,
                             {{BodyParameter::mount_stiffness(direction, mount.surface), {1.}}},
-                            {},
-                            nullptr,
-                            {},
-                            true});
+                            {}});
 
     const auto &ratios = parameters.damping.modal_ratios;
     for (std::size_t i = 0; i < ratios.size(); ++i)
@@ -127,7 +123,6 @@ namespace Squeal
                         {},
                         nullptr,
                         {},
-                        false,
                         static_cast<int>(i)});
 
     result.push_back(
@@ -199,7 +194,7 @@ namespace Squeal
         run.progress.update(motion.parameter + " " + motion.pin);
         const double         step   = motion_step * geometry.disc_outer_radius / largest_velocity(motion);
         const MovedScene     before = moved_scene(scene, motion, -step, run), after = moved_scene(scene, motion, step, run);
-        SensitivityParameter parameter{motion.parameter, motion.pin, motion.unit, motion.value, {}, {}, nullptr, {}, true};
+        SensitivityParameter parameter{motion.parameter, motion.pin, motion.unit, motion.value, {}, {}};
         for (std::size_t k = 0; k < bodies.terms.size(); ++k)
           {
             const auto difference = add(0.5 / step, *after.bodies.terms[k].matrix, -0.5 / step, *before.bodies.terms[k].matrix);

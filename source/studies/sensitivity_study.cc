@@ -136,16 +136,15 @@ namespace Squeal
       }
 
     SensitivityModel                   model{sweep, bodies, parameters, modal_damping_derivatives(sweep, p.damping)};
-    const bool                         reactions_are_held = p.needs_steady_sliding() && p.has_contact_damping();
-    const std::vector<ModeSensitivity> modes              = mode_sensitivities(model, run);
+    const std::vector<ModeSensitivity> modes = mode_sensitivities(model, run);
     report(modes.front(), parameters, run);
-    run.store_table("sensitivities", mode_sensitivity_table(modes, parameters, reactions_are_held));
+    run.store_table("sensitivities", mode_sensitivity_table(modes, parameters));
     run.store_table("sensitivity_ranking", ranking_table(modes.front(), parameters, true, 0));
     if (chart)
       {
         const std::vector<ThresholdSensitivity> thresholds = threshold_sensitivities(model, *chart, run);
         note_obstacles(thresholds, run);
-        run.store_table("sensitivities_thresholds", threshold_sensitivity_table(thresholds, *chart, parameters, reactions_are_held));
+        run.store_table("sensitivities_thresholds", threshold_sensitivity_table(thresholds, *chart, parameters));
       }
     run.finish();
   }

@@ -38,11 +38,6 @@ namespace Squeal
       return parameter.body.c_str();
     }
 
-    const char *remark(const SensitivityParameter &parameter, const bool reactions_are_held)
-    {
-      return parameter.deforms && reactions_are_held ? "reactions of steady sliding held" : "";
-    }
-
     std::vector<SensitivityRow> rows_of(const ModeSensitivity &mode, const int number, const std::vector<SensitivityParameter> &parameters)
     {
       std::vector<SensitivityRow> rows;
@@ -60,9 +55,7 @@ namespace Squeal
     }
   } // namespace
 
-  Table mode_sensitivity_table(const std::vector<ModeSensitivity>      &modes,
-                               const std::vector<SensitivityParameter> &parameters,
-                               const bool                               reactions_are_held)
+  Table mode_sensitivity_table(const std::vector<ModeSensitivity> &modes, const std::vector<SensitivityParameter> &parameters)
   {
     using Row = SensitivityRow;
     std::vector<Row> rows;
@@ -92,14 +85,13 @@ namespace Squeal
         {"estimated error of the frequency per unit", "Hz",
          [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
         {"derivative of", "", [](const Row &row) { return row.of.kind; }},
-        {"remark", "", [=](const Row &row) { return remark(row.parameter, reactions_are_held); }}},
+        {"remark", "", [](const Row &) { return ""; }}},
       rows);
   }
 
   Table threshold_sensitivity_table(const std::vector<ThresholdSensitivity> &thresholds,
                                     const SweepChart                        &chart,
-                                    const std::vector<SensitivityParameter> &parameters,
-                                    const bool                               reactions_are_held)
+                                    const std::vector<SensitivityParameter> &parameters)
   {
     struct Row
     {
@@ -124,29 +116,27 @@ namespace Squeal
       return [value](const Row &row) { return row.has_value() && row.parameter.value != 0. ? Cell(value(row)) : Cell(); };
     };
     const auto label = [&](const int branch) { return branch >= 0 ? Cell(chart.labels[branch]) : Cell(); };
-    return Table(
-      Columns<Row>{
-        {"mu", "-", of_threshold([](const Threshold &t) { return t.friction_coefficient; })},
-        {"event", "", of_threshold([](const Threshold &t) { return t.event; })},
-        {"label", "", of_threshold([=](const Threshold &t) { return label(t.branch); })},
-        {"label of partner", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
-        {"frequency", "Hz", of_threshold([](const Threshold &t) { return modal_quantities(t.lambda).frequency; })},
-        {"parameter", "", known([](const Row &row) { return row.parameter.path; })},
-        {"only of", "", known([](const Row &row) { return std::string(body_or_all(row.parameter)); })},
-        {"value", "", known([](const Row &row) { return row.parameter.value; })},
-        {"unit", "", known([](const Row &row) { return row.parameter.unit; })},
-        {"mu per 1 %", "-", percent([](const Row &row) { return one_percent * row.parameter.value * row.of->derivatives[row.number]; })},
-        {"mu per unit", "-", known([](const Row &row) { return row.of->derivatives[row.number]; })},
-        {"estimated error per unit", "-", known([](const Row &row) { return row.of->errors[row.number]; })},
-        {"derivative of", "",
-         [](const Row &row) {
-           return !row.has_value()                                                ? "none" :
-                  row.of->threshold->mechanism == ThresholdMechanism::zero_growth ? "growth rate" :
-                                                                                    "squared difference of the pair";
-         }},
-        {"remark", "",
-         [=](const Row &row) { return row.has_value() ? std::string(remark(row.parameter, reactions_are_held)) : row.of->obstacle; }}},
-      rows);
+    return Table(Columns<Row>{{"mu", "-", of_threshold([](const Threshold &t) { return t.friction_coefficient; })},
+                              {"event", "", of_threshold([](const Threshold &t) { return t.event; })},
+                              {"label", "", of_threshold([=](const Threshold &t) { return label(t.branch); })},
+                              {"label of partner", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
+                              {"frequency", "Hz", of_threshold([](const Threshold &t) { return modal_quantities(t.lambda).frequency; })},
+                              {"parameter", "", known([](const Row &row) { return row.parameter.path; })},
+                              {"only of", "", known([](const Row &row) { return std::string(body_or_all(row.parameter)); })},
+                              {"value", "", known([](const Row &row) { return row.parameter.value; })},
+                              {"unit", "", known([](const Row &row) { return row.parameter.unit; })},
+                              {"mu per 1 %", "-",
+                               percent([](const Row &row) { return one_percent * row.parameter.value * row.of->derivatives[row.number]; })},
+                              {"mu per unit", "-", known([](const Row &row) { return row.of->derivatives[row.number]; })},
+                              {"estimated error per unit", "-", known([](const Row &row) { return row.of->errors[row.number]; })},
+                              {"derivative of", "",
+                               [](const Row &row) {
+                                 return !row.has_value()                                                ? "none" :
+                                        row.of->threshold->mechanism == ThresholdMechanism::zero_growth ? "growth rate" :
+                                                                                                          "squared difference of the pair";
+                               }},
+                              {"remark", "", [](const Row &row) { return row.of->obstacle; }}},
+                 rows);
   }
 
   Table ranking_table(const ModeSensitivity                   &mode,

@@ -1,7 +1,9 @@
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/sliding/steady_sliding.h>
 
 #include <gtest/gtest.h>
@@ -323,6 +325,72 @@ TEST(SteadySliding, FloatingDisc)
   floating.operation.friction_coefficient = 0.;
   const SlidingState state                = floating.solve();
   EXPECT_NEAR(state.approach[1] / state.approach[3], 1., 1e-6);
+}
+
+TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
+{
+  // A stiffer disc, a narrower ring, a steeper gap, with open nodes: of a disc that is held, that floats, that turns freely
+  struct Change
+  {
+    double young_modulus, bore, taper;
+  };
+  struct ChangedScene
+  {
+    ChangedScene(const ElasticMount &mount, const Change &change)
+      : s(mapped(four_pins(),
+                 [&](const Point3 &p) {
+                   const double r = std::hypot(p[0], p[1]), factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins stand outside
+                   return Point3{{factor * p[0], factor * p[1], p[2]}};
+                 }),
+          materials(mount, change),
+          operating())
+      , sliding(s.model, s.interface, s.contact, s.system, band, FactorizationLibrary::automatic)
+      , parameters(SlidingScene::steady())
+    {
+      parameters.gaps = {{s.model.component_names()[1], 0., 1e-4 * (1. + change.taper), -6e-5},
+                         {s.model.component_names()[4], 0., -3e-5, 1e-4}};
+    }
+
+    static MaterialParameters materials(const ElasticMount &mount, const Change &change)
+    {
+      MaterialParameters result = mounted({mount});
+      result.disc.young_modulus *= 1. + change.young_modulus;
+      return result;
+    }
+
+    SlidingState solve() const
+    {
+      return steady_sliding(sliding, s.operation, parameters);
+    }
+
+    Scene             s;
+    SlidingModel      sliding;
+    SlidingParameters parameters;
+  };
+
+  const double step = 3e-5;
+  for (const ElasticMount &mount : {held.front(), ElasticMount{"disc_bore", 1e9, 7.80e10, 0.}, ElasticMount{"disc_bore", 1e10, 0., 1e10}})
+    {
+      const ChangedScene here(mount, {0., 0., 0.});
+      const SlidingState state = here.solve();
+      EXPECT_GT(std::count(state.closed.begin(), state.closed.end(), false), 0);
+      for (const Change &change : {Change{step, 0., 0.}, Change{0., step, 0.}, Change{0., 0., step}})
+        {
+          const ChangedScene before(mount, {-change.young_modulus, -change.bore, -change.taper}), after(mount, change);
+          const auto         difference = [&](const auto &one, const auto &other) { return add(0.5 / step, *other, -0.5 / step, *one); };
+          MultiVector        f          = -1. * (*difference(before.s.system.stiffness, after.s.system.stiffness) * *state.displacement);
+          const DenseMatrix  gaps       = (axial_gaps(after.s.model, after.s.interface, after.parameters) -
+                                    axial_gaps(before.s.model, before.s.interface, before.parameters)) /
+                                   (2. * step);
+          const DenseMatrix     rates = reaction_rates(here.sliding, here.s.operation, here.parameters, state, f, gaps);
+          const SlidingState    less = before.solve(), more = after.solve();
+          const Eigen::VectorXd quotient = (as_column(more.reactions) - as_column(less.reactions)) / (2. * step);
+          EXPECT_EQ(less.closed, more.closed);
+          EXPECT_GT(max_norm(quotient), 1e-3);
+          // Attachment modes of a floating disc are those of a nearly singular matrix: rates are known to 5e-8 of the load of 1000 N
+          EXPECT_LT(max_norm(rates - quotient), 1e-6 * max_norm(quotient) + (mount.axial > 0. ? 0. : 5e-5));
+        }
+    }
 }
 
 TEST(SteadySliding, Refusals)

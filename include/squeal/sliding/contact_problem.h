@@ -56,6 +56,21 @@ namespace Squeal
    */
   ContactSolution solve_contact(const ContactProblem &problem);
 
+  /**
+   * Change of the reactions, n_c × k, with k parameters that change g_0 and f while the same nodes stay @p closed:
+   *
+   *   g_0' + G r' + B z' = 0 at closed nodes,   r' = 0 at open ones,   L r' = f'
+   *
+   * @param gap_rates   g_0', n_c × k [m per unit]
+   * @param force_rates f', n_z × k [N per unit]; those of held motions do not matter
+   *
+   * Throws SolverError if these nodes leave the reactions undetermined.
+   */
+  DenseMatrix reaction_rates(const ContactProblem    &problem,
+                             const std::vector<bool> &closed,
+                             const DenseMatrix       &gap_rates,
+                             const DenseMatrix       &force_rates);
+
   /// What is known about other solutions of a contact problem.
   struct ContactUniqueness
   {

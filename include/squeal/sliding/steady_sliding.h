@@ -2,6 +2,8 @@
 
 #include <squeal/bases/inertia_relief.h>
 #include <squeal/contact/contact_operators.h>
+#include <squeal/linear_algebra/dense.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/sliding/contact_problem.h>
@@ -80,6 +82,30 @@ namespace Squeal
    * state was found, or the disc is free to slide in its plane.
    */
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters);
+
+  /**
+   * Change of the reactions with k parameters of the bodies at the same friction coefficient, loads, travel and closed nodes, n_c × k
+   * [N per unit]:
+   *
+   *   K u' = f' + P_nᵀ r' + μ P_tᵀ r',   P_n u' + a d' − a gap' = 0 at closed nodes,   r' = 0 at open ones
+   *
+   * where reactions balance the free motions R of the disc, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and no load changes. Attachment modes
+   * of the reactions are those of the displacements, P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f': nothing is solved for at full order. Normals and the
+   * axial component of t do not change.
+   *
+   * @param state       the state at these parameters
+   * @param force_rates f' = −K' u + μ (P_t')ᵀ r and what else loads the bodies where it stands, n × k [N per unit]
+   * @param gap_rates   change of axial_gaps(), n_c × k [m per unit]
+   */
+  DenseMatrix reaction_rates(const SlidingModel        &sliding,
+                             const OperationParameters &operation,
+                             const SlidingParameters   &parameters,
+                             const SlidingState        &state,
+                             const MultiVector         &force_rates,
+                             const DenseMatrix         &gap_rates);
+
+  /// Gap of each node along the axis before the backplates move [m].
+  Eigen::VectorXd axial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters);
 
   /// Refuses parameters of the section `Steady sliding` that do not fit the pins; throws ParameterError.
   void check_sliding(const Model               &model,

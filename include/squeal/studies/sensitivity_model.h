@@ -7,6 +7,7 @@
 #include <squeal/studies/sweep_model.h>
 
 #include <complex>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,9 @@ namespace Squeal
     const std::vector<SensitivityParameter> &parameters;
     std::optional<ModalDampingDerivatives>   modal_damping = {}; ///< none without it
 
+    /// damping_rates() at the friction coefficients where they were wanted.
+    mutable std::map<double, std::vector<ParameterValues>> known_damping_rates = {};
+
     /// Products of modes of a point of the main line. All processes must call.
     SensitivityProducts products(const ChartPoint &point, const std::vector<int> &modes) const;
 
@@ -43,8 +47,14 @@ namespace Squeal
     /// Rates of the friction coefficient and of the contact damping with respect to a parameter of the operation, by central differences.
     ParameterValues contact_rates(const SensitivityParameter &parameter, double friction_coefficient) const;
 
-    /// dK/dp and dM/dp of the bodies for each parameter, which change the modes of modal damping.
+    /// dK/dp and dM/dp of the bodies for each parameter, which change the modes of modal damping and the reactions of steady sliding.
     std::vector<BodyRates> body_rates() const;
+
+    /**
+     * Rates of the contact damping for each parameter by what it changes of the bodies, on which the reactions of steady sliding depend; empty where
+     * reactions are shares of the load. All processes must call.
+     */
+    const std::vector<ParameterValues> &damping_rates(double friction_coefficient) const;
 
     /// Modes of a point of the main line, as the basis grows by them.
     ChartModel::ModesAt modes_at(const ChartPoint &point, const std::vector<int> &modes) const;

@@ -2,6 +2,7 @@
 
 #include <squeal/studies/scene.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,9 @@ namespace Squeal
 
     ParameterValues   body_rates; ///< dq/dp of the parameters q of the bodies' terms
     std::vector<Term> derivative; ///< dX/dp where X is not a product of powers of p, with coefficients in the parameters of the bodies
-    double OperationParameters::        *operation = nullptr; ///< on which contact damping, or friction itself, depends; null: none
-    std::shared_ptr<const ContactMotion> contact   = {};      ///< null: contact nodes stay where they are but for the axial direction
-    bool deforms     = false; ///< whether it changes the stiffness of the bodies, and by it the reactions of steady sliding
-    int  modal_ratio = -1;    ///< number of the entry of Damping/Modal damping ratio; −1: none
+    double OperationParameters::        *operation   = nullptr; ///< on which contact damping, or friction itself, depends; null: none
+    std::shared_ptr<const ContactMotion> contact     = {};      ///< null: contact nodes stay where they are but for the axial direction
+    int                                  modal_ratio = -1;      ///< number of the entry of Damping/Modal damping ratio; −1: none
   };
 
   /**
