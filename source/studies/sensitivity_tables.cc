@@ -84,8 +84,7 @@ namespace Squeal
          [](const Row &row) { return row.change ? Cell(std::abs(row.change->real())) : Cell(); }},
         {"estimated error of the frequency per unit", "Hz",
          [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
-        {"derivative of", "", [](const Row &row) { return row.of.kind; }},
-        {"remark", "", [](const Row &) { return ""; }}},
+        {"derivative of", "", [](const Row &row) { return row.of.kind; }}},
       rows);
   }
 
