@@ -56,11 +56,12 @@ namespace Squeal
     }
   } // namespace
 
-  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
-                                            const DenseMatrix *damping,
-                                            const DenseMatrix &stiffness,
-                                            const double       largest_circular_frequency,
-                                            const RealVectors  real_vectors)
+  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix      &mass,
+                                            const DenseMatrix      *damping,
+                                            const DenseMatrix      &stiffness,
+                                            const double            largest_circular_frequency,
+                                            const RealVectors       real_vectors,
+                                            const ModalCoordinates *coordinates)
   {
     DenseQuadraticModes modes;
     const int           r = mass.rows();
@@ -70,13 +71,20 @@ namespace Squeal
     const double unit           = stiffness_norm > 0. ? std::sqrt(stiffness_norm / mass.norm()) : 1.;
 
     // ------------------------------------------------- companion form in units of the scale
-    const RealLU factors             = regular_lu(mass, "mass matrix of a small quadratic pencil");
-    const bool   linear              = damping == nullptr;
-    const int    last                = linear ? 0 : r;
-    DenseMatrix  companion           = DenseMatrix::Zero(last + r, last + r);
-    companion.bottomLeftCorner(r, r) = -factors.solve(stiffness) / (unit * unit);
-    if (!linear)
+    const RealLU                 factors = regular_lu(mass, "mass matrix of a small quadratic pencil");
+    const bool                   linear  = damping == nullptr;
+    const int                    last    = linear ? 0 : r;
+    const DenseMatrix            A       = factors.solve(stiffness);
+    DenseMatrix                  companion;
+    std::optional<BandSubspaces> band;
+    if (linear && coordinates != nullptr && real_vectors == RealVectors::none)
+      band = band_subspaces(A, *coordinates, largest_circular_frequency);
+    if (linear)
+      companion = (band ? band->small : A) / (-unit * unit);
+    else
       {
+        companion                        = DenseMatrix::Zero(2 * r, 2 * r);
+        companion.bottomLeftCorner(r, r) = A / (-unit * unit);
         companion.topRightCorner(r, r).setIdentity();
         companion.bottomRightCorner(r, r) = -factors.solve(*damping) / unit;
       }
@@ -120,13 +128,19 @@ namespace Squeal
     std::vector<int> columns;
     for (const int j : wanted)
       columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
-    const ComplexDenseMatrix left_parts = pairs.left.bottomRows(r)(Eigen::all, columns).conjugate();
-    modes.left                          = from_halves(factors.solve_transposed(halves(left_parts)));
+    ComplexDenseMatrix right_parts = pairs.right(Eigen::all, columns), left_parts = pairs.left(Eigen::all, columns).conjugate();
+    if (band)
+      {
+        right_parts = multiply(band->right, right_parts);
+        left_parts  = multiply(band->left, left_parts);
+      }
+    modes.left = from_halves(sparing_zeros(halves(left_parts.bottomRows(r)),
+                                           [&factors](const DenseMatrix &columns) { return factors.solve_transposed(columns); }));
     for (int j = 0; j < k; ++j)
       {
         modes.values.push_back(value(wanted[j]));
         const bool lower   = std::abs(modes.values[j]) > unit;
-        modes.right.col(j) = pairs.right.col(columns[j]).segment(lower ? last : 0, r);
+        modes.right.col(j) = right_parts.col(j).segment(lower ? last : 0, r);
         normalize(modes.right.col(j));
         normalize(modes.left.col(j));
       }

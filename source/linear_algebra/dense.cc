@@ -2,18 +2,23 @@
 
 namespace Squeal
 {
-  DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X)
+  DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation)
   {
     std::vector<Eigen::Index> kept;
     for (Eigen::Index j = 0; j < X.cols(); ++j)
       if ((X.col(j).array() != 0.).any())
         kept.push_back(j);
     if (static_cast<Eigen::Index>(kept.size()) == X.cols())
-      return A * X;
-    const DenseMatrix columns = X(Eigen::all, kept);
-    DenseMatrix       result  = DenseMatrix::Zero(A.rows(), X.cols());
-    result(Eigen::all, kept)  = A * columns;
+      return operation(X);
+    const DenseMatrix of_kept = operation(X(Eigen::all, kept));
+    DenseMatrix       result  = DenseMatrix::Zero(of_kept.rows(), X.cols());
+    result(Eigen::all, kept)  = of_kept;
     return result;
+  }
+
+  DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X)
+  {
+    return sparing_zeros(X, [&A](const DenseMatrix &columns) -> DenseMatrix { return A * columns; });
   }
 
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X)

@@ -19,6 +19,9 @@ namespace Squeal
     /// A multiple real λ splits into pairs by rounding.
     const Decision oscillating_in_band("Im lambda of a reduced mode / end of the band", 1e-7);
 
+    /// Vectors of a basis from which it pays to separate the modes of the band first.
+    constexpr int least_separated = 64;
+
     bool is_real(const Complex lambda, const double largest_circular_frequency)
     {
       return !oscillating_in_band.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
@@ -80,12 +83,17 @@ namespace Squeal
       modes.mass      = model.mass();
       modes.stiffness = model.stiffness();
 
-      DenseQuadraticModes found = dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr,
-                                                        modes.pencil.stiffness, largest_circular_frequency, real_vectors);
-      modes.lambda              = std::move(found.values);
-      modes.right               = std::move(found.right);
-      modes.left                = std::move(found.left);
-      modes.real_values         = std::move(found.real_values);
+      // Of a few vectors, or of all frequencies, there is nothing to leave out
+      const bool may_be_separated =
+        !modes.pencil.has_damping && model.size() >= least_separated && std::isfinite(largest_circular_frequency);
+
+      DenseQuadraticModes found =
+        dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.pencil.stiffness,
+                              largest_circular_frequency, real_vectors, may_be_separated ? &model.modal_coordinates() : nullptr);
+      modes.lambda      = std::move(found.values);
+      modes.right       = std::move(found.right);
+      modes.left        = std::move(found.left);
+      modes.real_values = std::move(found.real_values);
       return modes;
     }
 

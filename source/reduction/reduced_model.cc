@@ -58,6 +58,7 @@ namespace Squeal
         }
     stiffness_matrix = sums[0];
     mass_matrix      = sums[1];
+    modes.reset();
   }
 
   ReducedModel ReducedModel::restricted(const DenseMatrix &Z) const
@@ -121,6 +122,13 @@ namespace Squeal
     if (!T)
       T = std::make_shared<MultiVector>(*parent * Z);
     return *T;
+  }
+
+  const ModalCoordinates &ReducedModel::modal_coordinates() const
+  {
+    if (!modes)
+      modes = Squeal::modal_coordinates(stiffness(), mass());
+    return *modes;
   }
 
   ReducedPencil ReducedModel::at(const ParameterValues &values) const

@@ -1,5 +1,8 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/eigen/band_subspaces.h>
 #include <squeal/eigen/dense_quadratic.h>
+
+#include <Eigen/LU>
 
 #include <gtest/gtest.h>
 
@@ -146,4 +149,32 @@ TEST(DenseQuadratic, OverdampedAndDivergentValuesAreReal)
 TEST(DenseQuadratic, SingularMassIsRefused)
 {
   EXPECT_THROW(dense_quadratic_modes(DenseMatrix::Zero(2, 2), nullptr, DenseMatrix::Identity(2, 2)), SolverError);
+}
+
+TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
+{
+  const int    n = 90, n_band = 20;
+  const double end = 25.;
+  DenseMatrix  K = random_entries(n, 4), M = DenseMatrix::Identity(n, n);
+  for (int i = 0; i < n; ++i)
+    K(i, i) += std::pow(1. + i + (i < n_band ? 0 : 20), 2);
+  M += 0.1 / n * random_entries(n, 5);
+  const auto        coordinates = modal_coordinates(0.5 * (K + K.transpose()), 0.5 * (M + M.transpose()));
+  const DenseMatrix A           = M.partialPivLu().solve(K);
+  const auto        band        = band_subspaces(A, coordinates, end);
+  ASSERT_TRUE(band.has_value());
+  EXPECT_EQ(band->small.rows(), n_band);
+  EXPECT_LT((A * band->right - band->right * band->small).norm(), 1e-9);
+  EXPECT_LT((A.transpose() * band->left - band->left * band->small.transpose()).norm(), 1e-9);
+  EXPECT_LT((band->left.transpose() * band->right - DenseMatrix::Identity(n_band, n_band)).norm(), 1e-12);
+
+  const auto all  = dense_quadratic_modes(M, nullptr, K, end),
+             some = dense_quadratic_modes(M, nullptr, K, end, RealVectors::none, &coordinates);
+  ASSERT_EQ(some.values.size(), all.values.size());
+  for (std::size_t j = 0; j < all.values.size(); ++j)
+    {
+      EXPECT_LT(std::abs(some.values[j] - all.values[j]), 1e-11);
+      EXPECT_LT((some.right.col(j) - all.right.col(j)).norm(), 1e-8);
+      EXPECT_LT((some.left.col(j) - all.left.col(j)).norm(), 1e-8);
+    }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/linear_algebra/dense.h>
+#include <squeal/eigen/band_subspaces.h>
 
 #include <complex>
 #include <limits>
@@ -41,10 +41,14 @@ namespace Squeal
    * half of the left one. The values get one two-sided Rayleigh correction
    * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
    * algorithm fails.
+   *
+   * @param coordinates modes of a symmetric pencil near by: without damping, where no vectors of real λ are wanted, the QR algorithm
+   *                    then looks at the band only; see band_subspaces()
    */
-  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
-                                            const DenseMatrix *damping,
-                                            const DenseMatrix &stiffness,
-                                            double             largest_circular_frequency = std::numeric_limits<double>::infinity(),
-                                            RealVectors        real_vectors               = RealVectors::none);
+  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix      &mass,
+                                            const DenseMatrix      *damping,
+                                            const DenseMatrix      &stiffness,
+                                            double                  largest_circular_frequency = std::numeric_limits<double>::infinity(),
+                                            RealVectors             real_vectors               = RealVectors::none,
+                                            const ModalCoordinates *coordinates                = nullptr);
 } // namespace Squeal

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include <complex>
+#include <functional>
 #include <vector>
 
 namespace Squeal
@@ -25,7 +26,10 @@ namespace Squeal
     return A.size() == 0 ? 0. : A.cwiseAbs().template maxCoeff<Eigen::PropagateNaN>();
   }
 
-  /// A X, where columns of zeros cost nothing: the imaginary parts of neutral modes are such.
+  /// A linear operation on the columns of X, where those of zeros cost nothing: the imaginary parts of neutral modes are such.
+  DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation);
+
+  /// A X in this way.
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
 
   /// A X of a real and a complex matrix: one real product with [Re X, Im X].

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <squeal/contact/system_family.h>
+#include <squeal/eigen/band_subspaces.h>
 
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace Squeal
 {
@@ -77,6 +79,9 @@ namespace Squeal
       return stiffness_matrix;
     }
 
+    /// Modes of (TᵀK_cT, TᵀM_cT); found once.
+    const ModalCoordinates &modal_coordinates() const;
+
     /// TᵀAT of a sparse term of the system, by its number.
     const DenseMatrix &projected(const std::size_t term) const
     {
@@ -100,5 +105,6 @@ namespace Squeal
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;
+    mutable std::optional<ModalCoordinates>      modes; ///< nothing as long as nobody asks
   };
 } // namespace Squeal

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <squeal/linear_algebra/dense_eigenproblems.h>
+
+#include <optional>
+
+namespace Squeal
+{
+  /// Modes V of a small symmetric pencil (K_0, M_0), ascending, as coordinates.
+  struct ModalCoordinates
+  {
+    std::vector<double> values;  ///< −λ²
+    DenseMatrix         vectors; ///< V, r × r
+    DenseMatrix         inverse; ///< VᵀM_0 = V⁻¹
+  };
+
+  ModalCoordinates modal_coordinates(const DenseMatrix &stiffness, const DenseMatrix &mass);
+
+  /// The part of a small matrix A that has the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
+  struct BandSubspaces
+  {
+    DenseMatrix right; ///< R, r × k
+    DenseMatrix left;  ///< L, r × k
+    DenseMatrix small; ///< S, k × k; its eigenvalues are the −λ² that belong to R and L
+  };
+
+  /**
+   * Invariant subspaces of A φ = −λ² φ that have every λ with |Im λ| ≤ @p largest_circular_frequency [rad/s].
+   *
+   * In coordinates of the modes V of a symmetric pencil near by, those of the band first up to the widest gap beyond it,
+   * B = V⁻¹AV has blocks B_ij, and
+   *
+   *   R = V [I; X],          B_21 + B_22 X − X (B_11 + B_12 X) = 0,
+   *   Lᵀ = [I − Y X, Y] V⁻¹,  S_1 Y − Y T − B_12 = 0,   S_1 = B_11 + B_12 X,  T = B_22 − X B_12.
+   *
+   * Both are solved step by step with the diagonal operator of the symmetric pencil in place of their own (Stewart 1973, Demmel 1987), a
+   * few products of blocks each; S = LᵀAR, so that its error is the product of those of X and Y. That T has no eigenvalue of the
+   * band, λ that are real included, follows from the powers of
+   *
+   *   Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹:   ‖Z^m‖ < 1 for any m   =>   Re(−λ²) > ω² for all of T.
+   *
+   * @return nothing if the band is not well apart, if the steps do not converge, or if no power is small
+   */
+  std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const ModalCoordinates &coordinates, double largest_circular_frequency);
+} // namespace Squeal
