@@ -157,7 +157,7 @@ namespace Squeal
     // Rounding must not lead processes to different friction coefficients
     const auto predict = [&](const ZeroSearch &search) {
       const auto at   = [&](const ChartPoint &point) { return model.plan.point(line, point.friction_coefficient, model.regime.closed); };
-      const auto zero = model.reduced->predicted_zero(search, at(search.first), at(search.second));
+      const auto zero = model.reduced->predicted_zero(search, at(*search.first.point), at(*search.second.point));
       const auto same = dealii::Utilities::MPI::broadcast(run.communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
       return same.empty() ? std::nullopt : std::optional(same.front());
     };

@@ -101,15 +101,18 @@ namespace Squeal
                                                    const OperatingPoint &first,
                                                    const OperatingPoint &second) const
   {
-    DenseMatrix X;
-    for (const auto &[point, modes] : {std::make_pair(&search.first, &search.first_modes), {&search.second, &search.second_modes}})
+    DenseMatrix               X;
+    std::vector<ModesAtPoint> known = search.beyond;
+    known.push_back(search.first);
+    known.push_back(search.second);
+    for (const auto &[point, modes] : known)
       for (const ComplexDenseMatrix *vectors : {&point->right, &point->left})
-        X = append_columns(X, halves(with_rows((*vectors)(Eigen::all, *modes), model.size())));
+        X = append_columns(X, halves(with_rows((*vectors)(Eigen::all, modes), model.size())));
     const ReducedModel small = model.restricted(principal_columns(X));
 
-    const double a = first.friction_coefficient, b = second.friction_coefficient;
-    const auto   mean = [](const ChartPoint &point, const std::vector<int> &modes) { return as_column(point.lambda)(modes).mean(); };
-    const std::complex<double> before = mean(search.first, search.first_modes), after = mean(search.second, search.second_modes);
+    const double               a = first.friction_coefficient, b = second.friction_coefficient;
+    const auto                 mean   = [](const ModesAtPoint &at) { return as_column(at.point->lambda)(at.modes).mean(); };
+    const std::complex<double> before = mean(search.first), after = mean(search.second);
     const auto                 value = [&](const double mu) {
       const double    t = (mu - a) / (b - a);
       ParameterValues others;
@@ -121,7 +124,7 @@ namespace Squeal
         }
       std::vector<std::complex<double>> lambda =
         local_reduced_modes(small, system.at(mu, others), (1. + margin) * largest_circular_frequency).lambda;
-      if (lambda.size() < search.first_modes.size())
+      if (lambda.size() < search.first.modes.size())
         return std::numeric_limits<double>::quiet_NaN();
       const auto expected = (1. - t) * before + t * after;
       std::sort(lambda.begin(), lambda.end(),

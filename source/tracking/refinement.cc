@@ -66,19 +66,30 @@ namespace Squeal
                        search.kind == EventSearch::coalescence ? ModeFunction::discriminant :
                                                                  ModeFunction::frequency,
                        modes.options.largest_circular_frequency,
-                       modes.points[k],
-                       modes.points[k + 1],
-                       {},
+                       {nullptr, {}},
+                       {nullptr, {}},
                        {}};
-      for (const int branch : {search.branch, search.partner})
-        if (branch >= 0)
-          {
-            asked.first_modes.push_back(modes.mode(branch, k));
-            asked.second_modes.push_back(modes.mode(branch, k + 1));
-          }
-      for (const auto *numbers : {&asked.first_modes, &asked.second_modes})
-        if (std::any_of(numbers->begin(), numbers->end(), [](const int mode) { return mode < 0; }))
+      const auto at = [&](const int point) -> std::optional<ModesAtPoint> {
+        if (point < 0 || point >= modes.n_points())
           return {};
+        ModesAtPoint result{&modes.points[point], {}};
+        for (const int branch : {search.branch, search.partner})
+          if (branch >= 0)
+            {
+              result.modes.push_back(modes.mode(branch, point));
+              if (result.modes.back() < 0)
+                return {};
+            }
+        return result;
+      };
+      const auto first = at(k), second = at(k + 1);
+      if (!first || !second)
+        return {};
+      asked.first  = *first;
+      asked.second = *second;
+      for (const int point : {k - 1, k + 2})
+        if (const auto found = at(point))
+          asked.beyond.push_back(*found);
       const auto zero = predict(asked);
       if (!zero)
         return {};

@@ -56,7 +56,7 @@ namespace
         return Squeal::evaluate(model, points, MPI_COMM_WORLD);
       };
       const auto predict = [&](const ZeroSearch &search) {
-        return model.predicted_zero(search, at(search.first.friction_coefficient), at(search.second.friction_coefficient));
+        return model.predicted_zero(search, at(search.first.point->friction_coefficient), at(search.second.point->friction_coefficient));
       };
       ChartOptions options;
       options.largest_circular_frequency = omega_max;
@@ -118,10 +118,17 @@ TEST(PredictedZeros, ConvergeWithTheStep)
         });
         return std::vector<int>{order[0], order[1]};
       };
-      const auto zero =
-        scene.model.predicted_zero({ModeFunction::discriminant, 0., first, second, pair(first), pair(second)}, scene.at(a), scene.at(b));
+      ZeroSearch search{ModeFunction::discriminant, 0., {&first, pair(first)}, {&second, pair(second)}, {}};
+      const auto zero = scene.model.predicted_zero(search, scene.at(a), scene.at(b));
       ASSERT_TRUE(zero.has_value());
       errors.push_back(std::abs(*zero - onset->friction_coefficient));
+
+      // The modes at the next points bring it closer
+      const ChartPoint before = scene.model.evaluate(scene.at(a - step)), behind = scene.model.evaluate(scene.at(b + step));
+      search.beyond    = {{&before, pair(before)}, {&behind, pair(behind)}};
+      const auto again = scene.model.predicted_zero(search, scene.at(a), scene.at(b));
+      ASSERT_TRUE(again.has_value());
+      EXPECT_LT(std::abs(*again - onset->friction_coefficient), 0.2 * errors.back() + 1e-7);
     }
   EXPECT_LT(errors[0], 1e-4);
   EXPECT_LT(errors[1], errors[0] / 6. + 1e-7);
@@ -129,5 +136,6 @@ TEST(PredictedZeros, ConvergeWithTheStep)
   // No sign changes where there is no threshold
   const ChartPoint first = scene.model.evaluate(scene.at(0.)), second = scene.model.evaluate(scene.at(0.001));
   EXPECT_FALSE(
-    scene.model.predicted_zero({ModeFunction::frequency, omega_max, first, second, {0}, {0}}, scene.at(0.), scene.at(0.001)).has_value());
+    scene.model.predicted_zero({ModeFunction::frequency, omega_max, {&first, {0}}, {&second, {0}}, {}}, scene.at(0.), scene.at(0.001))
+      .has_value());
 }

@@ -16,13 +16,20 @@ namespace Squeal
     frequency     ///< Im λ of a mode, less a bound
   };
 
+  /// Modes at a point of a chart.
+  struct ModesAtPoint
+  {
+    const ChartPoint *point;
+    std::vector<int>  modes;
+  };
+
   /// A function that changes its sign between two points of a chart.
   struct ZeroSearch
   {
-    ModeFunction      function;
-    double            bound; ///< of the frequency [rad/s]
-    const ChartPoint &first, &second;
-    std::vector<int>  first_modes, second_modes; ///< the same one or two modes at both points
+    ModeFunction              function;
+    double                    bound;         ///< of the frequency [rad/s]
+    ModesAtPoint              first, second; ///< the same one or two modes at both points
+    std::vector<ModesAtPoint> beyond;        ///< and at the points before and behind them, where there are such
   };
 
   /// Where between the points the zero is likely to lie; nothing where that cannot be told. The same on every process.
