@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace
@@ -177,4 +178,39 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
       EXPECT_LT((some.right.col(j) - all.right.col(j)).norm(), 1e-8);
       EXPECT_LT((some.left.col(j) - all.left.col(j)).norm(), 1e-8);
     }
+}
+
+TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
+{
+  const int    n = 90, n_band = 20;
+  const double end       = 25.;
+  const auto   stiffness = [](const double gap) {
+    DenseMatrix K = DenseMatrix::Zero(n, n);
+    for (int i = 0; i < n; ++i)
+      K(i, i) = std::pow(1. + i + (i < n_band ? 0. : gap), 2);
+    return K;
+  };
+  const DenseMatrix I = DenseMatrix::Identity(n, n), apart = stiffness(20.);
+  const auto        coordinates = modal_coordinates(apart, I);
+  const DenseMatrix noise       = random_entries(n, 6);
+  EXPECT_TRUE(band_subspaces(apart + noise, coordinates, end).has_value());
+  // No gap beyond the band, a band without an end
+  EXPECT_FALSE(band_subspaces(stiffness(0.) + noise, modal_coordinates(stiffness(0.), I), end).has_value());
+  EXPECT_FALSE(band_subspaces(apart + noise, coordinates, std::numeric_limits<double>::infinity()).has_value());
+  // A mode of the rest that comes down into the band, or becomes real
+  for (const double square : {100., -1e4})
+    {
+      DenseMatrix A = apart + noise;
+      A(50, 50)     = square;
+      EXPECT_FALSE(band_subspaces(A, coordinates, end).has_value()) << square;
+    }
+  // Steps that do not converge
+  EXPECT_FALSE(band_subspaces(apart + 2000. * noise, coordinates, end).has_value());
+  // The values are the same either way
+  DenseMatrix A      = apart + noise;
+  A(50, 50)          = 100.;
+  const auto found   = dense_quadratic_modes(I, nullptr, A, end, RealVectors::none, &coordinates);
+  const auto without = dense_quadratic_modes(I, nullptr, A, end);
+  EXPECT_EQ(found.values.size(), n_band + 1u);
+  EXPECT_EQ(found.values, without.values);
 }
