@@ -287,6 +287,10 @@ class Sensitivity(ProgramTest):
         """The same with the reactions of steady sliding, and gaps that pins take along."""
         self.check_geometry([*RICH, STEADY, GAPS], [("Disc thickness", ""), ("Pin height", ""), ("Pin diameter", ""), ("Top pin radii", "pin_top_2")])
 
+    def test_curved_elements(self):
+        """The same of elements whose edges follow the circle that grows."""
+        self.check_geometry([*RICH, "Discretization/Element=quadratic", "Geometry/Nodes per pin face=19"], [("Pin diameter", "")])
+
     def check_geometry(self, scene, places):
         folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, "Sensitivity/Geometry=sizes and places", "Sensitivity/Tolerance=1e-8",
                                 "Sensitivity/Largest number of modes=3", *scene)
