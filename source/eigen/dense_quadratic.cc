@@ -134,8 +134,8 @@ namespace Squeal
         right_parts = multiply(band->right, right_parts);
         left_parts  = multiply(band->left, left_parts);
       }
-    modes.left = from_halves(sparing_zeros(halves(left_parts.bottomRows(r)),
-                                           [&factors](const DenseMatrix &columns) { return factors.solve_transposed(columns); }));
+    modes.left = from_halves(
+      sparing_zeros(halves(left_parts.bottomRows(r)), [&factors](const DenseMatrix &X) { return factors.solve_transposed(X); }));
     for (int j = 0; j < k; ++j)
       {
         modes.values.push_back(value(wanted[j]));

@@ -62,13 +62,6 @@ namespace Squeal
       if (!predict || search.at_once || search.multiple || search.kind == EventSearch::real_axis ||
           modes.intervals[k].stalls > most_predictions)
         return {};
-      ZeroSearch asked{search.kind == EventSearch::growth      ? ModeFunction::growth :
-                       search.kind == EventSearch::coalescence ? ModeFunction::discriminant :
-                                                                 ModeFunction::frequency,
-                       modes.options.largest_circular_frequency,
-                       {nullptr, {}},
-                       {nullptr, {}},
-                       {}};
       const auto at = [&](const int point) -> std::optional<ModesAtPoint> {
         if (point < 0 || point >= modes.n_points())
           return {};
@@ -85,8 +78,13 @@ namespace Squeal
       const auto first = at(k), second = at(k + 1);
       if (!first || !second)
         return {};
-      asked.first  = *first;
-      asked.second = *second;
+      ZeroSearch asked{search.kind == EventSearch::growth      ? ModeFunction::growth :
+                       search.kind == EventSearch::coalescence ? ModeFunction::discriminant :
+                                                                 ModeFunction::frequency,
+                       modes.options.largest_circular_frequency,
+                       *first,
+                       *second,
+                       {}};
       for (const int point : {k - 1, k + 2})
         if (const auto found = at(point))
           asked.beyond.push_back(*found);
