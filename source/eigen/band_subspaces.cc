@@ -21,6 +21,8 @@ namespace Squeal
     /// Bound on ‖Z^m‖ that leaves rounding errors of the powers their room, and number of squarings.
     constexpr double proof          = 0.1;
     constexpr int    most_squarings = 8;
+    /// Part of the band's end by which modes of lower frequencies, rigid-body motions among them, are scaled.
+    constexpr double smallest_part = 1e-2;
 
     /// Number of modes of the reference before the widest gap at or beyond the end of the band; 0 if there is none.
     Eigen::Index modes_of_band(const std::vector<double> &squares, const double limit)
@@ -38,14 +40,14 @@ namespace Squeal
       return result;
     }
 
-    /// X of residual(X) = 0 by steps X −= residual(X) / D, entry by entry; whether they converge.
-    template <typename Residual>
-    bool solve_step_by_step(DenseMatrix &X, const DenseMatrix &D, const Residual &residual)
+    /// X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge.
+    template <typename Residual, typename Divided>
+    bool solve_step_by_step(DenseMatrix &X, const Residual &residual, const Divided &divided)
     {
       double before = 0.;
       for (int i = 0; i < most_steps; ++i)
         {
-          const DenseMatrix step = residual(X).cwiseQuotient(D);
+          const DenseMatrix step = divided(residual(X));
           const double      norm = step.norm();
           if (!(i == 0 || norm < contraction * before))
             return norm <= last_step;
@@ -74,6 +76,73 @@ namespace Squeal
         }
       return false;
     }
+    /// Blocks of a matrix in modal coordinates, those of the band first.
+    struct Blocks
+    {
+      DenseMatrix band, band_rest, rest_band, rest; ///< B_11, B_12, B_21, B_22
+    };
+
+    /// What separates the band: R = [I; X], Lᵀ = [I − Y X, Y] and S, in modal coordinates.
+    struct Separation
+    {
+      DenseMatrix X, Y, first, small; ///< first = I − Y X
+    };
+
+    /**
+     * @param divided_right, divided_left the inverse of the reference's operators on residuals of X and Y
+     * @param is_beyond whether T has nothing of the band
+     */
+    template <typename Right, typename Left, typename Proof>
+    std::optional<Separation> separated(const Blocks &B, const Right &divided_right, const Left &divided_left, const Proof &is_beyond)
+    {
+      const Eigen::Index k = B.band.rows(), m = B.rest.rows();
+      Separation         result;
+      DenseMatrix       &X = result.X = DenseMatrix::Zero(m, k), &Y = result.Y = DenseMatrix::Zero(k, m);
+      if (!solve_step_by_step(
+            X, [&](const DenseMatrix &of) -> DenseMatrix { return B.rest_band + B.rest * of - of * (B.band + B.band_rest * of); },
+            divided_right))
+        return {};
+      const DenseMatrix S_1 = B.band + B.band_rest * X, T = B.rest - X * B.band_rest;
+      if (!is_beyond(T))
+        return {};
+      if (!solve_step_by_step(
+            Y, [&](const DenseMatrix &of) -> DenseMatrix { return of * T - S_1 * of + B.band_rest; }, divided_left))
+        return {};
+      result.first = DenseMatrix::Identity(k, k) - Y * X;
+      result.small = result.first * S_1 + Y * (B.rest_band + B.rest * X);
+      return result;
+    }
+
+    /// [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] or, of different modes, without Σ: one block of the companion form in coordinates (x, λ x / σ).
+    DenseMatrix companion_block(const DenseMatrix     &stiffness,
+                                const DenseMatrix     &damping,
+                                const Eigen::VectorXd &rows,
+                                const Eigen::VectorXd &columns,
+                                const bool             is_diagonal)
+    {
+      const Eigen::Index p = stiffness.rows(), q = stiffness.cols();
+      DenseMatrix        result = DenseMatrix::Zero(2 * p, 2 * q);
+      if (is_diagonal)
+        result.topRightCorner(p, q).diagonal() = columns;
+      result.bottomLeftCorner(p, q)  = -(rows.cwiseInverse().asDiagonal() * stiffness);
+      result.bottomRightCorner(p, q) = -(rows.cwiseInverse().asDiagonal() * damping * columns.asDiagonal());
+      return result;
+    }
+
+    /**
+     * X of ω_i J X_ij − ω_j X_ij J = R_ij, 2 × 2 blocks ij; and, with negative sums, of ω_j X_ij J − ω_i J X_ij = R_ij.
+     */
+    DenseMatrix divided_pairs(const DenseMatrix &R, const DenseMatrix &differences, const DenseMatrix &sums)
+    {
+      const Eigen::Index p = differences.rows(), q = differences.cols();
+      const auto         a = R.topLeftCorner(p, q), b = R.topRightCorner(p, q), c = R.bottomLeftCorner(p, q), d = R.bottomRightCorner(p, q);
+      // Commuting part [s t; −t s], anticommuting part [u v; v −u]; −J [a b; c d] = [−c −d; a b]
+      const DenseMatrix s = 0.5 * (a + d).cwiseQuotient(differences), t = 0.5 * (b - c).cwiseQuotient(differences),
+                        u = 0.5 * (a - d).cwiseQuotient(sums), v = 0.5 * (b + c).cwiseQuotient(sums);
+      DenseMatrix result(2 * p, 2 * q);
+      result << t - v, u - s, s + u, t + v;
+      return result;
+    }
   } // namespace
 
   ModalCoordinates modal_coordinates(const DenseMatrix &stiffness, const DenseMatrix &mass)
@@ -91,29 +160,64 @@ namespace Squeal
     const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(coordinates.values, limit) : 0;
     if (k == 0)
       return {};
-    const Eigen::Index m    = n - k;
-    const auto         w    = as_column(coordinates.values);
-    const DenseMatrix  B    = coordinates.inverse * A * coordinates.vectors;
-    const auto         B_11 = B.topLeftCorner(k, k), B_12 = B.topRightCorner(k, m), B_21 = B.bottomLeftCorner(m, k),
-               B_22     = B.bottomRightCorner(m, m);
-    const DenseMatrix D = w.tail(m).replicate(1, k) - w.head(k).transpose().replicate(m, 1);
-
-    DenseMatrix X = DenseMatrix::Zero(m, k);
-    if (!solve_step_by_step(X, D, [&](const DenseMatrix &of) -> DenseMatrix { return B_21 + B_22 * of - of * (B_11 + B_12 * of); }))
-      return {};
-    const DenseMatrix S_1 = B_11 + B_12 * X, T = B_22 - X * B_12;
-    if (!all_beyond(T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))))
-      return {};
-    DenseMatrix Y = DenseMatrix::Zero(k, m);
-    if (!solve_step_by_step(Y, DenseMatrix(D.transpose()), [&](const DenseMatrix &of) -> DenseMatrix { return of * T - S_1 * of + B_12; }))
+    const Eigen::Index m     = n - k;
+    const auto         w     = as_column(coordinates.values);
+    const DenseMatrix  B     = coordinates.inverse * A * coordinates.vectors;
+    const DenseMatrix  D     = w.tail(m).replicate(1, k) - w.head(k).transpose().replicate(m, 1);
+    const auto         apart = separated(
+              Blocks{B.topLeftCorner(k, k), B.topRightCorner(k, m), B.bottomLeftCorner(m, k), B.bottomRightCorner(m, m)},
+              [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D); },
+              [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D.transpose()); },
+              [&](const DenseMatrix &T) { return all_beyond(T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });
+    if (!apart)
       return {};
 
+    const auto   &V = coordinates.vectors, &W = coordinates.inverse;
+    BandSubspaces result;
+    result.right = V.leftCols(k) + V.rightCols(m) * apart->X;
+    result.left  = (apart->first * W.topRows(k) + apart->Y * W.bottomRows(m)).transpose();
+    result.small = apart->small;
+    return result;
+  }
+
+  std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix      &A,
+                                                     const DenseMatrix      &C,
+                                                     const ModalCoordinates &coordinates,
+                                                     const double            largest_circular_frequency)
+  {
+    const double       limit = largest_circular_frequency * largest_circular_frequency;
+    const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(coordinates.values, limit) : 0;
+    if (k == 0)
+      return {};
+    const Eigen::Index    m     = n - k;
+    const auto            w     = as_column(coordinates.values);
+    const Eigen::VectorXd sigma = w.cwiseMax(smallest_part * smallest_part * limit).cwiseSqrt(), s_1 = sigma.head(k), s_2 = sigma.tail(m);
+    const DenseMatrix     K = coordinates.inverse * A * coordinates.vectors, D = coordinates.inverse * C * coordinates.vectors;
+    const DenseMatrix     differences = s_2.replicate(1, k) - s_1.transpose().replicate(m, 1),
+                      sums            = s_2.replicate(1, k) + s_1.transpose().replicate(m, 1);
+    const auto apart                  = separated(
+                       Blocks{companion_block(K.topLeftCorner(k, k), D.topLeftCorner(k, k), s_1, s_1, true),
+             companion_block(K.topRightCorner(k, m), D.topRightCorner(k, m), s_1, s_2, false),
+             companion_block(K.bottomLeftCorner(m, k), D.bottomLeftCorner(m, k), s_2, s_1, false),
+             companion_block(K.bottomRightCorner(m, m), D.bottomRightCorner(m, m), s_2, s_2, true)},
+                       [&](const DenseMatrix &R) { return divided_pairs(R, differences, sums); },
+                       [&](const DenseMatrix &R) { return divided_pairs(R, differences.transpose(), -sums.transpose()); },
+                       [&](const DenseMatrix &T) { return all_beyond(-T * T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });
+    if (!apart)
+      return {};
+
+    // From coordinates (x, λ x / σ) of the band and of the rest to [φ; λ φ]
     const auto       &V = coordinates.vectors, &W = coordinates.inverse;
-    const DenseMatrix first = DenseMatrix::Identity(k, k) - Y * X;
+    const DenseMatrix scaled_V = V * sigma.asDiagonal(), scaled_W = sigma.cwiseInverse().asDiagonal() * W;
     BandSubspaces     result;
-    result.right = V.leftCols(k) + V.rightCols(m) * X;
-    result.left  = (first * W.topRows(k) + Y * W.bottomRows(m)).transpose();
-    result.small = first * S_1 + Y * (B_21 + B_22 * X);
+    result.right = DenseMatrix(2 * n, 2 * k);
+    result.left  = DenseMatrix(2 * n, 2 * k);
+    result.right << V.rightCols(m) * apart->X.topRows(m), scaled_V.rightCols(m) * apart->X.bottomRows(m);
+    result.right.topLeftCorner(n, k) += V.leftCols(k);
+    result.right.bottomRightCorner(n, k) += scaled_V.leftCols(k);
+    result.left << (apart->first.leftCols(k) * W.topRows(k) + apart->Y.leftCols(m) * W.bottomRows(m)).transpose(),
+      (apart->first.rightCols(k) * scaled_W.topRows(k) + apart->Y.rightCols(m) * scaled_W.bottomRows(m)).transpose();
+    result.small = apart->small;
     return result;
   }
 } // namespace Squeal

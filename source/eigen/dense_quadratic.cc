@@ -77,16 +77,29 @@ namespace Squeal
     const DenseMatrix            A       = factors.solve(stiffness);
     DenseMatrix                  companion;
     std::optional<BandSubspaces> band;
-    if (linear && coordinates != nullptr && real_vectors == RealVectors::none)
+    const DenseMatrix            C                = linear ? DenseMatrix() : factors.solve(*damping);
+    const bool                   may_be_separated = coordinates != nullptr && real_vectors == RealVectors::none;
+    if (may_be_separated && linear)
       band = band_subspaces(A, *coordinates, largest_circular_frequency);
+    else if (may_be_separated)
+      {
+        band = damped_band_subspaces(A, C, *coordinates, largest_circular_frequency);
+        if (band)
+          {
+            band->right.bottomRows(r) /= unit;
+            band->left.bottomRows(r) *= unit;
+          }
+      }
     if (linear)
       companion = (band ? band->small : A) / (-unit * unit);
+    else if (band)
+      companion = band->small / unit;
     else
       {
         companion                        = DenseMatrix::Zero(2 * r, 2 * r);
         companion.bottomLeftCorner(r, r) = A / (-unit * unit);
         companion.topRightCorner(r, r).setIdentity();
-        companion.bottomRightCorner(r, r) = -factors.solve(*damping) / unit;
+        companion.bottomRightCorner(r, r) = C / -unit;
       }
     const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
     // Vectors of hardly more than what is sorted out below

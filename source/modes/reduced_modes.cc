@@ -84,8 +84,8 @@ namespace Squeal
       modes.stiffness = model.stiffness();
 
       // Of a few vectors, or of all frequencies, there is nothing to leave out; real eigenvalues may lie anywhere
-      const bool may_be_separated = !modes.pencil.has_damping && real_vectors == RealVectors::none && model.size() >= least_separated &&
-                                    std::isfinite(largest_circular_frequency);
+      const bool may_be_separated =
+        real_vectors == RealVectors::none && model.size() >= least_separated && std::isfinite(largest_circular_frequency);
 
       DenseQuadraticModes found =
         dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.pencil.stiffness,

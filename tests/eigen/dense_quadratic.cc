@@ -180,6 +180,52 @@ TEST(DenseQuadratic, ModesOfABandApartFromTheRest)
     }
 }
 
+TEST(DenseQuadratic, DampedModesOfABandApartFromTheRest)
+{
+  const int    n = 90, n_band = 20;
+  const double end = 25.;
+  DenseMatrix  K = random_entries(n, 4), M = DenseMatrix::Identity(n, n), D = random_entries(n, 7) / n;
+  for (int i = 0; i < n; ++i)
+    {
+      // A rigid-body motion of the reference first
+      K(i, i) += i == 0 ? 0. : std::pow(1. + i + (i < n_band ? 0 : 20), 2);
+      D(i, i) += 0.02 * (1. + i);
+    }
+  M += 0.1 / n * random_entries(n, 5);
+  DenseMatrix reference = 0.5 * (K + K.transpose());
+  reference.row(0).setZero();
+  reference.col(0).setZero();
+  const auto        coordinates = modal_coordinates(reference, 0.5 * (M + M.transpose()));
+  const DenseMatrix A = M.partialPivLu().solve(K), C = M.partialPivLu().solve(D);
+  DenseMatrix       companion = DenseMatrix::Zero(2 * n, 2 * n);
+  companion.topRightCorner(n, n).setIdentity();
+  companion.bottomLeftCorner(n, n)  = -A;
+  companion.bottomRightCorner(n, n) = -C;
+  const auto band                   = damped_band_subspaces(A, C, coordinates, end);
+  ASSERT_TRUE(band.has_value());
+  EXPECT_EQ(band->small.rows(), 2 * n_band);
+  EXPECT_LT((companion * band->right - band->right * band->small).norm(), 1e-8);
+  EXPECT_LT((companion.transpose() * band->left - band->left * band->small.transpose()).norm(), 1e-8);
+  EXPECT_LT((band->left.transpose() * band->right - DenseMatrix::Identity(2 * n_band, 2 * n_band)).norm(), 1e-11);
+
+  const auto all = dense_quadratic_modes(M, &D, K, end), some = dense_quadratic_modes(M, &D, K, end, RealVectors::none, &coordinates);
+  ASSERT_EQ(some.values.size(), all.values.size());
+  for (std::size_t j = 0; j < all.values.size(); ++j)
+    {
+      EXPECT_LT(std::abs(some.values[j] - all.values[j]), 1e-11);
+      EXPECT_LT((some.right.col(j) - all.right.col(j)).norm(), 1e-8);
+      EXPECT_LT((some.left.col(j) - all.left.col(j)).norm(), 1e-8);
+    }
+
+  // An overdamped mode of the rest, and one whose damping brings it down into the band
+  for (const double damping : {400., 135.})
+    {
+      DenseMatrix much = C;
+      much(50, 50)     = damping;
+      EXPECT_FALSE(damped_band_subspaces(A, much, coordinates, end).has_value()) << damping;
+    }
+}
+
 TEST(DenseQuadratic, ABandThatIsNotApartIsNotSeparated)
 {
   const int    n = 90, n_band = 20;

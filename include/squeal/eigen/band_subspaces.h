@@ -16,12 +16,12 @@ namespace Squeal
 
   ModalCoordinates modal_coordinates(const DenseMatrix &stiffness, const DenseMatrix &mass);
 
-  /// The part of a small matrix A that has the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
+  /// The part of a small n × n matrix A that has the modes of a band: A R = R S, Lᵀ A = S Lᵀ, Lᵀ R = I.
   struct BandSubspaces
   {
-    DenseMatrix right; ///< R, r × k
-    DenseMatrix left;  ///< L, r × k
-    DenseMatrix small; ///< S, k × k; its eigenvalues are the −λ² that belong to R and L
+    DenseMatrix right; ///< R, n × k
+    DenseMatrix left;  ///< L, n × k
+    DenseMatrix small; ///< S, k × k; its eigenvalues, −λ² or λ, belong to R and L
   };
 
   /**
@@ -42,4 +42,18 @@ namespace Squeal
    * @return nothing if the band is not well apart, if the steps do not converge, or if no power is small
    */
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const ModalCoordinates &coordinates, double largest_circular_frequency);
+
+  /**
+   * The same with dissipation: invariant subspaces of
+   *
+   *   [ 0   I ]
+   *   [ -A -C ]  [φ; λ φ] = λ [φ; λ φ],   right and left 2r × 2k, small 2k × 2k with eigenvalues λ.
+   *
+   * Every mode of the reference is a pair of coordinates (x, λ x / ω) here, in which its block is ω J, J = [0 1; -1 0]. Steps divide what
+   * commutes with J by ω_i − ω_j and what anticommutes by ω_i + ω_j. The proof looks at −T² in the place of T.
+   */
+  std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix      &A,
+                                                     const DenseMatrix      &C,
+                                                     const ModalCoordinates &coordinates,
+                                                     double                  largest_circular_frequency);
 } // namespace Squeal

@@ -42,8 +42,8 @@ namespace Squeal
    * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
    * algorithm fails.
    *
-   * @param coordinates modes of a symmetric pencil near by: without damping, where no vectors of real λ are wanted, the QR algorithm
-   *                    then looks at the band only; see band_subspaces()
+   * @param coordinates modes of a symmetric pencil near by: where no vectors of real λ are wanted, the QR algorithm then looks at the
+   *                    band only; see band_subspaces() and damped_band_subspaces()
    */
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix      &mass,
                                             const DenseMatrix      *damping,
