@@ -149,7 +149,6 @@ build()
 set_environment()
 {
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
-  export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1}
   export OMPI_MCA_rmaps_base_oversubscribe=1
   export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # of Open MPI 5
   export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}

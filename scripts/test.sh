@@ -12,4 +12,5 @@ install_packages "${packages[@]}" "${packages_browser[@]}"
 setup release
 
 cd "$squeal_root"
+export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} # tests run side by side
 ctest --preset release --no-tests=error "$@"

@@ -1,6 +1,7 @@
 #include <squeal/base/decision.h>
 
 #include <algorithm>
+#include <mutex>
 
 namespace Squeal
 {
@@ -12,6 +13,9 @@ namespace Squeal
       static std::vector<DecisionRecord *> all;
       return all;
     }
+
+    /// Of what decisions keep: several threads decide.
+    std::mutex records_in_use;
   } // namespace
 
   void merge(std::vector<DecisionRecord> &whole, const std::vector<DecisionRecord> &part)
@@ -54,7 +58,8 @@ namespace Squeal
 
   bool Decision::exceeded_by(const double value) const
   {
-    const bool exceeds = value > record.threshold;
+    const bool                        exceeds = value > record.threshold;
+    const std::lock_guard<std::mutex> lock(records_in_use);
     if (exceeds)
       {
         record.above = std::min(record.above, value);

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
@@ -28,8 +27,8 @@ namespace Squeal
                       "check permissions, free space, and limits on processes and memory");
     }
 
-    /// Variables with which OpenBLAS lets users choose its threads.
-    constexpr std::array<const char *, 2> threads_of_blas = {{"OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"}};
+    /// Variable with which users choose the number of threads, of this program and of libraries.
+    constexpr const char *threads_variable = "OMP_NUM_THREADS";
 
     /**
      * The environment without what tells a process of the MPI job that it belongs to: the other one is none of them. @p threads is the
@@ -44,7 +43,7 @@ namespace Squeal
           if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0 && text.rfind("PMI_", 0) != 0)
             result.push_back(*variable);
         }
-      if (std::none_of(threads_of_blas.begin(), threads_of_blas.end(), [](const char *name) { return std::getenv(name) != nullptr; }))
+      if (std::getenv(threads_variable) == nullptr)
         result.push_back(threads.data());
       result.push_back(nullptr);
       return result;
@@ -74,7 +73,7 @@ namespace Squeal
     for (const std::string &argument : arguments)
       words.push_back(const_cast<char *>(argument.c_str()));
     words.push_back(nullptr);
-    std::string               threads     = std::string(threads_of_blas.front()) + "=" + std::to_string(n_threads);
+    std::string               threads     = std::string(threads_variable) + "=" + std::to_string(n_threads);
     const std::vector<char *> environment = environment_of_worker(threads);
     const int                 printed     = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     const int                 no_input    = ::open("/dev/null", O_RDONLY | O_CLOEXEC);

@@ -51,6 +51,7 @@ namespace Squeal
                         {"Gmsh", GMSH_API_VERSION}};
     tree["machine"]  = {{"cores", std::thread::hardware_concurrency()},
                         {"processes", record.n_processes},
+                        {"threads per process", record.n_threads},
                         {"BLAS threads per process", record.blas_threads}};
     for (const auto &[name, count] : record.counts)
       tree["counts"][name] = count;

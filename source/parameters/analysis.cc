@@ -51,6 +51,10 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library, "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
+    declarations.add("Threads", n_threads,
+                     "Values of the friction coefficient, loads and speeds that a process evaluates at a time. 0: as many as "
+                     "OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it. Units: none.",
+                     {0, 1024});
     declarations.add("BLAS threads", blas_threads,
                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", {1, 256});
   }

@@ -87,6 +87,7 @@ namespace Squeal
     r = 0;
     motions.clear();
     left_columns = right_block = {};
+    is_assembled               = false;
     for (Sparse &part : sparse)
       {
         part.projected = part.factor_products = {};
@@ -131,6 +132,7 @@ namespace Squeal
       part.projected = model.projected(part.number);
     pencil       = model.stiffness() + shift * shift * model.mass();
     left_columns = right_block = {};
+    is_assembled               = false;
   }
 
   ProjectedResiduals ProjectedResiduals::restricted(const SystemMember &member, const DenseMatrix &Z) const
@@ -348,13 +350,19 @@ namespace Squeal
     return halves(result);
   }
 
+  void ProjectedResiduals::prepare() const
+  {
+    if (!is_assembled)
+      assemble();
+    is_assembled = true;
+  }
+
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
                                                 const std::vector<Complex> &lambda,
                                                 const ComplexDenseMatrix   &right,
                                                 const ComplexDenseMatrix   &left) const
   {
-    if (left_columns.size() == 0)
-      assemble();
+    prepare();
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
     const DenseMatrix Gy = multiply_sparing_zeros(right_block, y), Gz = multiply_sparing_zeros(left_columns, z);
     return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),

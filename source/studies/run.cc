@@ -1,3 +1,4 @@
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/studies/run.h>
 
@@ -9,6 +10,19 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    unsigned int n_processes_here(const MPI_Comm communicator)
+    {
+      MPI_Comm machine;
+      int      result = 1;
+      MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+      MPI_Comm_size(machine, &result);
+      MPI_Comm_free(&machine);
+      return result;
+    }
+  } // namespace
+
   Run::Run(const Parameters &parameters,
            const RunOptions &options,
            MPI_Comm          communicator,
@@ -24,6 +38,7 @@ namespace Squeal
     , options(options)
     , record{options.command,
              static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator)),
+             usable_threads(parameters.solvers.n_threads, n_processes_here(communicator)),
              set_blas_threads(parameters.solvers.blas_threads),
              {},
              {},
@@ -31,6 +46,7 @@ namespace Squeal
              {},
              options.revision}
   {
+    set_task_threads(record.n_threads);
     if (!is_dry)
       results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);
   }

@@ -73,6 +73,14 @@ namespace Squeal
     return model;
   }
 
+  void ChartModel::prepare() const
+  {
+    if (model.size() == 0)
+      return;
+    model.modal_coordinates();
+    residuals.prepare();
+  }
+
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
     const ParameterValues values    = system.at(point.friction_coefficient, point.values);

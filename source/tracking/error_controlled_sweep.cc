@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/base/text.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
@@ -115,18 +116,23 @@ namespace Squeal
                                    const std::function<void(int, const ChartPoint &)> &each)
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
+    const int n_points = static_cast<int>(points.size());
+    // Processes may have different numbers of threads
+    const int n_rounds = dealii::Utilities::MPI::min(static_cast<int>(n_task_threads()), communicator);
+    model.prepare();
     std::vector<ChartPoint> result;
-    for (std::size_t first = 0; first < points.size(); first += n)
+    for (int first = 0; first < n_points; first += n * n_rounds)
       {
-        const int  n_here = std::min<int>(n, static_cast<int>(points.size() - first));
-        ChartPoint mine;
-        if (me < n_here)
-          mine = model.evaluate(points[first + me]);
-        for (int owner = 0; owner < n_here; ++owner)
+        const int               n_here = std::min(n * n_rounds, n_points - first);
+        std::vector<ChartPoint> mine(n_here > me ? (n_here - me + n - 1) / n : 0);
+        run_tasks(static_cast<int>(mine.size()), [&](const int i) { mine[i] = model.evaluate(points[first + i * n + me]); });
+        for (int i = 0; i < n_here; ++i)
           {
-            result.push_back(n == 1 ? mine : dealii::Utilities::MPI::broadcast(communicator, mine, owner));
+            const int         owner = i % n;
+            const ChartPoint &known = owner == me ? mine[i / n] : ChartPoint();
+            result.push_back(n == 1 ? known : dealii::Utilities::MPI::broadcast(communicator, known, owner));
             if (each)
-              each(static_cast<int>(first) + owner, result.back());
+              each(first + i, result.back());
           }
       }
     return result;

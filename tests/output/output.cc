@@ -224,6 +224,7 @@ TEST(RunRecords, AreJson)
   progress.finish();
   const RunRecord    record{"squeal \"a b.prm\" --set \"Operation/Rotation=negative\"",
                          3,
+                         2,
                          1,
                          {{"dofs", 123456789012L}, {"modes", 0}},
                          {{"worst scaled Jacobian [-]", 0.5}},
@@ -239,6 +240,7 @@ TEST(RunRecords, AreJson)
   EXPECT_EQ(tree.at("counts").at("modes"), 0);
   EXPECT_EQ(tree.at("quantities").at("worst scaled Jacobian [-]"), 0.5);
   EXPECT_EQ(tree.at("machine").at("processes"), 3);
+  EXPECT_EQ(tree.at("machine").at("threads per process"), 2);
   ASSERT_EQ(tree.at("steps").size(), 2u);
   EXPECT_EQ(tree.at("steps")[0].at("name"), "Mesh \"quoted\" \\ \n and more");
   EXPECT_EQ(tree.at("steps")[0].at("result"), "12 elements");

@@ -76,7 +76,7 @@ namespace
     }
     static void write_record(const ResultFolder &folder)
     {
-      RunRecord record{"squeal", 1, 1, {}, {}, {}, folder.files(), "abc"};
+      RunRecord record{"squeal", 1, 1, 1, {}, {}, {}, folder.files(), "abc"};
       folder.write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, Progress()); });
     }
     /// Everything below the folder, links as such.

@@ -170,6 +170,7 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
      {"Geometry/Pin height", "-1", "Geometry/Pin height must be >= 0 m, not -1\n"},
      {"Geometry/Pin height", "30 mm", "must be a number >= 0 m, not `30 mm`\n"},
      {"Disc material/Density", "-2", "must be >= 0 kg/m^3, not -2\n"},
+     {"Linear algebra/Threads", "-1", "must lie in 0 ... 1024"},
      {"Linear algebra/BLAS threads", "257", "must lie in 1 ... 256, not 257\n"},
      {"Linear algebra/BLAS threads", "1.5", "must be an integer in 1 ... 256, not 1.5\n"},
      {"Discretization/Element", "2", "must be one of trilinear, incompatible modes, quadratic, not 2\n"},

@@ -1,5 +1,6 @@
 #include "solutions.h"
 
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
@@ -129,6 +130,40 @@ TEST(ErrorControlledSweep, AgreesWithFullOrder)
               ASSERT_TRUE(result.points[i].has_value());
               EXPECT_LT(largest(distances(chart.in_band(*result.points[i]), lambda)), 2. * tolerance)
                 << "c_b " << c_b << ", mu " << points[i].friction_coefficient;
+            }
+        }
+    }
+}
+
+TEST(ErrorControlledSweep, ThreadsChangeNothing)
+{
+  const Chart                       chart(300.);
+  const ChartModel                  model  = chart.model();
+  const std::vector<OperatingPoint> points = chart.points();
+  const auto                        by     = [&](const unsigned int n) {
+    set_task_threads(n);
+    std::vector<int> order;
+    auto             result = evaluate(model, points, MPI_COMM_WORLD, [&](const int i, const ChartPoint &) { order.push_back(i); });
+    set_task_threads(1);
+    EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
+    EXPECT_EQ(order.size(), points.size());
+    return result;
+  };
+  const std::vector<ChartPoint> one = by(1);
+  for (const unsigned int n : {2, 4, 16})
+    {
+      const std::vector<ChartPoint> several = by(n);
+      ASSERT_EQ(several.size(), one.size());
+      for (std::size_t i = 0; i < one.size(); ++i)
+        {
+          ASSERT_GT(one[i].lambda.size(), 0u);
+          ASSERT_EQ(several[i].lambda.size(), one[i].lambda.size());
+          EXPECT_EQ(several[i].friction_coefficient, points[i].friction_coefficient);
+          for (std::size_t j = 0; j < one[i].lambda.size(); ++j)
+            {
+              EXPECT_LT(std::abs(several[i].lambda[j] - one[i].lambda[j]), 1e-12 * std::abs(one[i].lambda[j]));
+              EXPECT_NEAR(several[i].errors[j], one[i].errors[j], 1e-12 + 1e-9 * one[i].errors[j]);
+              EXPECT_EQ(several[i].verdicts[j], one[i].verdicts[j]);
             }
         }
     }

@@ -45,7 +45,7 @@ namespace Squeal
    * the size of that from which they come. Made once, at namespace scope, where
    * the quantity is computed; it keeps the nearest value on either side, so that
    * a run can tell how far its decisions were from falling the other way.
-   * Nothing that is computed depends on what it keeps.
+   * Nothing that is computed depends on what it keeps. Several threads may ask.
    */
   class Decision
   {

@@ -24,7 +24,7 @@ namespace Squeal
      *
      * @param arguments behind the name of the program
      * @param log       file that takes what it prints
-     * @param n_threads of its linear algebra, where the user has not chosen their number: more threads than cores wait for each other
+     * @param n_threads where the user has not chosen their number by OMP_NUM_THREADS: more threads than cores wait for each other
      *
      * Throws FileError if it cannot be started.
      */

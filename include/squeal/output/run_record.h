@@ -18,6 +18,7 @@ namespace Squeal
   {
     std::string                                 command;     ///< that repeats it in a shell
     int                                         n_processes; ///< of MPI
+    unsigned int                                n_threads;
     int                                         blas_threads;
     std::vector<std::pair<std::string, long>>   counts;                ///< elements, dofs, contact nodes, modes, ...
     std::vector<std::pair<std::string, double>> quantities;            ///< worst element quality, ...

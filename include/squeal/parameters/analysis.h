@@ -57,6 +57,7 @@ namespace Squeal
     double               iteration_tolerance = 1e-7; ///< on the estimated |δλ| / |λ| [-]
     unsigned int         maximum_basis       = 1500; ///< of the residual iteration [vectors]
     FactorizationLibrary library             = FactorizationLibrary::automatic;
+    unsigned int         n_threads           = 0; ///< 0: usable_threads()
     unsigned int         blas_threads        = 1;
 
     void declare(Declarations &declarations);

@@ -57,6 +57,9 @@ namespace Squeal
      */
     ProjectedResiduals restricted(const SystemMember &member, const DenseMatrix &Z) const;
 
+    /// Puts together what products() needs for all modes; it does so itself, but not for several threads that call it.
+    void prepare() const;
+
     /// Products for reduced modes λ, φ_r and ψ_r (r × k).
     ResidualProducts products(const ParameterValues                   &values,
                               const std::vector<std::complex<double>> &lambda,
@@ -129,6 +132,7 @@ namespace Squeal
     DenseMatrix                                  pencil;               ///< TᵀST
     mutable std::vector<Block>                   blocks;               ///< those of left residuals only first, of right ones only last
     mutable int         n_columns = 0, n_in_left = 0, n_left_only = 0; ///< of W: all, of left residuals, of these only
-    mutable DenseMatrix left_columns, right_block;                     ///< of the bracket: what left and right residuals need
+    mutable bool        is_assembled = false;
+    mutable DenseMatrix left_columns, right_block; ///< of the bracket: what left and right residuals need
   };
 } // namespace Squeal

@@ -65,7 +65,10 @@ namespace Squeal
 
     const ReducedModel &reduced() const;
 
-    /// Modes with their estimates. Only this process works, and no other need.
+    /// What evaluate() needs at every point, for which it would be found by the first; before several threads evaluate.
+    void prepare() const;
+
+    /// Modes with their estimates. Only this process works, and no other need. After prepare() several threads may call.
     ChartPoint evaluate(const OperatingPoint &point) const;
 
     /**
