@@ -161,6 +161,7 @@ namespace Squeal
     Parameters parameters          = run.parameters;
     parameters.output              = {};
     parameters.designs.n_processes = 0;
+    parameters.solvers.n_threads   = SolverParameters().n_threads;
     std::ostringstream stream;
     stream << "# squeal " << version << '\n';
     parameters.print(stream, false);

@@ -121,8 +121,9 @@ namespace Squeal
 
   std::string sweep_identity(const Run &run, const Scene &scene)
   {
-    // What only adds to the results does not change them
+    // What only adds to the results, or is another way to the same ones, does not change them
     Parameters parameters        = run.parameters;
+    parameters.solvers.n_threads = SolverParameters().n_threads;
     parameters.output            = {};
     parameters.sweep.mode_shapes = {};
     parameters.sweep.planes      = {};
