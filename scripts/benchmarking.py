@@ -32,9 +32,9 @@ def kernels():
     return os.environ.get("OPENBLAS_CORETYPE", widest)
 
 
-def environment():
-    """One thread, the kernels, and Open MPI usable by root in a container."""
-    settings = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "DEAL_II_NUM_THREADS": "1",
+def environment(n_threads=1):
+    """Threads, the kernels, and Open MPI usable by root in a container."""
+    settings = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": str(n_threads), "DEAL_II_NUM_THREADS": str(n_threads),
                 "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                 "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     if kernels():
@@ -51,9 +51,10 @@ def describe_machine(core):
 
 
 def run_on_core(core, command):
-    """Runs a command on one core; its output, or an end with its messages."""
-    words = ["taskset", "-c", str(core), *map(str, command)]
-    process = subprocess.run(words, env=environment(), text=True, capture_output=True, check=False)
+    """Runs a command on one core, or with as many threads on several; its output, or an end with its messages."""
+    cores = core if isinstance(core, list) else [core]
+    words = ["taskset", "-c", ",".join(map(str, cores)), *map(str, command)]
+    process = subprocess.run(words, env=environment(len(cores)), text=True, capture_output=True, check=False)
     if process.returncode != 0:
         sys.exit(f"{process.stdout}{process.stderr}This command failed: {' '.join(map(str, command))}")
     return process.stdout

@@ -3,7 +3,7 @@
 // What many files include and what takes long to read. Every file still includes what it uses.
 
 #include <deal.II/base/parameter_handler.h>
-#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <deal.II/base/mpi.h>
@@ -31,6 +32,14 @@ namespace Squeal::Testing
       return RowMap::contiguous(rank == n_processes - 1 ? n : 0, MPI_COMM_WORLD);
     const int share = n / (n_processes - 1);
     return RowMap::contiguous(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
+  }
+
+  /// Entries in [-1, 1], the same on every process: what a library draws on one of them, Eigen misses in its own sequence.
+  inline DenseMatrix agreed_random_matrix(const int n_rows, const int n_columns)
+  {
+    DenseMatrix result = DenseMatrix::Random(n_rows, n_columns);
+    agree(MPI_COMM_WORLD, result);
+    return result;
   }
 
   using Row = std::map<int, double>; ///< column to entry

@@ -44,7 +44,7 @@ namespace Squeal::Testing
 
   // --------------------------------------------------------------- solutions
 
-  inline SymmetricModes real_modes(const CoupledSystem &system, const RealSolver solver = RealSolver::anasazi)
+  inline SymmetricModes real_modes(const CoupledSystem &system, const RealSolver solver = RealSolver::lanczos)
   {
     SymmetricModesOptions options;
     options.solver    = solver;

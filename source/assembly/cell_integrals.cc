@@ -35,12 +35,11 @@ namespace Squeal
                                                                   const CellPredicate             &contributes,
                                                                   const std::vector<CellIntegral> &integrals)
   {
-    // Every process knows every cell and integrates those that have one of its rows: at the borders more than one does, and
-    // nothing is sent.
+    // A process knows all cells that have one of its rows, and integrates them: at the borders more than one does, and nothing is sent.
     const RowMap &map       = model.free_map();
     const auto    for_cells = [&](const std::function<void(const Cell &, const std::vector<FreeDof> &)> &action) {
       for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (contributes(cell))
+        if (!cell->is_artificial() && contributes(cell))
           {
             const std::vector<FreeDof> dofs = free_dofs(model, cell);
             if (std::any_of(dofs.begin(), dofs.end(), [](const FreeDof &dof) { return dof.row >= 0; }))

@@ -12,9 +12,12 @@ namespace Squeal
 {
   namespace
   {
-    void write_to_disk(const std::filesystem::path &file, const int flags, const std::initializer_list<std::string_view> &texts)
+    void write_or_throw(const std::filesystem::path                   &file,
+                        const int                                      flags,
+                        const std::initializer_list<std::string_view> &texts,
+                        const OnDisk                                   on_disk)
     {
-      if (const int problem = write_file(file, flags, texts, true); problem != 0)
+      if (const int problem = write_file(file, flags, texts, on_disk == OnDisk::now); problem != 0)
         throw std::filesystem::filesystem_error("write", file, std::error_code(problem, std::generic_category()));
     }
   } // namespace
@@ -43,15 +46,15 @@ namespace Squeal
     return problem;
   }
 
-  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts)
+  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts, const OnDisk on_disk)
   {
-    write_to_disk(file, O_APPEND, texts);
+    write_or_throw(file, O_APPEND, texts, on_disk);
   }
 
   void replace_file(const std::filesystem::path &file, const std::string_view text)
   {
     const std::filesystem::path temporary = file.string() + ".incomplete";
-    write_to_disk(temporary, O_TRUNC, {text});
+    write_or_throw(temporary, O_TRUNC, {text}, OnDisk::now);
     std::filesystem::rename(temporary, file);
   }
 } // namespace Squeal

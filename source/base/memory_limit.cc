@@ -89,4 +89,16 @@ namespace Squeal
       }
     return result;
   }
+
+  double available_memory(const MPI_Comm communicator)
+  {
+    MPI_Comm machine;
+    int      rank;
+    MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_rank(machine, &rank);
+    MPI_Comm_free(&machine);
+    double result = rank == 0 ? available_memory() : 0.; // one process of each machine tells
+    MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_DOUBLE, MPI_SUM, communicator);
+    return result;
+  }
 } // namespace Squeal

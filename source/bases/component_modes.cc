@@ -1,10 +1,11 @@
 #include <squeal/base/assignment.h>
 #include <squeal/bases/component_modes.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/bases/near_null_space.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace Squeal
 {
@@ -21,10 +22,13 @@ namespace Squeal
     for (const Node &node : model.nodes())
       if (const int i = e_x.map().place(node.dofs[0]); i >= 0)
         e_x(i, 0) = 1.;
-    const DenseMatrix   row_sums = replicate(mass * e_x);
+    const MultiVector   row_sums = mass * e_x;
     std::vector<double> masses;
     for (const Node &node : model.nodes())
-      masses.push_back(node.dofs[0] >= 0 ? row_sums(node.dofs[0], 0) : 0.);
+      {
+        const int i = row_sums.map().place(node.dofs[0]);
+        masses.push_back(i >= 0 ? row_sums(i, 0) : 0.);
+      }
     return masses;
   }
 
@@ -39,8 +43,13 @@ namespace Squeal
   {
     const auto T = component_kernel(model, closed, component, boundary);
 
+    // Multigrid has to know how the dofs of this component move
+    SymmetricModesOptions        used = options;
+    std::optional<NearNullSpace> space;
+    if (options.library == FactorizationLibrary::multigrid)
+      used.near_null_space = &space.emplace(near_null_space(model, *T));
     const SymmetricModes modes =
-      symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, options);
+      symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, used);
 
     ComponentModes result;
     result.eigenvalues = modes.eigenvalues;
@@ -49,9 +58,9 @@ namespace Squeal
       return result;
     result.vectors = std::make_shared<MultiVector>(*T * *modes.vectors);
 
-    const auto        masses = nodal_masses(model, *system.mass);
-    const DenseMatrix values = replicate(*result.vectors);
-    result.labels = component == Component::disc ? disc_labels(model, masses, values) : pin_labels(model, interface, masses, values);
+    const auto masses = nodal_masses(model, *system.mass);
+    result.labels =
+      component == Component::disc ? disc_labels(model, masses, *result.vectors) : pin_labels(model, interface, masses, *result.vectors);
     for (int j = 0; j < modes.n_rigid_body; ++j)
       result.labels[j] = {ModeFamily::rigid_body};
     return result;

@@ -1,12 +1,13 @@
 #include <squeal/base/decision.h>
 #include <squeal/bases/mode_labels.h>
-#include <squeal/linear_algebra/orthonormal_basis.h>
+#include <squeal/linear_algebra/communication.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 
 namespace Squeal
@@ -16,44 +17,76 @@ namespace Squeal
     /// Functions r^k e^{inθ} of a disc's plane that the others do not span.
     const Decision independent("rest of a function of a label / function", 1e-8);
 
-    /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product.
+    /// The same sums over the processes on all of them, to the last bit.
+    DenseMatrix summed(const MPI_Comm communicator, DenseMatrix parts)
+    {
+      sum_over_processes(communicator, parts.data(), parts.size());
+      agree(communicator, parts);
+      return parts;
+    }
+
+    /// Least-squares projection of nodal fields on a few functions in the mass-weighted inner product, a part of the nodes on each process.
     class Projection
     {
     public:
       /**
-       * @param functions  n_nodes × n_functions
+       * @param functions  n_nodes × n_functions, rows of this process
        * @param weights    n_nodes
        */
-      Projection(const DenseMatrix &functions, const Eigen::VectorXd &weights)
+      Projection(const MPI_Comm communicator, const DenseMatrix &functions, const Eigen::VectorXd &weights)
         : roots(weights.cwiseSqrt())
-        // Functions that others span (r^k on a single radius) are dropped
-        , basis(
-            orthonormal_basis(DenseMatrix(roots.asDiagonal() * functions), [](const double rest) { return independent.exceeded_by(rest); }))
+        , Q(roots.asDiagonal() * functions)
+        , R(DenseMatrix::Identity(functions.cols(), functions.cols()))
       {
-        for (auto &diagonal : basis.R.diagonal())
-          diagonal = diagonal > 0. ? diagonal : 1.;
+        // Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped
+        for (Eigen::Index j = 0; j < Q.cols(); ++j)
+          {
+            const double before = norm(communicator, j);
+            for (int pass = 0; pass < 2 && j > 0; ++pass)
+              {
+                const Eigen::VectorXd c = summed(communicator, Q.leftCols(j).transpose() * Q.col(j));
+                R.col(j).head(j) += c;
+                Q.col(j).noalias() -= Q.leftCols(j) * c;
+              }
+            const double after = norm(communicator, j);
+            if (independent.exceeded_by(after / before))
+              {
+                R(j, j) = after;
+                Q.col(j) /= after;
+              }
+            else
+              Q.col(j).setZero();
+          }
       }
 
-      /// Energy of the projection of each field, n_nodes × k: the sum of its squared orthonormal coefficients.
-      Eigen::VectorXd energies(const DenseMatrix &fields) const
+      int n_functions() const
       {
-        return orthonormal_coefficients(fields).colwise().squaredNorm();
+        return static_cast<int>(Q.cols());
       }
 
-      /// Factors of the functions in the projection of a field.
-      Eigen::VectorXd coefficients(const DenseMatrix &field) const
+      /**
+       * What the nodes of this process add to the orthonormal coefficients of fields, n_functions × k. The squares of their sums over the
+       * processes are the energy of the projection.
+       */
+      DenseMatrix coefficients_here(const DenseMatrix &fields) const
       {
-        return basis.R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients(field));
+        return Q.transpose() * (roots.asDiagonal() * fields);
+      }
+
+      /// Factors of the functions from orthonormal coefficients.
+      Eigen::VectorXd factors(const Eigen::VectorXd &orthonormal_coefficients) const
+      {
+        return R.triangularView<Eigen::Upper>().solve(orthonormal_coefficients);
       }
 
     private:
-      DenseMatrix orthonormal_coefficients(const DenseMatrix &fields) const
+      double norm(const MPI_Comm communicator, const Eigen::Index j) const
       {
-        return basis.Q.transpose() * (roots.asDiagonal() * fields);
+        return std::sqrt(summed(communicator, DenseMatrix::Constant(1, 1, Q.col(j).squaredNorm()))(0, 0));
       }
 
-      Eigen::VectorXd               roots; ///< of the weights
-      OrthonormalBasis<DenseMatrix> basis; ///< of the functions times the roots; dropped ones have ones on the diagonal of R
+      Eigen::VectorXd roots; ///< of the weights
+      DenseMatrix     Q, R;  ///< functions times roots = Q R; dropped ones are zero in Q and have ones on the diagonal of R
     };
 
     /// 1, x, x², ... as columns.
@@ -65,20 +98,25 @@ namespace Squeal
       return result;
     }
 
-    /// Nodes of one component.
+    /// Nodes of one component whose rows this process has. Clamped ones, which nobody has, are at rest.
     struct Nodes
     {
-      std::vector<const Node *> nodes;
-      Eigen::MatrixX3d          positions; ///< [m]
-      Eigen::VectorXd           masses;    ///< [kg]
+      MPI_Comm                        communicator;
+      std::vector<std::array<int, 3>> rows;      ///< places of the displacements
+      Eigen::MatrixX3d                positions; ///< [m]
+      Eigen::VectorXd                 masses;    ///< [kg]
 
       Nodes(const Model &model, const std::vector<double> &nodal_masses, const unsigned int component)
+        : communicator(model.communicator())
       {
-        std::vector<double> chosen;
+        const RowMap             &map = model.free_map();
+        std::vector<const Node *> nodes;
+        std::vector<double>       chosen;
         for (std::size_t i = 0; i < nodal_masses.size(); ++i)
-          if (model.nodes()[i].component == component)
+          if (const Node &node = model.nodes()[i]; node.component == component && map.place(node.dofs[0]) >= 0)
             {
-              nodes.push_back(&model.nodes()[i]);
+              nodes.push_back(&node);
+              rows.push_back({{map.place(node.dofs[0]), map.place(node.dofs[1]), map.place(node.dofs[2])}});
               chosen.push_back(nodal_masses[i]);
             }
         masses = as_column(chosen);
@@ -87,15 +125,18 @@ namespace Squeal
           positions.row(i) = Eigen::RowVector3d::Map(nodes[i]->position.data());
       }
 
-      /// Of a mode on all free dofs; clamped directions are at rest.
-      Eigen::MatrixX3d displacements(const Eigen::VectorXd &mode) const
+      Eigen::MatrixX3d displacements(const MultiVector &modes, const int j) const
       {
-        Eigen::MatrixX3d u = Eigen::MatrixX3d::Zero(nodes.size(), 3);
-        for (std::size_t i = 0; i < nodes.size(); ++i)
+        Eigen::MatrixX3d u(rows.size(), 3);
+        for (std::size_t i = 0; i < rows.size(); ++i)
           for (unsigned int k = 0; k < 3; ++k)
-            if (nodes[i]->dofs[k] >= 0)
-              u(i, k) = mode[nodes[i]->dofs[k]];
+            u(i, k) = modes(rows[i][k], j);
         return u;
+      }
+
+      double largest(const Eigen::VectorXd &values) const
+      {
+        return dealii::Utilities::MPI::max(values.size() > 0 ? values.maxCoeff() : -std::numeric_limits<double>::infinity(), communicator);
       }
     };
 
@@ -125,7 +166,7 @@ namespace Squeal
         sines   = theta.array().sin();
 
         // Columns: powers of the radius times cosine, then times sine
-        const double inner = radii.minCoeff(), outer = radii.maxCoeff();
+        const double inner = -disc.largest(-radii), outer = disc.largest(radii);
         radial = powers((2. * radii.array() - inner - outer) / (outer - inner), n_radial_functions);
         for (int n = 0; n <= largest_harmonic; ++n)
           {
@@ -133,18 +174,46 @@ namespace Squeal
             functions.leftCols(n_radial_functions) = (n * theta).array().cos().matrix().asDiagonal() * radial;
             if (n > 0)
               functions.rightCols(n_radial_functions) = (n * theta).array().sin().matrix().asDiagonal() * radial;
-            harmonics.emplace_back(functions, disc.masses);
+            harmonics.emplace_back(disc.communicator, functions, disc.masses);
           }
       }
 
       /// Axial, radial and circumferential displacement of the nodes.
-      Eigen::MatrixX3d cylindrical(const Eigen::VectorXd &mode) const
+      Eigen::MatrixX3d cylindrical(const MultiVector &modes, const int j) const
       {
-        const Eigen::MatrixX3d u = disc.displacements(mode);
+        const Eigen::MatrixX3d u = disc.displacements(modes, j);
         Eigen::MatrixX3d       fields(u.rows(), 3);
         fields << u.col(2), cosines.cwiseProduct(u.col(0)) + sines.cwiseProduct(u.col(1)),
           cosines.cwiseProduct(u.col(1)) - sines.cwiseProduct(u.col(0));
         return fields;
+      }
+
+      /// Orthonormal coefficients of fields, those of one harmonic after those of the other.
+      std::vector<DenseMatrix> coefficients(const DenseMatrix &fields) const
+      {
+        std::vector<DenseMatrix> result;
+        int                      n = 0;
+        for (const Projection &harmonic : harmonics)
+          {
+            result.push_back(harmonic.coefficients_here(fields));
+            n += harmonic.n_functions();
+          }
+        // One sum over the processes for all
+        DenseMatrix all(n, fields.cols());
+        n = 0;
+        for (const DenseMatrix &part : result)
+          {
+            all.middleRows(n, part.rows()) = part;
+            n += static_cast<int>(part.rows());
+          }
+        all = summed(disc.communicator, all);
+        n   = 0;
+        for (DenseMatrix &part : result)
+          {
+            part = DenseMatrix(all.middleRows(n, part.rows()));
+            n += static_cast<int>(part.rows());
+          }
+        return result;
       }
 
       /**
@@ -153,12 +222,12 @@ namespace Squeal
        * nodal line pattern may be turned, so the amplitudes are taken along
        * their common direction in the cosine-sine plane.
        */
-      int nodal_circles(const Eigen::VectorXd &field, const int n) const
+      int nodal_circles(const Eigen::VectorXd &coefficients, const int n) const
       {
         // Profile a(r) cos nθ + b(r) sin nθ
         constexpr int         n_samples = 41;
         const DenseMatrix     radial    = powers(Eigen::VectorXd::LinSpaced(n_samples, -1., 1.), n_radial_functions);
-        const Eigen::VectorXd factors   = harmonics[n].coefficients(field);
+        const Eigen::VectorXd factors   = harmonics[n].factors(coefficients);
         const Eigen::VectorXd a         = radial * factors.head(n_radial_functions);
         Eigen::VectorXd       b         = Eigen::VectorXd::Zero(n_samples);
         if (n > 0)
@@ -186,9 +255,15 @@ namespace Squeal
       std::optional<WaveShares> wave_shares(const Eigen::VectorXd &real_part, const Eigen::VectorXd &imaginary_part, const int n) const
       {
         constexpr std::complex<double> i(0., 1.);
-        const Eigen::VectorXcd         factors = harmonics[n].coefficients(real_part) + i * harmonics[n].coefficients(imaginary_part);
-        const Eigen::VectorXcd         a = radial * factors.head(n_radial_functions), b = radial * factors.tail(n_radial_functions);
-        const double positive = disc.masses.dot((a + i * b).cwiseAbs2()), negative = disc.masses.dot((a - i * b).cwiseAbs2());
+        DenseMatrix                    fields(real_part.size(), 2);
+        fields << real_part, imaginary_part;
+        const DenseMatrix      coefficients = summed(disc.communicator, harmonics[n].coefficients_here(fields));
+        const Eigen::VectorXcd factors      = harmonics[n].factors(coefficients.col(0)) + i * harmonics[n].factors(coefficients.col(1));
+        const Eigen::VectorXcd a = radial * factors.head(n_radial_functions), b = radial * factors.tail(n_radial_functions);
+        DenseMatrix            parts(2, 1);
+        parts << disc.masses.dot((a + i * b).cwiseAbs2()), disc.masses.dot((a - i * b).cwiseAbs2());
+        parts                 = summed(disc.communicator, parts);
+        const double positive = parts(0, 0), negative = parts(1, 0);
         const double both = positive + negative;
         return both > 0. ? std::make_optional(WaveShares{positive / both, negative / both}) : std::nullopt;
       }
@@ -222,7 +297,7 @@ namespace Squeal
     }
 
     /// Adds the energies of bending, torsion and stretching of each mode, 3 × k: of its projections on polynomials of the height.
-    void add_energies(const Nodes &pin, const PinAxis &axis, const DenseMatrix &modes, DenseMatrix &energies)
+    void add_energies(const Nodes &pin, const PinAxis &axis, const MultiVector &modes, DenseMatrix &energies)
     {
       constexpr int          n_height_functions = 4;
       const Eigen::Vector3d  along              = axis.direction;
@@ -234,36 +309,47 @@ namespace Squeal
       for (Eigen::Index i = 0; i < radii.size(); ++i)
         around.row(i) /= radii[i] > 0. ? radii[i] : 1.;
 
-      const DenseMatrix functions = powers(heights / max_norm(heights), n_height_functions);
-      const Projection  translation(functions, pin.masses), torsion(radii.asDiagonal() * functions, pin.masses);
-      for (Eigen::Index m = 0; m < modes.cols(); ++m)
+      const DenseMatrix functions = powers(heights / pin.largest(heights.cwiseAbs()), n_height_functions);
+      const Projection  translation(pin.communicator, functions, pin.masses),
+        torsion(pin.communicator, radii.asDiagonal() * functions, pin.masses);
+
+      // Of each mode the coefficients of three directions across, of torsion, and along
+      constexpr int n_fields = 5;
+      DenseMatrix   coefficients(n_height_functions, n_fields * modes.n_columns());
+      for (int m = 0; m < modes.n_columns(); ++m)
         {
-          const Eigen::MatrixX3d u       = pin.displacements(modes.col(m));
+          const Eigen::MatrixX3d u       = pin.displacements(modes, m);
           const Eigen::VectorXd  axially = u * along;
-          energies(0, m) += translation.energies(u - axially * along.transpose()).sum();
-          energies(1, m) += torsion.energies(u.cwiseProduct(around).rowwise().sum()).sum();
-          energies(2, m) += translation.energies(axially).sum();
+          coefficients.middleCols(n_fields * m, n_fields) << translation.coefficients_here(u - axially * along.transpose()),
+            torsion.coefficients_here(u.cwiseProduct(around).rowwise().sum()), translation.coefficients_here(axially);
+        }
+      coefficients = summed(pin.communicator, coefficients);
+      for (int m = 0; m < modes.n_columns(); ++m)
+        {
+          energies(0, m) += coefficients.middleCols(n_fields * m, 3).squaredNorm();
+          energies(1, m) += coefficients.col(n_fields * m + 3).squaredNorm();
+          energies(2, m) += coefficients.col(n_fields * m + 4).squaredNorm();
         }
     }
   } // namespace
 
-  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes)
+  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const MultiVector &modes)
   {
     const DiscHarmonics    disc(model, nodal_masses);
     std::vector<ModeLabel> labels;
-    for (Eigen::Index j = 0; j < modes.cols(); ++j)
+    for (int j = 0; j < modes.n_columns(); ++j)
       {
-        const Eigen::MatrixX3d fields = disc.cylindrical(modes.col(j));
+        const std::vector<DenseMatrix> coefficients = disc.coefficients(disc.cylindrical(modes, j));
 
         // Harmonic of the largest energy, the three directions together
         DenseMatrix energies(3, largest_harmonic + 1);
         for (int n = 0; n <= largest_harmonic; ++n)
-          energies.col(n) = disc.harmonics[n].energies(fields);
+          energies.col(n) = coefficients[n].colwise().squaredNorm();
         Eigen::Index diameters, family;
         energies.colwise().sum().maxCoeff(&diameters);
         energies.col(diameters).maxCoeff(&family);
-        labels.push_back(
-          {disc_families[family], disc.nodal_circles(fields.col(family), static_cast<int>(diameters)), static_cast<int>(diameters)});
+        labels.push_back({disc_families[family], disc.nodal_circles(coefficients[diameters].col(family), static_cast<int>(diameters)),
+                          static_cast<int>(diameters)});
       }
     return labels;
   }
@@ -271,26 +357,26 @@ namespace Squeal
   std::vector<std::optional<WaveShares>> wave_shares(const Model                  &model,
                                                      const std::vector<double>    &nodal_masses,
                                                      const std::vector<ModeLabel> &labels,
-                                                     const DenseMatrix            &real_part,
-                                                     const DenseMatrix            &imaginary_part)
+                                                     const MultiVector            &real_part,
+                                                     const MultiVector            &imaginary_part)
   {
     const DiscHarmonics                    disc(model, nodal_masses);
     std::vector<std::optional<WaveShares>> shares(labels.size());
     for (std::size_t j = 0; j < labels.size(); ++j)
       for (std::size_t component = 0; component < disc_families.size(); ++component)
         if (labels[j].family == disc_families[component] && labels[j].nodal_diameters > 0)
-          shares[j] = disc.wave_shares(disc.cylindrical(real_part.col(j)).col(component),
-                                       disc.cylindrical(imaginary_part.col(j)).col(component), labels[j].nodal_diameters);
+          shares[j] = disc.wave_shares(disc.cylindrical(real_part, static_cast<int>(j)).col(component),
+                                       disc.cylindrical(imaginary_part, static_cast<int>(j)).col(component), labels[j].nodal_diameters);
     return shares;
   }
 
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,
                                     const std::vector<double> &nodal_masses,
-                                    const DenseMatrix         &modes)
+                                    const MultiVector         &modes)
   {
     const auto  axes     = pin_axes(interface);
-    DenseMatrix energies = DenseMatrix::Zero(3, modes.cols());
+    DenseMatrix energies = DenseMatrix::Zero(3, modes.n_columns());
     for (const auto &[pin, axis] : axes)
       add_energies(Nodes(model, nodal_masses, pin), axis, modes, energies);
 
@@ -300,7 +386,7 @@ namespace Squeal
     std::array<int, 3>                  count{};
     const int                           n_pins    = axes.size();
     const std::array<int, 3>            per_order = {{2 * n_pins, n_pins, n_pins}};
-    for (Eigen::Index m = 0; m < modes.cols(); ++m)
+    for (int m = 0; m < modes.n_columns(); ++m)
       {
         Eigen::Index f;
         energies.col(m).maxCoeff(&f);

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -62,7 +63,7 @@ namespace Squeal
   ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions)
   {
     const DenseMatrix    D    = replicate(normal * motions);
-    const double         size = max_norm(replicate(motions)) * std::sqrt(D.rows());
+    const double         size = dealii::Utilities::MPI::max(max_norm(motions.local()), motions.communicator()) * std::sqrt(D.rows());
     const SingularValues axes = singular_values(D); // descending
     const auto [values, V]    = agreed(motions.communicator(), {axes.values, axes.right});
     const int k               = motions.n_columns();

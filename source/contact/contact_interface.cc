@@ -3,6 +3,7 @@
 #include <squeal/base/text.h>
 #include <squeal/contact/contact_interface.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
 
@@ -26,12 +27,24 @@ namespace Squeal
     /// A node of a contact surface with the area-weighted normal of the faces that meet there.
     struct SurfaceNode
     {
+      Node            node;
       Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
       double          area        = 0.;
+
+      Eigen::Vector3d position() const
+      {
+        return Eigen::Vector3d::Map(node.position.data());
+      }
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &node &area_normal[0] & area_normal[1] & area_normal[2] & area;
+      }
     };
 
-    /// Nodes of a named surface, in the order of their numbers.
-    std::map<unsigned int, SurfaceNode> surface_nodes(const Model &model, const char *surface)
+    /// Those that this process owns; it has all their faces.
+    std::vector<SurfaceNode> own_surface_nodes(const Model &model, const char *surface)
     {
       const types::boundary_id id = model.surface_id(surface);
       const auto              &fe = model.dof_handler().get_fe();
@@ -40,14 +53,16 @@ namespace Squeal
       std::map<unsigned int, SurfaceNode>  nodes;
       for (const auto &cell : model.dof_handler().active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
-          if (cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+          if (!cell->is_artificial() && cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
             {
               values.reinit(cell, f);
               cell->get_dof_indices(dofs);
               for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
                 if (fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, f))
                   {
-                    SurfaceNode &entry = nodes[model.node_of_dof(dofs[i])];
+                    const unsigned int number = model.node_of_dof(dofs[i]);
+                    SurfaceNode       &entry  = nodes[number];
+                    entry.node                = model.nodes()[number];
                     for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
                       {
                         entry.area += values.shape_value(i, q) * values.JxW(q);
@@ -55,12 +70,21 @@ namespace Squeal
                       }
                   }
             }
-      return nodes;
+      std::vector<SurfaceNode> result;
+      for (const auto &[number, entry] : nodes)
+        if (entry.node.is_own)
+          result.push_back(entry);
+      return result;
     }
 
-    Eigen::Vector3d position(const Model &model, const unsigned int node)
+    /// Nodes of a named surface on every process, in the order of their numbers.
+    std::vector<SurfaceNode> surface_nodes(const Model &model, const char *surface)
     {
-      return Eigen::Vector3d::Map(model.nodes()[node].position.data());
+      std::vector<SurfaceNode> result;
+      for (const std::vector<SurfaceNode> &part : Utilities::MPI::all_gather(model.communicator(), own_surface_nodes(model, surface)))
+        result.insert(result.end(), part.begin(), part.end());
+      std::sort(result.begin(), result.end(), [](const SurfaceNode &a, const SurfaceNode &b) { return a.node.number < b.node.number; });
+      return result;
     }
 
     std::string place(const Eigen::Vector3d &p)
@@ -99,10 +123,10 @@ namespace Squeal
     // Disc nodes sorted by x: a partner is looked for among the neighbours only
     std::vector<std::pair<double, unsigned int>> sorted;
     double                                       outermost = 0.;
-    for (const auto &[number, node] : disc_nodes)
+    for (unsigned int d = 0; d < disc_nodes.size(); ++d)
       {
-        const Eigen::Vector3d p = position(model, number);
-        sorted.emplace_back(p[0], number);
+        const Eigen::Vector3d p = disc_nodes[d].position();
+        sorted.emplace_back(p[0], d);
         outermost = std::max(outermost, std::hypot(p[0], p[1]));
       }
     std::sort(sorted.begin(), sorted.end());
@@ -112,16 +136,16 @@ namespace Squeal
     std::map<unsigned int, int> partners;
     unsigned int                n_single = 0;
     std::string                 example; // of a node without one
-    for (const auto &[pin_node, pin_entry] : pin_nodes)
+    for (const SurfaceNode &pin_node : pin_nodes)
       {
-        const Eigen::Vector3d p       = position(model, pin_node);
+        const Eigen::Vector3d p       = pin_node.position();
         unsigned int          nearest = 0;
         double                gap     = std::numeric_limits<double>::infinity();
         // Far partners are sought in a wider window so that the message can name the distance.
         const double window = std::max(tolerance, 1e-2);
         for (auto it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(p[0] - window, 0u));
              it != sorted.end() && it->first <= p[0] + window; ++it)
-          if (const double distance = (position(model, it->second) - p).norm(); distance < gap)
+          if (const double distance = (disc_nodes[it->second].position() - p).norm(); distance < gap)
             {
               gap     = distance;
               nearest = it->second;
@@ -138,14 +162,14 @@ namespace Squeal
                           "separate the pins, so that no two of them share a point of the disc");
 
         ContactNode node;
-        node.disc_node = nearest;
-        node.pin_node  = pin_node;
-        node.pin       = model.nodes()[pin_node].component;
-        node.position  = position(model, nearest);
-        node.area      = pin_entry.area;
-        set_frame(node, disc_nodes.at(nearest).area_normal, outermost, rotation);
-        for (const unsigned int partner : {node.disc_node, node.pin_node})
-          for (const int dof : model.nodes()[partner].dofs)
+        node.disc_node = disc_nodes[nearest].node;
+        node.pin_node  = pin_node.node;
+        node.pin       = pin_node.node.component;
+        node.position  = disc_nodes[nearest].position();
+        node.area      = pin_node.area;
+        set_frame(node, disc_nodes[nearest].area_normal, outermost, rotation);
+        for (const Node *partner : {&node.disc_node, &node.pin_node})
+          for (const int dof : partner->dofs)
             if (dof < 0)
               throw MeshError("a contact node is clamped", "contact node at " + place(p),
                               "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");

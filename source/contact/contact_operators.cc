@@ -1,5 +1,7 @@
 #include <squeal/contact/contact_operators.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <cmath>
 #include <map>
 
@@ -19,13 +21,13 @@ namespace Squeal
     }
 
     /**
-     * Eliminates one dof of @p node_number from n·u = s: its other directions,
+     * Eliminates one dof of @p node from n·u = s: its other directions,
      * and those of @p partner (s = n·u_partner) where there is one.
      */
-    void eliminate(SlaveRows &rows, const Model &model, const ContactNode &contact, const unsigned int node_number, const int partner)
+    void eliminate(SlaveRows &rows, const ContactNode &contact, const Node &node, const Node *partner)
     {
       const unsigned int k     = eliminated_direction(contact);
-      const auto        &slave = model.nodes()[node_number].dofs;
+      const auto        &slave = node.dofs;
       auto              &row   = rows[slave[k]];
       for (unsigned int j = 0; j < 3; ++j)
         {
@@ -34,32 +36,51 @@ namespace Squeal
             continue;
           if (j != k)
             row.emplace_back(slave[j], -ratio);
-          if (partner >= 0)
-            row.emplace_back(model.nodes()[partner].dofs[j], ratio);
+          if (partner != nullptr)
+            row.emplace_back(partner->dofs[j], ratio);
         }
     }
 
-    /// Selection of the dofs that are @p kept and not slaves, with the rows of the slaves.
+    /// Columns of the masters of all slaves, whoever has them; the columns of this process begin with number @p first.
+    std::map<int, int> master_columns(const RowMap &rows, const std::vector<int> &column, const int first, const SlaveRows &slaves)
+    {
+      std::map<int, int> result;
+      for (const auto &[slave, row] : slaves)
+        for (const auto &[master, coefficient] : row)
+          result[master] = 0;
+      std::vector<int> numbers;
+      for (const auto &[master, number] : result)
+        {
+          const int place = rows.place(master);
+          numbers.push_back(place >= 0 ? first + column[place] : 0);
+        }
+      dealii::Utilities::MPI::sum(numbers, rows.communicator(), numbers);
+      auto next = numbers.begin();
+      for (auto &[master, number] : result)
+        number = *next++;
+      return result;
+    }
+
+    /// Selection of the dofs that are @p kept, of those of this process, and not slaves, with the rows of the slaves.
     std::shared_ptr<SparseMatrix> kernel_matrix(const RowMap &rows, const std::vector<bool> &kept, const SlaveRows &slaves)
     {
       // Columns keep the order and the owner of their dofs
       std::vector<int> column(kept.size(), -1);
-      int              n_columns = 0, n_own = 0;
-      for (unsigned int dof = 0; dof < kept.size(); ++dof)
-        if (kept[dof] && slaves.count(dof) == 0)
-          {
-            column[dof] = n_columns++;
-            n_own += rows.place(static_cast<int>(dof)) >= 0;
-          }
-      return std::make_shared<SparseMatrix>(rows, RowMap::contiguous(n_own, rows.communicator()), [&](const int i, SparseMatrix::Row &row) {
-        const int dof = rows.number(i);
-        if (!kept[dof])
+      int              n_own = 0;
+      for (unsigned int i = 0; i < kept.size(); ++i)
+        if (kept[i] && slaves.count(rows.number(i)) == 0)
+          column[i] = n_own++;
+      const RowMap columns = RowMap::contiguous(n_own, rows.communicator());
+      const int    first   = n_own > 0 ? columns.number(0) : 0;
+      const auto   masters = master_columns(rows, column, first, slaves);
+      return std::make_shared<SparseMatrix>(rows, columns, [&](const int i, SparseMatrix::Row &row) {
+        if (!kept[i])
           return;
-        if (const auto slave = slaves.find(dof); slave != slaves.end())
+        if (const auto slave = slaves.find(rows.number(i)); slave != slaves.end())
           for (const auto &[master, coefficient] : slave->second)
-            row.emplace_back(column[master], coefficient);
+            row.emplace_back(masters.at(master), coefficient);
         else
-          row.emplace_back(column[dof], 1.);
+          row.emplace_back(first + column[i], 1.);
       });
     }
 
@@ -74,8 +95,8 @@ namespace Squeal
         for (unsigned int k = 0; k < 3; ++k)
           if (const double value = (node.*direction)[k]; value != 0.)
             {
-              row.emplace_back(model.nodes()[node.disc_node].dofs[k], value);
-              row.emplace_back(model.nodes()[node.pin_node].dofs[k], -value);
+              row.emplace_back(node.disc_node.dofs[k], value);
+              row.emplace_back(node.pin_node.dofs[k], -value);
             }
       });
     }
@@ -85,10 +106,10 @@ namespace Squeal
   {
     SlaveRows slaves;
     for (const ContactNode &contact : interface)
-      eliminate(slaves, model, contact, contact.pin_node, contact.disc_node);
+      eliminate(slaves, contact, contact.pin_node, &contact.disc_node);
     return {relative_displacement(model, interface, &ContactNode::normal), relative_displacement(model, interface, &ContactNode::sliding),
             relative_displacement(model, interface, &ContactNode::radial),
-            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n(), true), slaves)};
+            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n_local(), true), slaves)};
   }
 
   bool belongs_to(const Node &node, const Component component)
@@ -101,19 +122,19 @@ namespace Squeal
                                                  const Component         component,
                                                  const ContactBoundary   boundary)
   {
-    std::vector<bool> kept(model.free_map().n(), false);
+    std::vector<bool> kept(model.free_map().n_local(), false);
     for (const Node &node : model.nodes())
       if (belongs_to(node, component))
         for (const int dof : node.dofs)
-          if (dof >= 0)
-            kept[dof] = true;
+          if (const int i = model.free_map().place(dof); i >= 0)
+            kept[i] = true;
 
     SlaveRows slaves;
     if (boundary == ContactBoundary::sliding)
       for (const ContactNode &contact : interface)
-        for (const unsigned int node : {contact.disc_node, contact.pin_node})
-          if (belongs_to(model.nodes()[node], component))
-            eliminate(slaves, model, contact, node, -1);
+        for (const Node *node : {&contact.disc_node, &contact.pin_node})
+          if (belongs_to(*node, component))
+            eliminate(slaves, contact, *node, nullptr);
     return kernel_matrix(model.free_map(), kept, slaves);
   }
 

@@ -1,6 +1,12 @@
+#include <squeal/base/memory_limit.h>
 #include <squeal/contact/updated_inverse.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/linear_algebra/weighted_gram.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
 
 namespace Squeal
 {
@@ -17,22 +23,56 @@ namespace Squeal
     }
   } // namespace
 
+  bool may_keep_attachment_modes(const CoupledSystem &system)
+  {
+    const double bytes = double(sizeof(double)) * system.map().n_local() * system.n_contact();
+    return dealii::Utilities::MPI::min(bytes <= largest_part_of_attachment_modes * available_memory() ? 1 : 0,
+                                       system.map().communicator()) == 1;
+  }
+
   UpdatedInverse::UpdatedInverse(const CoupledSystem       &system,
                                  const double               shift,
                                  const FactorizationLibrary library,
-                                 const AttachmentModes      attachment)
-    : factor(factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction"))
+                                 const AttachmentModes      attachment,
+                                 const FactorTime           time)
+    : attachment(attachment)
+    , later(factorize_beside(
+        system.map(),
+        [&system, shift] { return frictionless_pencil(system, shift); },
+        library,
+        "stiffness of the coupled system without friction",
+        system.near_null_space.get()))
+    , rows(system.map())
     , A(system.friction_forces)
     , V(normal_reactions(system, shift))
   {
+    if (time == FactorTime::at_once)
+      frictionless();
     if (attachment == AttachmentModes::at_once)
       attachment_modes();
+  }
+
+  const Factorization &UpdatedInverse::frictionless() const
+  {
+    if (!factor)
+      {
+        FactorBeside made = later.get();
+        factor            = std::move(made.factor);
+        seconds_beside    = made.cpu_seconds;
+      }
+    return *factor;
   }
 
   const MultiVector &UpdatedInverse::attachment_modes() const
   {
     if (!X)
-      X = std::make_unique<MultiVector>(solve_frictionless(A->columns(0, A->rank())));
+      {
+        X = std::make_unique<MultiVector>(rows, A->rank(), false);
+        for_column_blocks(A->rank(), [this](const int first, const int n) {
+          MultiVector place = view(*X, first, n);
+          frictionless().apply(A->columns(first, n), place);
+        });
+      }
     return *X;
   }
 
@@ -41,21 +81,40 @@ namespace Squeal
     return X ? *X * B : solve_frictionless(*A * B);
   }
 
+  void UpdatedInverse::for_responses(const LowRankFactor &F, const std::function<void(int first, const MultiVector &X_b)> &f) const
+  {
+    if (&F == A.get() && (X || attachment != AttachmentModes::not_kept))
+      {
+        f(0, attachment_modes());
+        return;
+      }
+    for_column_blocks(F.rank(), [&](const int first, const int n) { f(first, solve_frictionless(F.columns(first, n))); });
+  }
+
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
     friction_coefficient = mu;
     const int n_c        = A->rank();
     if (!VX)
-      VX = V ? replicate(*V * attachment_modes()) : DenseMatrix::Zero(n_c, n_c);
+      {
+        VX = DenseMatrix::Zero(n_c, n_c);
+        if (V)
+          for_responses(*A,
+                        [this](const int first, const MultiVector &X_b) { VX->middleCols(first, X_b.n_columns()) = replicate(*V * X_b); });
+      }
     correction = regular_lu(DenseMatrix::Identity(n_c, n_c) - mu * *VX, "stiffness with friction, condensed to the contact nodes");
   }
 
   void UpdatedInverse::apply(const MultiVector &B, MultiVector &Y) const
   {
-    factor->apply(B, Y);
+    frictionless().apply(B, Y);
     if (friction_coefficient == 0. || !V)
       return;
-    multiply_add(friction_coefficient, *X, correction->solve(replicate(*V * Y)), 1., Y);
+    const DenseMatrix forces = correction->solve(replicate(*V * Y));
+    if (X)
+      multiply_add(friction_coefficient, *X, forces, 1., Y);
+    else
+      frictionless().apply(B + friction_coefficient * (*A * forces), Y);
   }
 
   MultiVector UpdatedInverse::solve_frictionless(const MultiVector &B) const
@@ -63,12 +122,12 @@ namespace Squeal
     MultiVector            Y(B.map(), B.n_columns());
     const std::vector<int> columns = nonzero_columns(B); // imaginary parts of neutral modes are zero
     if (static_cast<int>(columns.size()) == B.n_columns())
-      factor->apply(B, Y);
+      frictionless().apply(B, Y);
     else if (!columns.empty())
       {
         const MultiVector some = selected(B, columns);
         MultiVector       found(B.map(), some.n_columns());
-        factor->apply(some, found);
+        frictionless().apply(some, found);
         Y.local()(Eigen::all, columns) = found.local();
       }
     return Y;
@@ -76,6 +135,6 @@ namespace Squeal
 
   const RowMap &UpdatedInverse::map() const
   {
-    return factor->map();
+    return rows;
   }
 } // namespace Squeal

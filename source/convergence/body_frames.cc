@@ -1,5 +1,7 @@
 #include <squeal/convergence/body_frames.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -53,6 +55,18 @@ namespace Squeal
           {
             frame.lower[d] = std::min(frame.lower[d], node.position[d]);
             frame.upper[d] = std::max(frame.upper[d], node.position[d]);
+          }
+      }
+    using dealii::Utilities::MPI::max;
+    using dealii::Utilities::MPI::min;
+    for (BodyFrame &frame : result)
+      {
+        frame.inner_radius = min(frame.inner_radius, model.communicator());
+        frame.outer_radius = max(frame.outer_radius, model.communicator());
+        for (unsigned int d = 0; d < 3; ++d)
+          {
+            frame.lower[d] = min(frame.lower[d], model.communicator());
+            frame.upper[d] = max(frame.upper[d], model.communicator());
           }
       }
     for (BodyFrame &frame : result)

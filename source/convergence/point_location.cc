@@ -42,10 +42,11 @@ namespace Squeal
   {
     std::vector<std::vector<Leaf>> leaves(model.component_names().size());
     for (const auto &cell : model.dof_handler().active_cell_iterators())
-      {
-        leaves[cell->material_id()].emplace_back(model.mapping().get_bounding_box(cell), cells.size());
-        cells.push_back(cell);
-      }
+      if (cell->is_locally_owned())
+        {
+          leaves[cell->material_id()].emplace_back(model.mapping().get_bounding_box(cell), cells.size());
+          cells.push_back(cell);
+        }
     for (const auto &of_body : leaves)
       trees.push_back(pack_rtree(of_body));
   }
@@ -60,30 +61,26 @@ namespace Squeal
     return it - names.begin();
   }
 
-  PointInCell PointLocation::find(const unsigned int body, const Point<3> &point) const
+  PointInCell PointLocation::find(const unsigned int body, const Point<3> &point, const PointSearch search) const
   {
-    std::optional<PointInCell> nearest;
-    double                     distance = std::numeric_limits<double>::infinity();
-    const auto                 query    = boost::geometry::index::nearest(point, n_candidates);
+    PointInCell nearest{{}, {}, std::numeric_limits<double>::infinity()};
+    const auto  query = boost::geometry::index::nearest(point, n_candidates);
     for (auto leaf = trees[body].qbegin(query); leaf != trees[body].qend(); ++leaf)
       {
+        // Boxes that hold the point come first
+        if (search == PointSearch::inside && !leaf->first.point_inside(point))
+          break;
         const Cell &cell      = cells[leaf->second];
         const auto  reference = reference_coordinates(model.mapping(), cell, point);
         if (!reference)
           continue;
         const Point<3> inside = GeometryInfo<3>::project_to_unit_cell(*reference);
         if (inside.distance(*reference) < beyond_by_rounding)
-          return {cell, inside};
+          return {cell, inside, 0.};
         const double from_cell = model.mapping().transform_unit_to_real_cell(cell, inside).distance(point);
-        if (from_cell < distance)
-          {
-            distance = from_cell;
-            nearest  = PointInCell{cell, inside};
-          }
+        if (search == PointSearch::nearest && from_cell < nearest.distance)
+          nearest = {cell, inside, from_cell};
       }
-    if (!nearest)
-      throw MeshError("no cell of " + model.component_names()[body] + " is near a point of another mesh",
-                      "displacements at the points of another mesh", "compare meshes of the same geometry");
-    return *nearest;
+    return nearest;
   }
 } // namespace Squeal

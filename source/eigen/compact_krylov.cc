@@ -322,62 +322,62 @@ namespace Squeal
     return ritz;
   }
 
-  void CompactKrylov::restart(const RitzPairs &ritz, const int n_kept)
+  void CompactKrylov::take_schur_vectors(const CompactKrylov &from, const RitzPairs &ritz, const int n_kept, const int n_reserved)
   {
     // ------------------------------------------------- wanted Schur vectors first
+    const int               n = from.m;
     DenseMatrix             T = ritz.schur_form, Z = ritz.schur_vectors;
-    std::vector<lapack_int> selected(m, 0);
+    std::vector<lapack_int> selected(n, 0);
     for (int i = 0; i < n_kept; ++i)
       {
         selected[ritz.positions[i]] = 1;
         if (ritz.values[i].imag() != 0.)
           selected[ritz.positions[i] + 1] = 1;
       }
-    std::vector<double> real(m), imaginary(m);
+    std::vector<double> real(n), imaginary(n);
     lapack_int          q         = 0;
     double              condition = 0., separation = 0.;
-    std::vector<double> work(std::max(m, 1));
+    std::vector<double> work(std::max(n, 1));
     lapack_int          integer_work = 0;
     // A positive result means that two values too close to be exchanged stay
     // where they are: the Schur form is valid all the same. LAPACKE's driver
     // without "_work" hands over no integer work space here, and crashes.
-    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), m, T.data(), m, Z.data(), m, real.data(), imaginary.data(), &q,
-                        &condition, &separation, work.data(), m, &integer_work, 1);
-    if (q > 0 && q < m && T(q, q - 1) != 0.)
+    LAPACKE_dtrsen_work(LAPACK_COL_MAJOR, 'N', 'V', selected.data(), n, T.data(), n, Z.data(), n, real.data(), imaginary.data(), &q,
+                        &condition, &separation, work.data(), n, &integer_work, 1);
+    if (q > 0 && q < n && T(q, q - 1) != 0.)
       ++q;
     agree(map.communicator(), T);
     agree(map.communicator(), Z);
     const DenseMatrix kept = Z.leftCols(q);
 
     // ------------------------------------------------- new coordinates and [H; B]
-    const DenseMatrix states = append_columns(G.leftCols(m) * kept, G.rightCols(b));
-    H                        = above(T.topLeftCorner(q, q), H.bottomRows(b) * kept);
+    const DenseMatrix states = append_columns(from.G.leftCols(n) * kept, from.G.rightCols(from.b));
+    H                        = above(T.topLeftCorner(q, q), from.H.bottomRows(from.b) * kept);
+    b                        = from.b;
 
     // ------------------------------------------------- smallest basis of all parts
     DenseMatrix       P = parts_of(states, degree);
     const DenseMatrix R = pivoted_qr(P, negligible);
     agree(map.communicator(), P);
 
-    auto        compressed = std::make_unique<MultiVector>(map, U->n_columns(), false);
+    auto        compressed = std::make_unique<MultiVector>(map, std::max(n_reserved, static_cast<int>(P.cols())), false);
     MultiVector target     = view(*compressed, 0, P.cols());
-    multiply_add(1., basis(), P, 0., target);
+    multiply_add(1., from.basis(), P, 0., target);
     U = std::move(compressed);
     r = P.cols();
     m = q;
     G = stacked(R, degree, r);
   }
 
-  CompactKrylov CompactKrylov::deflated(const RitzPairs &ritz, const int n_locked) const
+  void CompactKrylov::restart(const RitzPairs &ritz, const int n_kept)
   {
-    CompactKrylov result(map, degree, r);
-    MultiVector   target = view(*result.U, 0, r);
-    target               = basis();
-    result.r             = r;
-    result.m             = m;
-    result.b             = b;
-    result.G             = G;
-    result.H             = H;
-    result.restart(ritz, n_locked);
+    take_schur_vectors(*this, ritz, n_kept, U->n_columns());
+  }
+
+  CompactKrylov CompactKrylov::deflated(const RitzPairs &ritz, const int n_locked, const int n_more) const
+  {
+    CompactKrylov result(map, degree, 0);
+    result.take_schur_vectors(*this, ritz, n_locked, n_locked + n_more);
     result.b = 0;
     result.G.conservativeResize(Eigen::NoChange, result.m);
     result.H.conservativeResize(result.m, Eigen::NoChange);

@@ -1,5 +1,3 @@
-#include "shift_invert.h"
-
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>

@@ -68,7 +68,7 @@ namespace Squeal
     struct Candidate
     {
       Complex value;
-      int     column;    ///< of the real part among the vectors computed
+      int     position;  ///< of the real part among the eigenvectors of the projected matrix
       double  conjugate; ///< sign of the imaginary part; 0 for a real vector
     };
 
@@ -94,7 +94,6 @@ namespace Squeal
     {
       QuadraticModes         modes;
       std::vector<Candidate> candidates;
-      std::vector<int>       positions;
       for (std::size_t i = 0; i < ritz.values.size(); ++i)
         {
           const Complex nu     = ritz.values[i];
@@ -114,12 +113,7 @@ namespace Squeal
             {
               // The members of a conjugate pair ν share two columns; of degree
               // one both have a λ with Im λ > 0, of degree two only one.
-              auto      found  = std::find(positions.begin(), positions.end(), ritz.positions[i]);
-              const int column = static_cast<int>(found - positions.begin());
-              if (found == positions.end())
-                for (int part = 0; part < (pair ? 2 : 1); ++part)
-                  positions.push_back(ritz.positions[i] + part);
-              candidates.push_back({lambda, column, !pair ? 0. : nu.imag() > 0. ? 1. : -1.});
+              candidates.push_back({lambda, ritz.positions[i], !pair ? 0. : nu.imag() > 0. ? 1. : -1.});
             }
         }
       std::sort(modes.real_values.begin(), modes.real_values.end());
@@ -133,14 +127,27 @@ namespace Squeal
       modes.imaginary_part = k > 0 ? std::make_shared<MultiVector>(pencil.mass->map(), k) : nullptr;
       if (k > 0)
         {
-          const MultiVector vectors = krylov.ritz_vectors(ritz, positions);
-          for (int j = 0; j < k; ++j)
+          // Some modes at a time: beside the basis there is not always room for all of them twice
+          constexpr int modes_together = 16;
+          for (int first = 0; first < k; first += modes_together)
             {
-              const Candidate &candidate = candidates[j];
-              modes.values.push_back(candidate.value);
-              modes.real_part->col(j) = vectors.col(candidate.column);
-              if (candidate.conjugate != 0.)
-                modes.imaginary_part->col(j) = candidate.conjugate * vectors.col(candidate.column + 1);
+              std::vector<int> some;
+              for (int j = first; j < std::min(k, first + modes_together); ++j)
+                {
+                  some.push_back(candidates[j].position);
+                  if (candidates[j].conjugate != 0.)
+                    some.push_back(candidates[j].position + 1);
+                }
+              const MultiVector vectors = krylov.ritz_vectors(ritz, some);
+              int               column  = 0;
+              for (int j = first; j < std::min(k, first + modes_together); ++j)
+                {
+                  const Candidate &candidate = candidates[j];
+                  modes.values.push_back(candidate.value);
+                  modes.real_part->col(j) = vectors.col(column++);
+                  if (candidate.conjugate != 0.)
+                    modes.imaginary_part->col(j) = candidate.conjugate * vectors.col(column++);
+                }
             }
           normalize(*modes.real_part, *modes.imaginary_part);
           modes.residuals = residuals(pencil, modes.values, *modes.real_part, *modes.imaginary_part);
@@ -255,10 +262,11 @@ namespace Squeal
         const int n_fresh = options.n_fresh_directions;
         if (exhausted || n_fresh == 0)
           return true;
-        CompactKrylov proof = krylov.deflated(ritz, state.n_inside);
+        const bool    fewer   = transformation.degree * options.expected > state.n_inside;
+        const int     n_steps = fewer ? n_searching_steps : n_proving_steps;
+        CompactKrylov proof   = krylov.deflated(ritz, state.n_inside, (n_steps + 1) * n_fresh);
         proof.inject(fresh_vectors(n_fresh));
-        const bool fewer = transformation.degree * options.expected > state.n_inside;
-        for (int step = 0; step < (fewer ? n_searching_steps : n_proving_steps) && proof.block_size() > 0; ++step)
+        for (int step = 0; step < n_steps && proof.block_size() > 0; ++step)
           proof.expand(shift_invert());
         const RitzPairs more = proof.ritz_pairs();
         const auto      count =

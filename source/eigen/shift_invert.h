@@ -56,14 +56,9 @@ namespace Squeal
   /// Approximate eigenvectors of the largest eigenvalues by Anasazi: up to n_wanted, nothing if none converged.
   std::optional<MultiVector> anasazi_vectors(const ShiftInvert &A, const KrylovRequest &request);
 
+  /// The same by a block Lanczos process; those that have converged, up to the largest that has not.
+  std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request);
+
   /// The same by ARPACK.
   std::optional<MultiVector> arpack_vectors(const ShiftInvert &A, const KrylovRequest &request);
-
-  /// A limit and the number of eigenvalues of K φ = ω² M φ below it.
-  struct ModeCount
-  {
-    int    n_modes;
-    double limit; ///< at or, where an eigenvalue lies on it, slightly above what was asked for
-  };
-  ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 } // namespace Squeal

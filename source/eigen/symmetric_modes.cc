@@ -1,3 +1,4 @@
+#include "preconditioned_modes.h"
 #include "shift_invert.h"
 
 #include <squeal/base/conventions.h>
@@ -5,6 +6,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
+#include <squeal/linear_algebra/factorization_beside.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -48,12 +50,18 @@ namespace Squeal
         : K(K)
         , M(M)
         , options(options)
-        , count(count_below(K, M, limit, options.what))
+        , early(factor_of_stiffness())
+        , counted(options.counting == ModeCounting::inertia || K.n_rows() <= largest_dense_system)
+        , count(options.count ? *options.count :
+                counted       ? count_below(K, M, limit, options.what) :
+                                ModeCount{0, limit})
       {}
 
       SymmetricModes modes()
       {
         SymmetricModes modes;
+        if (!counted)
+          return uncounted();
         if (count.n_modes > 0)
           {
             RitzPairs       pairs  = find_all();
@@ -65,6 +73,58 @@ namespace Squeal
       }
 
     private:
+      /// Whatever LOBPCG finds in the band; the last search, orthogonal to it, finds nothing more.
+      SymmetricModes uncounted()
+      {
+        RitzPairs pairs;
+        int       n_wanted = std::max(8, options.n_expected);
+        for (unsigned int attempt = 0;; ++attempt)
+          {
+            const std::optional<MultiVector> fresh = lobpcg(n_wanted, attempt, pairs.vectors);
+            if (!fresh)
+              throw SolverError("LOBPCG found nothing in its search number " + std::to_string(attempt + 1), options.what,
+                                "choose Anasazi or ARPACK as solver of the real modes");
+            const int n_before = static_cast<int>(pairs.values.size());
+            if (merge(*fresh, pairs) == n_before)
+              break;
+            // Once a search went beyond the band, a few vectors look for missing modes.
+            const int n_now = static_cast<int>(pairs.values.size());
+            n_wanted        = n_now - n_before < fresh->n_columns() ? 4 : std::max(8, options.n_expected - n_now);
+          }
+        SymmetricModes modes;
+        count.n_modes = static_cast<int>(pairs.values.size());
+        if (count.n_modes > 0)
+          {
+            const Residuals result = refine(pairs);
+            modes                  = accept(pairs, result);
+          }
+        modes.n_counted = not_counted;
+        return modes;
+      }
+
+      std::optional<MultiVector> lobpcg(const int n_wanted, const unsigned int attempt, const std::optional<MultiVector> &deflated)
+      {
+        return lobpcg_vectors(
+          K, M, preconditioner(), deflated ? &*deflated : nullptr,
+          {std::min(n_wanted, K.n_rows() / 8), 0.3 * options.tolerance, count.limit, options.seed + 7919 * attempt, options.what});
+      }
+
+      /// An approximation of (K + s M)⁻¹ for LOBPCG.
+      const LinearOperator &preconditioner()
+      {
+        if (options.preconditioner != nullptr)
+          return *options.preconditioner;
+        if (!multigrid)
+          {
+            if (options.near_null_space == nullptr)
+              throw SolverError("LOBPCG was asked for where no near null space is known", options.what,
+                                "choose Anasazi or ARPACK as solver of the real modes");
+            multigrid =
+              std::make_unique<Multigrid>(options.shift > 0. ? *add(1., K, options.shift, M) : K, *options.near_null_space, options.what);
+          }
+        return *multigrid;
+      }
+
       const LinearOperator &inverse()
       {
         if (options.inverse != nullptr)
@@ -74,7 +134,8 @@ namespace Squeal
         if (options.shift == 0.)
           try
             {
-              factorization = factorize_positive_definite(K, options.library, options.what);
+              factorization =
+                early.valid() ? early.get().factor : factorize_positive_definite(K, options.library, options.what, options.near_null_space);
               return *factorization;
             }
           catch (const SolverError &)
@@ -83,8 +144,18 @@ namespace Squeal
               // reason was another one, the next attempt says so.
             }
         const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
-        factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what);
+        factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what, options.near_null_space);
         return *factorization;
+      }
+
+      /// The factor of K, if it will be needed, while modes are counted.
+      std::future<FactorBeside> factor_of_stiffness() const
+      {
+        if (options.inverse != nullptr || options.shift != 0. || options.solver == RealSolver::lobpcg || K.n_rows() <= largest_dense_system)
+          return {};
+        return factorize_beside(
+          K.rows(), [this] { return std::shared_ptr<const SparseMatrix>(std::shared_ptr<const SparseMatrix>(), &K); }, options.library,
+          options.what, options.near_null_space);
       }
 
       /// A space that contains approximations of all wanted modes.
@@ -101,25 +172,31 @@ namespace Squeal
         for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
           {
             const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
-            if (fresh)
+            if (const int n_all = fresh ? merge(*fresh, pairs) : 0; n_all > n_found)
               {
-                const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &*fresh}) : *fresh;
-                RitzPairs         all   = rayleigh_ritz(K, M, space);
-                const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
-                if (n_all > n_found)
-                  {
-                    // Vectors above the limit must not be deflated: they may be far from modes.
-                    pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
-                    pairs.vectors.emplace(view(*all.vectors, 0, n_all));
-                    n_found = n_all;
-                    continue;
-                  }
+                n_found = n_all;
+                continue;
               }
             if (lift_limit() || ++n_fruitless < most_fruitless_starts)
               continue;
             fail_incomplete(n_found);
           }
         return pairs;
+      }
+
+      /// Puts fresh vectors to the pairs where modes in the band come with them; how many are in the band then.
+      int merge(const MultiVector &fresh, RitzPairs &pairs) const
+      {
+        const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &fresh}) : fresh;
+        RitzPairs         all   = rayleigh_ritz(K, M, space);
+        const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
+        if (n_all > static_cast<int>(pairs.values.size()))
+          {
+            // Vectors above the limit must not be deflated: they may be far from modes.
+            pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
+            pairs.vectors.emplace(view(*all.vectors, 0, n_all));
+          }
+        return n_all;
       }
 
       RitzPairs dense()
@@ -138,6 +215,8 @@ namespace Squeal
                                         const int                         n_fruitless,
                                         const std::optional<MultiVector> &deflated)
       {
+        if (options.solver == RealSolver::lobpcg)
+          return lobpcg(n_wanted, attempt, deflated);
         const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
         KrylovRequest     request;
         request.n_wanted   = n_wanted;
@@ -146,9 +225,19 @@ namespace Squeal
         request.seed       = options.seed + 7919 * attempt;
         request.attempt    = n_fruitless;
         request.what       = options.what;
-        // Where the chosen solver finds no more, the other one may
-        const bool anasazi = (options.solver == RealSolver::anasazi) == (n_fruitless < most_fruitless_starts - 1);
-        return anasazi ? anasazi_vectors(A, request) : arpack_vectors(A, request);
+        // Where the chosen solver finds no more, another one may
+        const RealSolver other = options.solver == RealSolver::anasazi ? RealSolver::arpack : RealSolver::anasazi;
+        switch (n_fruitless < most_fruitless_starts - 1 ? options.solver : other)
+          {
+            case RealSolver::lanczos:
+              return lanczos_vectors(A, request);
+            case RealSolver::anasazi:
+              return anasazi_vectors(A, request);
+            case RealSolver::lobpcg: // above
+            case RealSolver::arpack:
+              break;
+          }
+        return arpack_vectors(A, request);
       }
 
       /**
@@ -208,18 +297,25 @@ namespace Squeal
         return residuals;
       }
 
-      /// Inverse iteration, block-wise, until the residuals are accepted.
+      /// Inverse iteration, block-wise, until the residuals are accepted; without an inverse, steps along preconditioned residuals.
       Residuals refine(RitzPairs &pairs)
       {
         Residuals result = residuals(pairs);
         for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
           {
-            MultiVector       W(pairs.vectors->map(), pairs.vectors->n_columns());
-            const ShiftInvert A(inverse(), M, nullptr);
-            A.apply(*pairs.vectors, W);
+            const int   n = pairs.vectors->n_columns();
+            MultiVector W(pairs.vectors->map(), n);
+            if (options.solver == RealSolver::lobpcg)
+              {
+                MultiVector R = K * *pairs.vectors - M * *pairs.vectors * DenseMatrix(as_column(pairs.values).asDiagonal());
+                preconditioner().apply(R, W);
+                W = join({&*pairs.vectors, &W});
+              }
+            else
+              ShiftInvert(inverse(), M, nullptr).apply(*pairs.vectors, W);
             RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
-            pairs.values      = std::move(refined.values);
-            pairs.vectors.emplace(*refined.vectors);
+            pairs.values.assign(refined.values.begin(), refined.values.begin() + n);
+            pairs.vectors.emplace(view(*refined.vectors, 0, n));
             result = residuals(pairs);
           }
         return result;
@@ -271,9 +367,12 @@ namespace Squeal
 
       const SparseMatrix            &K, &M;
       const SymmetricModesOptions    options;
+      std::future<FactorBeside>      early;
+      const bool                     counted;
       ModeCount                      count;
       bool                           lifted = false;
       std::unique_ptr<Factorization> factorization;
+      std::unique_ptr<Multigrid>     multigrid;
     };
     /// The modes of all uncoupled parts in one order.
     SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)

@@ -18,13 +18,6 @@ namespace Squeal
     /// Principal axes of the residuals below this part of the largest are left to the next step.
     constexpr double compression_tolerance = 0.02;
 
-    /// Leaves what X has outside of the M-orthonormal basis.
-    void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X)
-    {
-      for (unsigned int pass = 0; pass < 2; ++pass)
-        X -= model.times_basis(model.basis_products(M * X));
-    }
-
     /// Principal axes in the M-norm of the columns of X outside of the basis, the small ones left out.
     MultiVector compress(const SparseMatrix &M, const ReducedModel &model, MultiVector X)
     {
@@ -115,20 +108,34 @@ namespace Squeal
     }
   } // namespace
 
+  void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X)
+  {
+    for (unsigned int pass = 0; pass < 2; ++pass)
+      X -= model.times_basis(model.basis_products(M * X));
+  }
+
   ReducedModel starting_model(const CoupledSystem  &system,
                               const UpdatedInverse &inverse,
                               const MultiVector    &real_modes,
                               const bool            friction)
   {
     // The response to friction from the reactions to damping, μ A V_C, is of second order
-    std::vector<MultiVector> responses = {real_modes};
+    const int   k = real_modes.n_columns();
+    MultiVector vectors(real_modes.map(), k * (1 + (friction ? 2 : 0) + (system.has_damping() ? 1 : 0)), false);
+    int         column = 0;
+    const auto  add    = [&](const MultiVector &some) {
+      MultiVector place = view(vectors, column, k);
+      place             = some;
+      column += k;
+    };
+    add(real_modes);
     if (friction)
       for (const Side side : {Side::right, Side::left})
-        responses.push_back(friction_response(system, inverse, real_modes, side));
+        add(friction_response(system, inverse, real_modes, side));
     if (system.has_damping())
-      responses.push_back(damping_response(system, inverse, real_modes));
+      add(damping_response(system, inverse, real_modes));
     ReducedModel model(system);
-    model.extend(orthonormalize(*system.mass, nullptr, join_all(responses), dependence_tolerance));
+    model.extend(orthonormalize(*system.mass, nullptr, std::move(vectors), dependence_tolerance));
     return model;
   }
 

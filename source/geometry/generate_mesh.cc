@@ -132,12 +132,12 @@ namespace Squeal
     }
 
     /// Of the least that a mesh is for; what more it takes is known later.
-    void check_least_memory(ProblemSize size, const std::string &where)
+    void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
       constexpr unsigned int least_degree = 1;
       constexpr double       no_modes     = 0.;
       size.contact_nodes                  = 0.; // their attachment modes are not always needed
-      check_memory(size, least_degree, no_modes, where);
+      check_memory(size, least_degree, no_modes, where, 0., communicator);
     }
 
     HexMesh mesh_once(const GeometryParameters       &parameters,
@@ -152,7 +152,7 @@ namespace Squeal
         throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
                         "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
-      check_least_memory(expected_size(plan, parameters), where);
+      check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
       smooth(plan);
@@ -172,7 +172,7 @@ namespace Squeal
     const int          exponent    = is_built_in ? decimal_exponent(given.disc_outer_radius) : 0;
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
-      check_least_memory(expected_size(parameters), where);
+      check_least_memory(expected_size(parameters), where, communicator);
     HexMesh mesh = mesh_once(parameters, where, additional_surfaces, communicator);
     check_parts(mesh, additional_surfaces, where);
     check_bodies(mesh, additional_surfaces, where);

@@ -4,6 +4,7 @@
 #include <squeal/geometry/problem_size.h>
 #include <squeal/parameters/pin_face.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -13,11 +14,11 @@ namespace Squeal
   {
     // Fit of ProblemSize::memory() [byte]
     constexpr double program            = 1.7e8;
-    constexpr double per_dof            = 1e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
+    constexpr double per_dof            = 1.6e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
     constexpr double reference_dofs     = 3e4;
-    constexpr double growth             = 0.15;
+    constexpr double growth             = 0.05;
     constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
-    constexpr double vectors_per_node = 2., vectors_per_mode = 3.;
+    constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
 
     /// Of a plan with numbers of faces and nodes, and of those under all pins together. Layers of nodes share those of neighbouring layers.
     ProblemSize extruded(const double              faces,
@@ -34,7 +35,9 @@ namespace Squeal
   double ProblemSize::memory(const unsigned int degree, const double n_modes) const
   {
     const double matrices = per_dof * std::pow(std::max(dofs / reference_dofs, 1.), growth) * (degree > 1 ? quadratic_elements : 1.);
-    return program + dofs * (matrices + sizeof(double) * (vectors_per_node * contact_nodes + vectors_per_mode * n_modes));
+    const double kept     = dofs * sizeof(double) * vectors_per_node * contact_nodes;
+    const double of_nodes = kept <= largest_part_of_attachment_modes * available_memory() ? kept : 0.;
+    return program + of_nodes + dofs * (matrices + sizeof(double) * vectors_per_mode * n_modes);
   }
 
   ProblemSize expected_size(const GeometryParameters &parameters)
@@ -76,9 +79,10 @@ namespace Squeal
                     const unsigned int degree,
                     const double       n_modes,
                     const std::string &where,
-                    const double       further)
+                    const double       further,
+                    const MPI_Comm     communicator)
   {
-    const double needed = size.memory(degree, n_modes) + further, available = available_memory();
+    const double needed = size.memory(degree, n_modes) + further, available = available_memory(communicator);
     if (!(needed > available))
       return;
     throw MeshError(text("The scene has about ", size.hexahedra, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,

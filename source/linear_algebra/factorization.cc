@@ -1,6 +1,7 @@
 #include "libraries.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/iterative_inverse.h>
 
 namespace Squeal
 {
@@ -23,6 +24,12 @@ namespace Squeal
     }
   } // namespace
 
+  std::mutex &ordering()
+  {
+    static std::mutex mutex;
+    return mutex;
+  }
+
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is not positive definite to working precision (" + library + ")", what,
@@ -43,7 +50,8 @@ namespace Squeal
 
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,
                                                              const FactorizationLibrary library,
-                                                             const std::string         &what)
+                                                             const std::string         &what,
+                                                             const NearNullSpace       *near_null_space)
   {
     check_square(A, what);
     switch (library)
@@ -61,6 +69,11 @@ namespace Squeal
           if (count_negative_eigenvalues(A, what) > 0)
             throw_not_positive_definite("UMFPACK", what);
           return umfpack_factorization(A, what);
+        case FactorizationLibrary::multigrid:
+          if (near_null_space == nullptr)
+            throw SolverError("multigrid was asked for where no near null space is known", what,
+                              "choose automatic, CHOLMOD or MUMPS as factorisation library");
+          return iterative_inverse(A, *near_null_space, what);
         case FactorizationLibrary::mumps:
           break;
       }
@@ -80,7 +93,8 @@ namespace Squeal
           check_one_process(A, library, what);
           return umfpack_factorization(A, what);
         case FactorizationLibrary::cholmod:
-          throw SolverError("CHOLMOD was asked for but factorises positive definite matrices only", what,
+        case FactorizationLibrary::multigrid:
+          throw SolverError(to_string(library) + " was asked for but serves positive definite matrices only", what,
                             "choose automatic, UMFPACK or MUMPS as factorisation library");
         case FactorizationLibrary::mumps:
           break;

@@ -1,6 +1,7 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +16,10 @@ namespace Squeal
     /// X -= Q Qᵀ M X.
     void project_out(const SparseMatrix &M, const MultiVector &Q, MultiVector &X)
     {
-      multiply_add(-1., Q, gram(Q, M * X), 1., X);
+      for_column_blocks(X.n_columns(), [&](const int first, const int n) {
+        MultiVector some = view(X, first, n);
+        multiply_add(-1., Q, gram(Q, M * some), 1., some);
+      });
     }
 
     /// Eigenpairs of a symmetric matrix, the same on all processes.
@@ -54,14 +58,15 @@ namespace Squeal
 
     std::optional<MultiVector> orthonormal_axes(const SparseMatrix &M,
                                                 const MultiVector  *Q,
-                                                const MultiVector  &X,
+                                                MultiVector         X,
                                                 const double        tolerance,
                                                 const Scaling       scaling,
                                                 PrincipalAxes      *axes)
     {
       // A Gram matrix resolves directions down to the square root of the
       // rounding unit; with this ratio per pass they still come out accurate.
-      const double resolved = 1e-10;
+      const double   resolved     = 1e-10;
+      const MPI_Comm communicator = X.communicator();
 
       std::vector<MultiVector> kept;
       const auto               project = [&](MultiVector &Y) {
@@ -75,7 +80,7 @@ namespace Squeal
       std::optional<MultiVector> remaining;
       double                     largest = 0.;
       {
-        const DenseMatrix   G = gram(X, M * X);
+        const DenseMatrix   G = weighted_gram(X, M, X);
         std::vector<double> scale;
         std::vector<int>    nonzero;
         for (int j = 0; j < X.n_columns(); ++j)
@@ -92,15 +97,14 @@ namespace Squeal
         const int k = nonzero.size();
         if (k == 0)
           return {};
-        DenseMatrix S = DenseMatrix::Zero(X.n_columns(), k);
         for (int j = 0; j < k; ++j)
-          S(nonzero[j], j) = scale[j];
-        remaining.emplace(X * S);
+          X.col(nonzero[j]) *= scale[j];
         const auto                scales  = as_column(scale).asDiagonal();
-        const std::vector<double> squares = common_eigenpairs(X.communicator(), scales * G(nonzero, nonzero) * scales).values;
+        const std::vector<double> squares = common_eigenpairs(communicator, scales * G(nonzero, nonzero) * scales).values;
         largest                           = squares.back();
         if (axes != nullptr)
           *axes = {{}, condition_number(squares)};
+        remaining.emplace(k == X.n_columns() ? std::move(X) : selected(X, nonzero));
       }
       const double smallest = tolerance * tolerance * largest;
 
@@ -110,7 +114,7 @@ namespace Squeal
 
       while (remaining)
         {
-          const RealPairs            pairs  = common_eigenpairs(X.communicator(), gram(*remaining, M * *remaining));
+          const RealPairs            pairs  = common_eigenpairs(communicator, weighted_gram(*remaining, M, *remaining));
           const std::vector<double> &values = pairs.values;
           const int                  k      = values.size();
 
@@ -124,7 +128,11 @@ namespace Squeal
           if (!(values.back() > smallest) || n_rest == k)
             break;
 
-          MultiVector W = *remaining * largest_axes(pairs, k - n_rest);
+          // Where nothing is left for another pass the axes take the place of the columns
+          const DenseMatrix S = largest_axes(pairs, k - n_rest);
+          MultiVector       W = n_rest > 0 ? *remaining * S : std::move(*remaining);
+          if (n_rest == 0)
+            multiply_in_place(W, S);
           if (axes != nullptr)
             std::transform(values.rbegin(), values.rend() - n_rest, std::back_inserter(axes->norms),
                            [](const double x) { return std::sqrt(x); });
@@ -132,7 +140,7 @@ namespace Squeal
             {
               project(W);
               // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
-              W = W * inverse_root(common_eigenpairs(X.communicator(), gram(W, M * W)));
+              multiply_in_place(W, inverse_root(common_eigenpairs(communicator, weighted_gram(W, M, W))));
             }
           kept.push_back(std::move(W));
 
@@ -157,20 +165,21 @@ namespace Squeal
 
   std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
                                                    const MultiVector  *Q,
-                                                   const MultiVector  &X,
+                                                   MultiVector         X,
                                                    const double        tolerance,
                                                    PrincipalAxes      *axes)
   {
-    return orthonormal_axes(M, Q, X, tolerance, Scaling::unit_norm, axes);
+    return orthonormal_axes(M, Q, std::move(X), tolerance, Scaling::unit_norm, axes);
   }
 
-  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, const MultiVector &X, const double tolerance, PrincipalAxes *axes)
+  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, const double tolerance, PrincipalAxes *axes)
   {
-    std::optional<MultiVector> W = orthonormalize_if_any(M, Q, X, tolerance, axes);
+    const int                  n = X.n_columns();
+    std::optional<MultiVector> W = orthonormalize_if_any(M, Q, std::move(X), tolerance, axes);
     if (!W)
-      throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero or depend linearly on those already there",
-                        "orthonormalisation", "give other vectors, or a smaller tolerance");
-    return *W;
+      throw SolverError("all " + std::to_string(n) + " vectors are zero or depend linearly on those already there", "orthonormalisation",
+                        "give other vectors, or a smaller tolerance");
+    return std::move(*W);
   }
 
   MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
@@ -193,6 +202,6 @@ namespace Squeal
 
   double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
   {
-    return max_norm(gram(X, M * X) - DenseMatrix::Identity(X.n_columns(), X.n_columns()));
+    return max_norm(weighted_gram(X, M, X) - DenseMatrix::Identity(X.n_columns(), X.n_columns()));
   }
 } // namespace Squeal

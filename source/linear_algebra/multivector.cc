@@ -1,8 +1,15 @@
+#include "lane_kernels.h"
+
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/multivector.h>
 
+#include <deal.II/base/aligned_vector.h>
+
+#include <algorithm>
 #include <cstdint>
+#include <functional>
 
 namespace Squeal
 {
@@ -18,6 +25,77 @@ namespace Squeal
     void require_same_shape(const MultiVector &X, const MultiVector &Y, const char *operation)
     {
       require(X.n_local_rows() == Y.n_local_rows() && X.n_columns() == Y.n_columns(), operation);
+    }
+
+    /// Rows that are a task; the same however many threads there are, so that sums do not depend on their number.
+    constexpr int rows_together = 8192;
+
+    /// Calls @p f with the first row and the number of rows of every part of @p n_rows.
+    void for_parts(const int n_rows, const std::function<void(int part, int first, int n)> &f)
+    {
+      run_tasks(std::max(1, (n_rows + rows_together - 1) / rows_together),
+                [&](const int part) { f(part, part * rows_together, std::min(rows_together, n_rows - part * rows_together)); });
+    }
+
+    /// Rows of vectors that stay in the nearest cache while many others pass by.
+    constexpr int rows_in_cache = 256;
+
+    /// Calls @p f with the first row and the number of rows of every block of @p n_rows that stays in the cache.
+    void for_blocks(const int n_rows, const std::function<void(int first, int n)> &f)
+    {
+      for (int first = 0; first < n_rows; first += rows_in_cache)
+        f(first, std::min(rows_in_cache, n_rows - first));
+    }
+
+    using ConstColumns = Eigen::Ref<const DenseMatrix>;
+
+    TallBlock block_of(const ConstColumns &X, const int first, const int n)
+    {
+      return {n, static_cast<int>(X.cols()), X.data() + first, static_cast<std::size_t>(X.outerStride())};
+    }
+
+    /// Y += X S for up to @p width columns of Y.
+    template <int width>
+    void add_few_columns(const ConstColumns &X, const DenseMatrix &S, Eigen::Ref<DenseMatrix> Y)
+    {
+      const int                             n = static_cast<int>(Y.cols());
+      dealii::AlignedVector<LaneRow<width>> factors(S.rows()), rows(rows_in_cache);
+      to_lanes(S.data(), S.outerStride(), static_cast<int>(S.rows()), n, factors.data());
+      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
+        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
+        add_combinations(block_of(X, first, n_rows), factors.data(), rows.data());
+        from_lanes(rows.data(), Y.data() + first, Y.outerStride(), n_rows, n);
+      });
+    }
+
+    /// Xᵀ Y for up to @p width columns of Y.
+    template <int width>
+    DenseMatrix products_with_few_columns(const ConstColumns &X, const ConstColumns &Y)
+    {
+      const int                             n = static_cast<int>(Y.cols());
+      dealii::AlignedVector<LaneRow<width>> sums(X.cols()), rows(rows_in_cache);
+      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
+        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
+        add_products(block_of(X, first, n_rows), rows.data(), sums.data());
+      });
+      DenseMatrix result(X.cols(), n);
+      from_lanes(sums.data(), result.data(), result.outerStride(), static_cast<int>(X.cols()), n);
+      return result;
+    }
+
+    /// Vectors beside which others are few or many: BLAS copies the many for each product, which is worth it for more than some.
+    constexpr int most_few = 16, least_many = 16;
+
+    bool few_meet_many(const Eigen::Index few, const Eigen::Index many)
+    {
+      return few > 1 && few <= most_few && many >= least_many;
+    }
+
+    DenseMatrix products(const ConstColumns &X, const ConstColumns &Y)
+    {
+      if (few_meet_many(Y.cols(), X.cols()))
+        return Y.cols() <= 8 ? products_with_few_columns<8>(X, Y) : products_with_few_columns<16>(X, Y);
+      return X.transpose() * Y;
     }
 
     /// Mixes 64 bits (the finaliser of SplitMix64).
@@ -143,21 +221,42 @@ namespace Squeal
             "linear combination of vectors");
     if (Y.n_local_rows() == 0)
       return;
-    auto y = Y.local();
-    if (beta == 0.)
-      y.noalias() = alpha * X.local() * S;
-    else
-      {
-        if (beta != 1.)
-          y *= beta;
-        y.noalias() += alpha * X.local() * S;
-      }
+    const auto        x      = X.local();
+    auto              y      = Y.local();
+    const bool        by_few = few_meet_many(Y.n_columns(), X.n_columns());
+    const DenseMatrix scaled = by_few ? DenseMatrix(alpha * S) : DenseMatrix();
+    for_parts(Y.n_local_rows(), [&](int, const int first, const int n) {
+      auto image = y.middleRows(first, n);
+      if (by_few)
+        {
+          if (beta == 0.)
+            image.setZero();
+          else if (beta != 1.)
+            image *= beta;
+          const auto add_columns = Y.n_columns() <= 8 ? add_few_columns<8> : add_few_columns<16>;
+          add_columns(x.middleRows(first, n), scaled, image);
+        }
+      else if (beta == 0.)
+        image.noalias() = alpha * x.middleRows(first, n) * S;
+      else
+        {
+          if (beta != 1.)
+            image *= beta;
+          image.noalias() += alpha * x.middleRows(first, n) * S;
+        }
+    });
   }
 
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y)
   {
     require(X.n_local_rows() == Y.n_local_rows(), "inner products");
-    DenseMatrix result = X.local().transpose() * Y.local();
+    const auto               x = X.local(), y = Y.local();
+    std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
+    for_parts(X.n_local_rows(),
+              [&](const int part, const int first, const int n) { sums[part] = products(x.middleRows(first, n), y.middleRows(first, n)); });
+    DenseMatrix result = std::move(sums.front());
+    for (std::size_t part = 1; part < sums.size(); ++part)
+      result += sums[part];
     if (X.map().n_processes() > 1)
       {
         sum_over_processes(X.communicator(), result.data(), result.size());

@@ -1,17 +1,25 @@
 #include "libraries.h"
 
+#include <squeal/linear_algebra/row_delivery.h>
+#include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <dmumps_c.h>
 #include <mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 namespace Squeal
 {
   namespace
   {
+    /// Right-hand sides that are solved for together: their number bounds what MUMPS and the solutions take.
+    constexpr int block_size = 64;
+
     /// What MUMPS is told about a matrix.
     enum class MatrixKind
     {
@@ -20,31 +28,29 @@ namespace Squeal
       symmetric         = 2
     };
 
+    /// Whether factors are there after the factorisation; without them it takes a fraction of the memory.
+    enum class Factors
+    {
+      kept,
+      counted ///< of their pivots, signs and numbers only
+    };
+
     /// An instance of MUMPS with the factors of one matrix.
     class Mumps
     {
     public:
-      Mumps(const SparseMatrix &A, const MatrixKind symmetry, const std::string &what)
+      Mumps(const SparseMatrix &A, const MatrixKind symmetry, const Factors factors, const std::string &what)
         : what(what)
         , comm(A.communicator())
-        , rows(A)
+        , own_rows(A.rows().n_local())
       {
-        MPI_Comm_rank(comm, &rank);
-        int n_processes;
-        MPI_Comm_size(comm, &n_processes);
-        row_counts.resize(n_processes);
-        first_rows.resize(n_processes);
-        n_local_rows = rows.start.size() - 1;
-        MPI_Allgather(&n_local_rows, 1, MPI_INT, row_counts.data(), 1, MPI_INT, comm);
-        MPI_Allgather(&rows.first_row, 1, MPI_INT, first_rows.data(), 1, MPI_INT, comm);
-
         id.sym          = static_cast<int>(symmetry);
         id.par          = 1;
         id.comm_fortran = MPI_Comm_c2f(comm);
         run(-1);
         try
           {
-            factorize(symmetry != MatrixKind::general);
+            factorize(LocalRows(A), symmetry != MatrixKind::general, factors);
           }
         catch (...)
           {
@@ -80,37 +86,36 @@ namespace Squeal
         return id.infog[28] >= 0 ? id.infog[28] : -1e6 * id.infog[28];
       }
 
+      /// Every process gives its rows of X and gets its rows of Y: none sees those of others.
       void solve(const bool transpose, const MultiVector &X, MultiVector &Y)
       {
-        // MUMPS wants right-hand sides whole on one process; a bound on their number bounds its memory there.
-        const int block = 64;
-        for (int first = 0; first < X.n_columns(); first += block)
+        for (int first = 0; first < X.n_columns(); first += block_size)
           {
-            const int n_columns = std::min(block, X.n_columns() - first);
-            if (rank == 0)
-              centralised.resize(static_cast<std::size_t>(rows.n_rows) * n_columns);
-            const auto column = [&](const int j) {
-              return rank == 0 ? centralised.data() + static_cast<std::size_t>(rows.n_rows) * j : nullptr;
-            };
-
-            for (int j = 0; j < n_columns; ++j)
-              MPI_Gatherv(X.col(first + j).data(), n_local_rows, MPI_DOUBLE, column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, 0,
-                          comm);
-            id.rhs       = centralised.data();
+            const int n_columns = std::min(block_size, X.n_columns() - first);
+            // Rows stay where their pivots are.
+            solution.resize(n_solved() * static_cast<std::size_t>(n_columns));
+            solved_rows.resize(n_solved());
             id.nrhs      = n_columns;
-            id.lrhs      = rows.n_rows;
             id.icntl[8]  = transpose ? 0 : 1;
+            id.icntl[19] = 10; // right-hand sides by rows of each process ...
+            id.nloc_rhs  = static_cast<int>(own_rows.size());
+            id.lrhs_loc  = std::max(1, id.nloc_rhs);
+            id.irhs_loc  = address(own_rows);
+            id.rhs_loc   = id.nloc_rhs > 0 ? const_cast<double *>(X.col(first).data()) : &nothing; // which MUMPS only reads
+            id.icntl[20] = 1;                                                                      // ... and so the solutions
+            id.lsol_loc  = std::max(1, n_solved());
+            id.isol_loc  = address(solved_rows);
+            id.sol_loc   = solution.empty() ? &nothing : solution.data();
             id.icntl[26] = 32; // columns that pass through the factors together
             run(3);
             check("solution");
-            for (int j = 0; j < n_columns; ++j)
-              MPI_Scatterv(column(j), row_counts.data(), first_rows.data(), MPI_DOUBLE, Y.col(first + j).data(), n_local_rows, MPI_DOUBLE,
-                           0, comm);
+            delivery(transpose).deliver(solution.data(), n_solved(), own_rows.empty() ? nullptr : Y.col(first).data(), own_rows.size(),
+                                        n_columns);
           }
       }
 
     private:
-      void factorize(const bool one_triangle)
+      void factorize(const LocalRows &rows, const bool one_triangle, const Factors factors)
       {
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
@@ -120,6 +125,7 @@ namespace Squeal
         id.icntl[23] = 1;     // pivots that vanish are reported, not divided by ...
         id.cntl[2]   = 1e-14; // ... where they are below this, relative to the scaled matrix
         id.icntl[10] = 0;
+        id.icntl[30] = factors == Factors::kept ? 0 : 1;
 
         std::vector<int>    row, column;
         std::vector<double> value;
@@ -127,7 +133,9 @@ namespace Squeal
         row.reserve(1);
         column.reserve(1);
         value.reserve(1);
-        for (int i = 0; i < n_local_rows; ++i)
+        first_row = rows.first_row;
+        std::iota(own_rows.begin(), own_rows.end(), first_row + 1);
+        for (int i = 0; i < static_cast<int>(own_rows.size()); ++i)
           for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
             if (!one_triangle || rows.column[k] <= rows.first_row + i)
               {
@@ -141,11 +149,15 @@ namespace Squeal
         id.jcn_loc = column.data();
         id.a_loc   = value.data();
 
-        run(1);
+        {
+          const std::lock_guard<std::mutex> lock(ordering());
+          run(1);
+        }
         check("analysis");
         // Pivoting may need more memory than the analysis foresaw: allow for more and try again.
         for (int attempt = 0; attempt < 6; ++attempt)
           {
+            const BlasThreadsOfLarge threads(id.n);
             run(2);
             const bool too_little_workspace = id.infog[0] == -8 || id.infog[0] == -9;
             if (!too_little_workspace)
@@ -161,6 +173,33 @@ namespace Squeal
         id.a_loc                = nullptr;
       }
 
+      /// Rows of solutions that MUMPS leaves here.
+      int n_solved() const
+      {
+        return id.info[22];
+      }
+
+      /// Of numbers for MUMPS, which must not see null pointers.
+      static int *address(std::vector<int> &numbers)
+      {
+        numbers.reserve(1);
+        return numbers.data();
+      }
+
+      /// From the rows of the last solution to their owners: the same for all of A, and for all of Aᵀ.
+      const RowDelivery &delivery(const bool transpose)
+      {
+        std::vector<int> numbers = solved_rows;
+        for (int &number : numbers)
+          --number;
+        std::optional<RowDelivery> &plan = deliveries[transpose];
+        if (!plan)
+          plan.emplace(numbers, first_row, own_rows.size(), comm);
+        if (plan->rows() != numbers)
+          throw_library_failure("MUMPS", "the solution is distributed differently from the one before", what);
+        return *plan;
+      }
+
       void run(const int job)
       {
         id.job = job;
@@ -174,13 +213,14 @@ namespace Squeal
             "MUMPS", "INFOG(1) = " + std::to_string(id.infog[0]) + ", INFOG(2) = " + std::to_string(id.infog[1]) + " of the " + step, what);
       }
 
-      const std::string   what;
-      const MPI_Comm      comm;
-      const LocalRows     rows;
-      int                 rank, n_local_rows;
-      std::vector<int>    row_counts, first_rows;
-      std::vector<double> centralised;
-      DMUMPS_STRUC_C      id = {};
+      const std::string                         what;
+      const MPI_Comm                            comm;
+      int                                       first_row = 0;
+      std::vector<int>                          own_rows, solved_rows; ///< numbers, from 1 on
+      std::vector<double>                       solution;              ///< n_solved() × columns of a block
+      double                                    nothing = 0.;          ///< what pointers to no rows point to
+      std::array<std::optional<RowDelivery>, 2> deliveries;
+      DMUMPS_STRUC_C                            id = {};
     };
 
     class MumpsFactorization : public Factorization
@@ -188,7 +228,7 @@ namespace Squeal
     public:
       MumpsFactorization(const SparseMatrix &A, const MatrixKind symmetry, const std::string &what)
         : row_map(A.rows())
-        , mumps(std::make_unique<Mumps>(A, symmetry, what))
+        , mumps(std::make_unique<Mumps>(A, symmetry, Factors::kept, what))
       {
         if (symmetry == MatrixKind::positive_definite && (mumps->n_negative_pivots() > 0 || mumps->n_null_pivots() > 0))
           throw_not_positive_definite("MUMPS", what);
@@ -229,7 +269,7 @@ namespace Squeal
 
   int count_negative_eigenvalues(const SparseMatrix &A, const std::string &what, int *n_null)
   {
-    const Mumps mumps(A, MatrixKind::symmetric, what);
+    const Mumps mumps(A, MatrixKind::symmetric, Factors::counted, what);
     if (n_null != nullptr)
       *n_null = mumps.n_null_pivots();
     else if (mumps.n_null_pivots() > 0)

@@ -1,8 +1,12 @@
 #include "epetra_view.h"
+#include "lane_kernels.h"
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+
+#include <deal.II/base/aligned_vector.h>
 
 #include <EpetraExt_MatrixMatrix.h>
 #include <Epetra_CrsMatrix.h>
@@ -95,6 +99,52 @@ namespace Squeal
     {
       return dealii::Utilities::MPI::max(local, A.communicator());
     }
+
+    /// Rows of a product that are a task.
+    constexpr int rows_of_task = 4096;
+
+    /// Y = A X for a few columns, whose rows are put side by side so that the entries of A are read once for all of them.
+    template <int width>
+    void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
+    {
+      const int                             n_columns = static_cast<int>(X.cols());
+      dealii::AlignedVector<LaneRow<width>> rows, image;
+      rows.resize_fast(X.rows());
+      image.resize_fast(A.n_rows);
+      to_lanes(X.data(), X.outerStride(), static_cast<int>(X.rows()), n_columns, rows.data());
+      run_tasks((A.n_rows + rows_of_task - 1) / rows_of_task, [&](const int part) {
+        const int first = part * rows_of_task, n_rows = std::min(rows_of_task, A.n_rows - first);
+        set_products({n_rows, A.start + first, A.column, A.value}, rows.data(), image.data() + first);
+        from_lanes(image.data() + first, Y.data() + first, Y.outerStride(), n_rows, n_columns);
+      });
+    }
+
+    /// The same for one column.
+    void multiply_column(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
+    {
+      run_tasks((A.n_rows + rows_of_task - 1) / rows_of_task, [&](const int part) {
+        for (int i = part * rows_of_task; i < std::min(A.n_rows, (part + 1) * rows_of_task); ++i)
+          {
+            double sum = 0.;
+            for (int k = A.start[i]; k < A.start[i + 1]; ++k)
+              sum += A.value[k] * X(A.column[k], 0);
+            Y(i, 0) = sum;
+          }
+      });
+    }
+
+    /// Y = A X for the rows of A and those columns of it that are known here.
+    void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
+    {
+      const Eigen::Index n = X.cols();
+      Eigen::Index       width;
+      for (Eigen::Index first = 0; first < n; first += width)
+        {
+          width                    = std::min<Eigen::Index>(n - first, 16);
+          const auto multiply_some = width == 1 ? multiply_column : width <= 8 ? multiply_columns<8> : multiply_columns<16>;
+          multiply_some(A, X.middleCols(first, width), Y.middleCols(first, width));
+        }
+    }
   } // namespace
 
   SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill)
@@ -142,8 +192,25 @@ namespace Squeal
                         "this is a mistake in the program: please report it");
     if (X.n_columns() == 0)
       return;
-    Epetra_MultiVector image = epetra_view(Y);
-    check_epetra(matrix->Multiply(transposed, epetra_view(X), image), "product of a sparse matrix and vectors");
+    const char *operation = "product of a sparse matrix and vectors";
+    int        *start, *columns;
+    double     *values;
+    if (transposed || !matrix->StorageOptimized() || matrix->ExtractCrsDataPointers(start, columns, values) != 0)
+      {
+        Epetra_MultiVector image = epetra_view(Y);
+        check_epetra(matrix->Multiply(transposed, epetra_view(X), image), operation);
+        return;
+      }
+
+    const SparseRows A{matrix->NumMyRows(), start, columns, values};
+    if (const Epetra_Import *importer = matrix->Importer())
+      {
+        Epetra_MultiVector here(matrix->ColMap(), X.n_columns(), false);
+        check_epetra(here.Import(epetra_view(X), *importer, Insert), operation);
+        multiply_rows(A, Eigen::Map<const DenseMatrix>(here.Values(), matrix->NumMyCols(), X.n_columns()), Y.local());
+      }
+    else
+      multiply_rows(A, X.local(), Y.local());
   }
 
   MultiVector operator*(const SparseMatrix &A, const MultiVector &X)

@@ -2,7 +2,6 @@
 #include <squeal/model/curved_boundaries.h>
 
 #include <deal.II/base/bounding_box.h>
-#include <deal.II/grid/manifold_lib.h>
 #include <deal.II/grid/tria_accessor.h>
 #include <deal.II/grid/tria_iterator.h>
 
@@ -19,8 +18,8 @@ namespace Squeal
 
   namespace
   {
-    using Cell = Triangulation<3>::active_cell_iterator;
-    using Face = Triangulation<3>::face_iterator;
+    using MeshCell = Triangulation<3>::active_cell_iterator;
+    using Face     = Triangulation<3>::face_iterator;
 
     constexpr types::material_id disc = 0;
 
@@ -60,10 +59,8 @@ namespace Squeal
         for (const auto &[patch, points] : patches)
           if (const auto circle = circle_through(points))
             {
-              const Cylinder cylinder{types::manifold_id(cylinders.size() + 1), circle->centre};
+              const Cylinder cylinder{types::manifold_id(cylinders.size() + 1), {{circle->centre[0], circle->centre[1]}}};
               cylinders.emplace(patch, cylinder);
-              triangulation.set_manifold(
-                cylinder.id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
             }
       }
 
@@ -100,22 +97,24 @@ namespace Squeal
                   face->line(l)->set_manifold_id(it->second);
       }
 
+      std::vector<Cylinder> all() const
+      {
+        std::vector<Cylinder> result;
+        for (const auto &[patch, cylinder] : cylinders)
+          result.push_back(cylinder);
+        return result;
+      }
+
     private:
       using Patch = std::pair<types::boundary_id, types::material_id>;
       using Line  = Triangulation<3>::line_iterator;
       using Key   = std::array<long, 3>; ///< equal for coincident mid-points of edges
 
-      struct Cylinder
-      {
-        types::manifold_id id;
-        Point<2>           axis;
-      };
-
       /// A face between two rings, or between the innermost one and what is inside.
       struct RingFace
       {
         Face               face;
-        Cell               behind; ///< on the side of the axis
+        MeshCell           behind; ///< on the side of the axis
         types::manifold_id id;
       };
 
@@ -125,7 +124,7 @@ namespace Squeal
       std::map<Patch, Cylinder>         cylinders;
       std::map<Key, types::manifold_id> curved_edges;
 
-      std::optional<Cylinder> cylinder_of(const Cell &cell, const unsigned int f) const
+      std::optional<Cylinder> cylinder_of(const MeshCell &cell, const unsigned int f) const
       {
         if (!cell->face(f)->at_boundary())
           return {};
@@ -133,7 +132,7 @@ namespace Squeal
         return it == cylinders.end() ? std::nullopt : std::make_optional(it->second);
       }
 
-      bool is_round(const Face &face, const Point<2> &axis) const
+      bool is_round(const Face &face, const std::array<double, 2> &axis) const
       {
         double least = std::numeric_limits<double>::max(), most = 0.;
         for (const unsigned int v : face->vertex_indices())
@@ -146,14 +145,14 @@ namespace Squeal
       }
 
       /// Follows a stack of cells from face @p f of @p cell inwards as long as their faces are round.
-      void add_rings(Cell cell, unsigned int f, const Cylinder &cylinder, std::vector<RingFace> &rings) const
+      void add_rings(MeshCell cell, unsigned int f, const Cylinder &cylinder, std::vector<RingFace> &rings) const
       {
         while (true)
           {
             const unsigned int opposite = GeometryInfo<3>::opposite_face[f];
             if (cell->face(opposite)->at_boundary() || !is_round(cell->face(opposite), cylinder.axis))
               return;
-            const Cell behind = cell->neighbor(opposite);
+            const MeshCell behind = cell->neighbor(opposite);
             rings.push_back({cell->face(opposite), behind, cylinder.id});
             f    = cell->neighbor_of_neighbor(opposite);
             cell = behind;
@@ -178,11 +177,12 @@ namespace Squeal
     };
   } // namespace
 
-  void follow_cylinders(const Model &model, Triangulation<3> &triangulation)
+  std::vector<Cylinder> follow_cylinders(const Model &model, Triangulation<3> &triangulation)
   {
     CylinderFaces faces(model, triangulation);
     faces.find();
     faces.attach();
     faces.attach_other_side();
+    return faces.all();
   }
 } // namespace Squeal

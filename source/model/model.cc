@@ -1,14 +1,20 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/model/curved_boundaries.h>
+#include <squeal/model/mesh_parts.h>
 #include <squeal/model/model.h>
 
+#include <deal.II/base/mpi.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <sstream>
 
 namespace Squeal
@@ -17,112 +23,244 @@ namespace Squeal
 
   namespace
   {
+    using Description = TriangulationDescription::Description<3, 3>;
+
     /// Gmsh numbers the vertices of a quadrilateral around it, deal.II lexicographically.
     constexpr std::array<unsigned int, 8> gmsh_vertex = {{0, 1, 3, 2, 4, 5, 7, 6}};
+
+    CellLists cell_lists(const HexMesh &mesh)
+    {
+      CellLists lists;
+      lists.vertices = mesh.points;
+      for (const auto &hexahedron : mesh.hexahedra)
+        {
+          CellData<3> cell;
+          for (unsigned int v = 0; v < 8; ++v)
+            cell.vertices[v] = hexahedron.nodes[gmsh_vertex[v]];
+          cell.material_id = hexahedron.volume;
+          lists.cells.push_back(cell);
+        }
+      for (const auto &quadrilateral : mesh.quadrilaterals)
+        {
+          CellData<2> face;
+          for (unsigned int v = 0; v < 4; ++v)
+            face.vertices[v] = quadrilateral.nodes[gmsh_vertex[v]];
+          face.boundary_id = quadrilateral.surface + 1; // 0: faces without a name
+          lists.faces.boundary_quads.push_back(face);
+        }
+      GridTools::delete_unused_vertices(lists.vertices, lists.cells, lists.faces);
+      GridTools::invert_all_negative_measure_cells(lists.vertices, lists.cells);
+      GridTools::consistently_order_cells(lists.cells);
+      return lists;
+    }
+
+    /// Manifolds of cells that have an edge or a face on a cylinder, by their numbers.
+    std::map<unsigned int, CellManifolds> cell_manifolds(const Triangulation<3> &triangulation)
+    {
+      std::map<unsigned int, CellManifolds> result;
+      for (const auto &cell : triangulation.active_cell_iterators())
+        {
+          CellManifolds manifolds;
+          bool          is_flat = true;
+          const auto    note    = [&](const types::manifold_id id) {
+            is_flat = is_flat && id == numbers::flat_manifold_id;
+            return id;
+          };
+          for (unsigned int line = 0; line < cell->n_lines(); ++line)
+            manifolds.lines[line] = note(cell->line(line)->manifold_id());
+          for (unsigned int face = 0; face < cell->n_faces(); ++face)
+            manifolds.quads[face] = note(cell->face(face)->manifold_id());
+          if (!is_flat)
+            result[cell->active_cell_index()] = manifolds;
+        }
+      return result;
+    }
+
+    /// Does what may fail on one process; then all throw.
+    template <typename Function>
+    void together(const MPI_Comm communicator, const Function &action)
+    {
+      std::string problem;
+      try
+        {
+          action();
+        }
+      catch (const ExceptionBase &exception)
+        {
+          std::ostringstream text;
+          exception.print_info(text);
+          problem = text.str().empty() ? "no reason is given" : text.str();
+        }
+      for (const std::string &text : Utilities::MPI::all_gather(communicator, problem))
+        if (!text.empty())
+          throw MeshError("deal.II refuses the mesh: " + text, "mesh", "check the orientation and connectivity of the hexahedra");
+    }
+
+    void send(const int process, const Description &part, const MPI_Comm communicator)
+    {
+      const std::vector<char> buffer = Utilities::pack(part, false);
+      const unsigned long     size   = buffer.size();
+      AssertThrow(size <= static_cast<unsigned long>(std::numeric_limits<int>::max()), ExcMessage("a part is too large for a message"));
+      MPI_Send(&size, 1, MPI_UNSIGNED_LONG, process, 0, communicator);
+      MPI_Send(buffer.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator);
+    }
+
+    Description receive(const MPI_Comm communicator)
+    {
+      unsigned long size;
+      MPI_Recv(&size, 1, MPI_UNSIGNED_LONG, 0, 0, communicator, MPI_STATUS_IGNORE);
+      std::vector<char> buffer(size);
+      MPI_Recv(buffer.data(), static_cast<int>(size), MPI_CHAR, 0, 0, communicator, MPI_STATUS_IGNORE);
+      auto part = Utilities::unpack<Description>(buffer, false);
+      part.comm = communicator;
+      return part;
+    }
+
+    /// A number for each dof of the cells that this process has, from the processes that own them.
+    class DofNumbers
+    {
+    public:
+      DofNumbers(const IndexSet &own, const IndexSet &relevant, const MPI_Comm communicator)
+        : values(own, relevant, communicator)
+      {}
+
+      /// @param number up to 2^53
+      void set(const types::global_dof_index dof, const double number)
+      {
+        values(dof) = number;
+      }
+
+      void exchange()
+      {
+        values.update_ghost_values();
+      }
+
+      double operator()(const types::global_dof_index dof) const
+      {
+        return values(dof);
+      }
+
+    private:
+      LinearAlgebra::distributed::Vector<double> values;
+    };
   } // namespace
 
   Model::Model(const HexMesh &mesh, const Element element, MPI_Comm communicator)
     : components(mesh.volume_names)
     , surfaces(mesh.surface_names)
     , element_type(element)
-    , tria(communicator,
-           Triangulation<3>::none,
-           false, // every process knows every cell: pairing and output need no exchange
-           parallel::shared::Triangulation<3>::partition_metis)
+    , tria(communicator)
     , fe(FE_Q<3>(degree_of(element)), 3)
     , geometry_mapping(degree_of(element))
     , dofs(tria)
   {
     create_triangulation(mesh);
-    if (element == Element::quadratic)
-      follow_cylinders(*this, tria);
-    distribute_dofs();
+    dofs.distribute_dofs(fe);
+    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    number_free_dofs();
+    find_nodes();
   }
 
   void Model::create_triangulation(const HexMesh &mesh)
   {
-    std::vector<Point<3>> vertices = mesh.points;
+    const unsigned int n_processes = Utilities::MPI::n_mpi_processes(communicator());
+    const bool         is_root     = Utilities::MPI::this_mpi_process(communicator()) == 0;
 
-    std::vector<CellData<3>> cells;
-    for (const auto &hexahedron : mesh.hexahedra)
+    // Process 0 alone has all cells, and of the parts of other processes one at a time
+    std::vector<Cylinder>      cylinders;
+    std::unique_ptr<MeshParts> parts;
+    together(communicator(), [&] {
+      if (!is_root)
+        return;
+      CellLists                             lists = cell_lists(mesh);
+      std::map<unsigned int, CellManifolds> manifolds;
+      if (element_type == Element::quadratic)
+        {
+          Triangulation<3> all;
+          all.create_triangulation(lists.vertices, lists.cells, lists.faces);
+          cylinders = follow_cylinders(*this, all);
+          manifolds = cell_manifolds(all);
+        }
+      parts = std::make_unique<MeshParts>(std::move(lists), std::move(manifolds), n_processes);
+    });
+    Description own;
+    if (is_root)
       {
-        CellData<3> cell;
-        for (unsigned int v = 0; v < 8; ++v)
-          cell.vertices[v] = hexahedron.nodes[gmsh_vertex[v]];
-        cell.material_id = hexahedron.volume;
-        cells.push_back(cell);
+        for (unsigned int process = 1; process < n_processes; ++process)
+          send(process, parts->part(process, communicator()), communicator());
+        own = parts->part(0, communicator());
+        parts.reset();
       }
+    else
+      own = receive(communicator());
 
-    SubCellData faces;
-    for (const auto &quadrilateral : mesh.quadrilaterals)
-      {
-        CellData<2> face;
-        for (unsigned int v = 0; v < 4; ++v)
-          face.vertices[v] = quadrilateral.nodes[gmsh_vertex[v]];
-        face.boundary_id = quadrilateral.surface + 1; // 0: faces without a name
-        faces.boundary_quads.push_back(face);
-      }
-
-    try
-      {
-        GridTools::delete_unused_vertices(vertices, cells, faces);
-        GridTools::invert_all_negative_measure_cells(vertices, cells);
-        GridTools::consistently_order_cells(cells);
-        tria.create_triangulation(vertices, cells, faces);
-      }
-    catch (const ExceptionBase &exception)
-      {
-        std::ostringstream text;
-        exception.print_info(text);
-        throw MeshError("deal.II refuses the mesh: " + text.str(), "mesh", "check the orientation and connectivity of the hexahedra");
-      }
+    together(communicator(), [&] { tria.create_triangulation(own); });
+    for (const Cylinder &cylinder : Utilities::MPI::broadcast(communicator(), cylinders))
+      tria.set_manifold(cylinder.id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
   }
 
-  void Model::distribute_dofs()
+  void Model::number_free_dofs()
   {
-    dofs.distribute_dofs(fe);
-
     // Clamped dofs: all three directions on the clamped surface
-    free_numbers.assign(dofs.n_dofs(), 0);
-    for (const auto dof : DoFTools::extract_boundary_dofs(dofs, ComponentMask(), {surface_id(PhysicalNames::pin_clamp)}))
-      free_numbers[dof] = -1;
+    const IndexSet &own     = dofs.locally_owned_dofs();
+    const IndexSet  clamped = DoFTools::extract_boundary_dofs(dofs, ComponentMask(), {surface_id(PhysicalNames::pin_clamp)});
 
     // Numbers of the others: deal.II's order, so that ownership stays contiguous
-    int n_free = 0, n_own = 0;
-    for (types::global_dof_index dof = 0; dof < dofs.n_dofs(); ++dof)
-      if (free_numbers[dof] == 0)
-        {
-          free_numbers[dof] = n_free++;
-          n_own += dofs.locally_owned_dofs().is_element(dof);
-        }
-    map = RowMap::contiguous(n_own, communicator());
+    int n_own = 0;
+    for (const auto dof : own)
+      n_own += !clamped.is_element(dof);
+    map               = RowMap::contiguous(n_own, communicator());
+    int        number = n_own > 0 ? map.number(0) : 0;
+    DofNumbers numbers(own, relevant, communicator());
+    for (const auto dof : own)
+      numbers.set(dof, clamped.is_element(dof) ? -1 : number++);
+    numbers.exchange();
+    for (const auto dof : relevant)
+      free_numbers.push_back(static_cast<int>(numbers(dof)));
+  }
+
+  void Model::find_nodes()
+  {
+    constexpr unsigned int none = -1;
+    const IndexSet        &own  = dofs.locally_owned_dofs();
+    const unsigned int     n    = fe.base_element(0).n_dofs_per_cell();
+    dof_nodes.assign(relevant.n_elements(), none);
 
     // Nodes: the dofs of the three directions at each support point
-    constexpr unsigned int               none = -1;
-    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
-    std::vector<Point<3>>                support(dofs.n_dofs());
+    std::map<types::global_dof_index, Point<3>> support;
     DoFTools::map_dofs_to_support_points(geometry_mapping, dofs, support);
-    dof_nodes.assign(dofs.n_dofs(), none);
+    DofNumbers                           numbers(own, relevant, communicator());
+    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell()), first_dofs;
     for (const auto &cell : dofs.active_cell_iterators())
       {
+        if (cell->is_artificial())
+          continue;
         cell->get_dof_indices(cell_dofs);
-        for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
+        for (unsigned int i = 0; i < n; ++i)
           {
             const auto first = cell_dofs[fe.component_to_system_index(0, i)];
-            if (dof_nodes[first] != none)
+            if (dof_nodes[relevant.index_within_set(first)] != none)
               continue;
             Node node;
             node.component = cell->material_id();
+            node.is_own    = own.is_element(first);
             for (unsigned int c = 0; c < 3; ++c)
               {
-                const auto dof   = cell_dofs[fe.component_to_system_index(c, i)];
-                node.dofs[c]     = free_numbers[dof];
-                node.position[c] = support[first][c];
-                dof_nodes[dof]   = node_table.size();
+                const auto place = relevant.index_within_set(cell_dofs[fe.component_to_system_index(c, i)]);
+                node.dofs[c]     = free_numbers[place];
+                node.position[c] = support.at(first)[c];
+                dof_nodes[place] = node_table.size();
               }
+            // The process that owns a node has all its cells, the first of which gives the number
+            if (node.is_own)
+              numbers.set(first, static_cast<double>(cell->id().get_coarse_cell_id()) * n + i);
             node_table.push_back(node);
+            first_dofs.push_back(first);
           }
       }
+    numbers.exchange();
+    for (std::size_t i = 0; i < node_table.size(); ++i)
+      node_table[i].number = static_cast<std::int64_t>(numbers(first_dofs[i]));
   }
 
   const Triangulation<3> &Model::triangulation() const
@@ -165,9 +303,19 @@ namespace Squeal
     return node_table;
   }
 
+  std::vector<Node> Model::gathered_nodes() const
+  {
+    std::vector<Node> own, all;
+    std::copy_if(node_table.begin(), node_table.end(), std::back_inserter(own), [](const Node &node) { return node.is_own; });
+    for (const std::vector<Node> &part : Utilities::MPI::gather(communicator(), own))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end(), [](const Node &a, const Node &b) { return a.number < b.number; });
+    return all;
+  }
+
   unsigned int Model::node_of_dof(const types::global_dof_index dof) const
   {
-    return dof_nodes[dof];
+    return dof_nodes[relevant.index_within_set(dof)];
   }
 
   types::boundary_id Model::surface_id(const std::string &name) const
@@ -191,7 +339,7 @@ namespace Squeal
 
   int Model::free_dof(const types::global_dof_index dof) const
   {
-    return free_numbers[dof];
+    return free_numbers[relevant.index_within_set(dof)];
   }
 
   unsigned int Model::n_dofs() const

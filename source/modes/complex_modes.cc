@@ -26,10 +26,11 @@ namespace Squeal
     void normalize(const SparseMatrix &M, MultiVector &real_part, MultiVector &imaginary_part)
     {
       fix_phase(real_part, imaginary_part);
-      const MultiVector         X       = join({&real_part, &imaginary_part});
-      const std::vector<double> squares = complex_products(X, M * X);
+      const std::vector<double> of_real      = column_products(real_part, M * real_part),
+                                of_imaginary = column_products(imaginary_part, M * imaginary_part);
       for (MultiVector *part : {&real_part, &imaginary_part})
-        part->local() *= as_column(squares).cwiseSqrt().cwiseInverse().asDiagonal();
+        for (int j = 0; j < part->n_columns(); ++j)
+          part->col(j) /= std::sqrt(of_real[j] + of_imaginary[j]);
     }
 
   } // namespace
@@ -97,18 +98,26 @@ namespace Squeal
     if (modes.left_real_part)
       normalize(*system.mass, *modes.left_real_part, *modes.left_imaginary_part);
 
-    // Residuals
-    const MultiVector X  = join({modes.real_part.get(), modes.imaginary_part.get()});
-    const MultiVector KX = *system.stiffness * X;
-    const MultiVector R  = force_residuals(system, values, modes.lambda, *modes.real_part, *modes.imaginary_part);
-    const MultiVector U  = inverse.solve_frictionless(R);
-    const auto R_R = complex_products(R, R), KX_KX = complex_products(KX, KX), U_R = complex_products(U, R), X_KX = complex_products(X, KX);
+    // Residuals, of some modes at a time: all of them would take more memory than all else
+    constexpr int modes_together = 16;
     modes.residuals.resize(k);
     modes.energy_residuals.resize(k);
-    for (int j = 0; j < k; ++j)
+    for (int first = 0; first < k; first += modes_together)
       {
-        modes.residuals[j]        = std::sqrt(R_R[j] / KX_KX[j]);
-        modes.energy_residuals[j] = U_R[j] / X_KX[j];
+        const int         n    = std::min(modes_together, k - first);
+        const MultiVector real = view(*modes.real_part, first, n), imaginary = view(*modes.imaginary_part, first, n);
+        const MultiVector X  = join({&real, &imaginary});
+        const MultiVector KX = *system.stiffness * X;
+        const MultiVector R =
+          force_residuals(system, values, {modes.lambda.begin() + first, modes.lambda.begin() + first + n}, real, imaginary);
+        const MultiVector U   = inverse.solve_frictionless(R);
+        const auto        R_R = complex_products(R, R), KX_KX = complex_products(KX, KX), U_R = complex_products(U, R),
+                   X_KX = complex_products(X, KX);
+        for (int j = 0; j < n; ++j)
+          {
+            modes.residuals[first + j]        = std::sqrt(R_R[j] / KX_KX[j]);
+            modes.energy_residuals[first + j] = U_R[j] / X_KX[j];
+          }
       }
   }
 } // namespace Squeal

@@ -11,17 +11,18 @@ namespace Squeal
 {
   namespace
   {
-    /// All terms in λ, those without sparse form, too.
-    struct DampingOperator : LinearOperator
+    /// All terms in a power of λ as they are: a matrix of their sum would be another one of the size of K.
+    struct SumOfTerms : LinearOperator
     {
-      DampingOperator(const CoupledSystem &system, const ParameterValues &values)
+      SumOfTerms(const CoupledSystem &system, const ParameterValues &values, const int power)
         : system(system)
         , values(values)
+        , power(power)
       {}
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        Y = times(system.terms, values, 1, X);
+        Y = times(system.terms, values, power, X);
       }
 
       const RowMap &map() const override
@@ -31,10 +32,12 @@ namespace Squeal
 
       const CoupledSystem   &system;
       const ParameterValues &values;
+      const int              power;
     };
 
     /// Modes at friction coefficient @p mu with Q(s)⁻¹ by @p inverse where it @p fits, else by LU factors.
-    ComplexModes attempt(const SecondOrderSystem     &matrices,
+    ComplexModes attempt(const std::vector<Term>     &sparse,
+                         const ParameterValues       &values,
                          const QuadraticPencil       &pencil,
                          const QuadraticModesOptions &options,
                          const double                 mu,
@@ -46,7 +49,7 @@ namespace Squeal
       if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || options.shift == 0.))
         inverse.set_friction_coefficient(mu);
       else
-        lu = factorize_general(*pencil_at(matrices, options.shift),
+        lu = factorize_general(*pencil_at(sparse_matrices(sparse, values), options.shift),
                                parameters.library == FactorizationLibrary::cholmod ? FactorizationLibrary::automatic : parameters.library,
                                "stiffness of the coupled system with friction");
       const QuadraticModes found = quadratic_modes(pencil, lu ? *lu : inverse, options);
@@ -84,13 +87,8 @@ namespace Squeal
                         "choose Complex modes/Solver = residual iteration, hold the disc by stiffer Mounts/Elastic mounts, or leave "
                         "Damping/Modal damping ratio empty");
 
-    // The pencil: sparse matrices, but for modal damping
-    const SecondOrderSystem matrices = sparse_matrices(sparse, values);
-    const DampingOperator   full_damping(system, values);
-    const LinearOperator   *damping = matrices.damping.get();
-    if (has_full_terms)
-      damping = &full_damping;
-    const QuadraticPencil pencil{matrices.mass.get(), damping, matrices.stiffness.get()};
+    const SumOfTerms      mass(system, values, 2), damping(system, values, 1), stiffness(system, values, 0);
+    const QuadraticPencil pencil{&mass, terms_of(system.terms, values, 1).empty() ? nullptr : &damping, &stiffness};
 
     QuadraticModesOptions options;
     options.shift                      = shift;
@@ -98,14 +96,14 @@ namespace Squeal
     options.largest_damping            = largest_rate_of_band;
     options.expected                   = n_expected;
     options.tolerance                  = parameters.complex_tolerance;
-    options.stiffness_norm             = row_sum_norm(*matrices.stiffness);
-    options.damping_norm               = matrices.damping ? row_sum_norm(*matrices.damping) : 0.;
+    options.stiffness_norm             = norm_bound(sparse, values, 0);
+    options.damping_norm               = norm_bound(sparse, values, 1);
     options.report                     = [&](const std::string &state) { progress.update(state); };
 
     ComplexModes modes;
     try
       {
-        modes = attempt(matrices, pencil, options, mu, parameters, symmetric, inverse);
+        modes = attempt(sparse, values, pencil, options, mu, parameters, symmetric, inverse);
       }
     catch (const SolverError &)
       {
@@ -115,7 +113,7 @@ namespace Squeal
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
-        modes = attempt(matrices, pencil, options, mu, parameters, symmetric, shifted);
+        modes = attempt(sparse, values, pencil, options, mu, parameters, symmetric, shifted);
         modes.summary += ", shifted";
       }
     finish_modes(system, values, inverse, modes);

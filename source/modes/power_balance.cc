@@ -1,4 +1,4 @@
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/power_balance.h>
 
@@ -15,16 +15,15 @@ namespace Squeal
     {
     public:
       QuadraticForms(const Model &model, const MultiVector &real_part, const MultiVector &imaginary_part)
-        : component(model.free_map().n())
+        : component(model.free_map().n_local())
         , n_components(model.component_names().size())
         , re(real_part)
         , im(imaginary_part)
-        , u(joined(real_part, imaginary_part))
       {
         for (const Node &node : model.nodes())
           for (const int dof : node.dofs)
-            if (dof >= 0)
-              component[dof] = node.component;
+            if (const int i = model.free_map().place(dof); i >= 0)
+              component[i] = node.component;
       }
 
       std::vector<double> of(const std::shared_ptr<const SparseMatrix> &A) const
@@ -32,36 +31,63 @@ namespace Squeal
         std::vector<double> result(n_components, 0.);
         if (!A)
           return result;
-        const std::vector<Complex> Au = joined(*A * re, *A * im);
-        for (std::size_t i = 0; i < u.size(); ++i)
-          result[component[i]] += (std::conj(u[i]) * Au[i]).real();
-        return result;
-      }
-
-      /// Displacement of a node along a direction.
-      Complex along(const Eigen::Vector3d &direction, const Node &node) const
-      {
-        Complex result = 0.;
-        for (int d = 0; d < 3; ++d)
-          if (node.dofs[d] >= 0)
-            result += direction[d] * u[node.dofs[d]];
+        const MultiVector A_re = *A * re, A_im = *A * im;
+        for (int i = 0; i < re.n_local_rows(); ++i)
+          result[component[i]] += re(i, 0) * A_re(i, 0) + im(i, 0) * A_im(i, 0);
+        sum_over_processes(re.communicator(), result.data(), result.size());
         return result;
       }
 
     private:
-      static std::vector<Complex> joined(const MultiVector &real_part, const MultiVector &imaginary_part)
+      std::vector<unsigned int> component; ///< of the rows of this process
+      const std::size_t         n_components;
+      const MultiVector        &re, &im;
+    };
+
+    /// Displacements of both nodes of every contact pair, on every process.
+    class ContactDisplacements
+    {
+    public:
+      ContactDisplacements(const Model            &model,
+                           const ContactInterface &interface,
+                           const MultiVector      &real_part,
+                           const MultiVector      &imaginary_part)
+        : values(12, DenseMatrix::Index(interface.size()))
       {
-        const DenseMatrix    x = replicate(real_part), y = replicate(imaginary_part);
-        std::vector<Complex> result;
-        for (Eigen::Index i = 0; i < x.rows(); ++i)
-          result.emplace_back(x(i, 0), y(i, 0));
-        return result;
+        values.setZero();
+        const auto add = [&](const Node &node, const int first_row, const std::size_t pair) {
+          for (int d = 0; d < 3; ++d)
+            if (const int i = real_part.map().place(node.dofs[d]); i >= 0)
+              {
+                values(first_row + d, pair)     = real_part(i, 0);
+                values(first_row + 3 + d, pair) = imaginary_part(i, 0);
+              }
+        };
+        for (std::size_t pair = 0; pair < interface.size(); ++pair)
+          {
+            add(interface[pair].disc_node, 0, pair);
+            add(interface[pair].pin_node, 6, pair);
+          }
+        sum_over_processes(model.communicator(), values.data(), values.size());
       }
 
-      std::vector<unsigned int>  component;
-      const std::size_t          n_components;
-      const MultiVector         &re, &im;
-      const std::vector<Complex> u;
+      Complex of_disc(const Eigen::Vector3d &direction, const std::size_t pair) const
+      {
+        return along(direction, 0, pair);
+      }
+
+      Complex of_pin(const Eigen::Vector3d &direction, const std::size_t pair) const
+      {
+        return along(direction, 6, pair);
+      }
+
+    private:
+      Complex along(const Eigen::Vector3d &direction, const int first_row, const std::size_t pair) const
+      {
+        return {direction.dot(values.col(pair).segment<3>(first_row)), direction.dot(values.col(pair).segment<3>(first_row + 3))};
+      }
+
+      DenseMatrix values; ///< real and imaginary parts of the disc's node, then those of the pin's, pair by pair
     };
 
     double total(const std::vector<double> &values)
@@ -107,12 +133,13 @@ namespace Squeal
                              const MultiVector          &real_part,
                              const MultiVector          &imaginary_part)
   {
-    const MultiVector    re = *coupled.kernel * real_part, im = *coupled.kernel * imaginary_part;
-    const QuadraticForms forms(model, re, im);
-    const auto           reactions = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
-    const double         speed     = std::norm(lambda); // |λ|²
-    const double         energy    = (speed * total(forms.of(bodies.mass)) + total(forms.of(bodies.stiffness))) / 4.;
-    const double         to_rate   = 1. / (2. * lambda.imag() * energy); // from a power
+    const MultiVector          re = *coupled.kernel * real_part, im = *coupled.kernel * imaginary_part;
+    const QuadraticForms       forms(model, re, im);
+    const ContactDisplacements displacements(model, interface, re, im);
+    const auto                 reactions = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
+    const double               speed     = std::norm(lambda); // |λ|²
+    const double               energy    = (speed * total(forms.of(bodies.mass)) + total(forms.of(bodies.stiffness))) / 4.;
+    const double               to_rate   = 1. / (2. * lambda.imag() * energy); // from a power
 
     PowerBalance result;
     result.bodies = forms.of(bodies.damping);
@@ -121,11 +148,11 @@ namespace Squeal
     result.modal_damping = -0.5 * speed * modal_damping(coupled, real_part, imaginary_part) * to_rate;
     for (std::size_t node = 0; node < interface.size(); ++node)
       {
-        const ContactNode &pair = interface[node];
-        const Node        &disc = model.nodes()[pair.disc_node], &pin = model.nodes()[pair.pin_node];
-        const Complex      along_t_of_disc = forms.along(pair.sliding, disc), along_t_of_pin = forms.along(pair.sliding, pin);
-        const Complex      along_b  = forms.along(pair.radial, disc) - forms.along(pair.radial, pin);
-        const auto         friction = [&](const Complex &displacement) {
+        const ContactNode &pair            = interface[node];
+        const Complex      along_t_of_disc = displacements.of_disc(pair.sliding, node),
+                      along_t_of_pin       = displacements.of_pin(pair.sliding, node);
+        const Complex along_b              = displacements.of_disc(pair.radial, node) - displacements.of_pin(pair.radial, node);
+        const auto    friction             = [&](const Complex &displacement) {
           return 0.5 * friction_coefficient * (std::conj(lambda * displacement) * reactions(node, 0)).real() * to_rate;
         };
         result.into_disc.push_back(friction(along_t_of_disc));

@@ -262,12 +262,17 @@ namespace Squeal
     const std::vector<char> packed = dealii::Utilities::pack(record, false);
     const Head              head{packed.size(), checksum(as_text(packed))};
     fs::resize_file(archive, end); // what an attempt that failed has left
-    append_to_file(archive, {{reinterpret_cast<const char *>(&head), sizeof(head)}, as_text(packed)});
+    // The disk may take longer for a point than the model: a loss of power costs what the last second has found
+    const auto   now     = std::chrono::steady_clock::now();
+    const OnDisk on_disk = record.is_block() || now - last_on_disk > std::chrono::seconds(1) ? OnDisk::now : OnDisk::later;
+    if (on_disk == OnDisk::now)
+      last_on_disk = now;
+    append_to_file(archive, {{reinterpret_cast<const char *>(&head), sizeof(head)}, as_text(packed)}, on_disk);
     end += sizeof(head) + packed.size();
     if (record.is_block())
       ++parts[record.part].n_blocks;
     else
-      append_to_file(fs::path(folder) / points_name, {csv_rows(record.line, record.point, largest_circular_frequency)});
+      append_to_file(fs::path(folder) / points_name, {csv_rows(record.line, record.point, largest_circular_frequency)}, OnDisk::later);
   }
 
   int ChartCheckpoint::n_found() const

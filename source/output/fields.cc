@@ -2,6 +2,8 @@
 #include <squeal/output/vtu_writer.h>
 #include <squeal/output/xdmf_writer.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,28 +15,29 @@ namespace Squeal
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
     template <typename Number>
-    double largest_modulus(const std::vector<Number> &displacement)
+    double largest_modulus(const std::vector<Number> &displacement, const MPI_Comm communicator)
     {
       double largest = 0.;
       for (const Number &u : displacement)
         largest = std::max<double>(largest, std::abs(u));
+      largest = dealii::Utilities::MPI::max(largest, communicator);
       return largest > 0. ? largest : 1.;
     }
   } // namespace
 
-  double largest_amplitude(const std::vector<double> &displacement)
+  double largest_amplitude(const std::vector<double> &displacement, const MPI_Comm communicator)
   {
-    return largest_modulus(displacement);
+    return largest_modulus(displacement, communicator);
   }
 
-  double largest_amplitude(const std::vector<std::complex<double>> &displacement)
+  double largest_amplitude(const std::vector<std::complex<double>> &displacement, const MPI_Comm communicator)
   {
-    return largest_modulus(displacement);
+    return largest_modulus(displacement, communicator);
   }
 
-  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options)
+  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, const MPI_Comm communicator)
   {
-    const double       scale    = 1. / largest_amplitude(mode.displacement);
+    const double       scale    = 1. / largest_amplitude(mode.displacement, communicator);
     const double       period   = 2. * M_PI / mode.lambda.imag();
     const unsigned int n_steps  = options.frames_per_period * options.periods;
     const unsigned int n_frames = options.grows ? n_steps + 1 : n_steps;

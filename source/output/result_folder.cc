@@ -265,6 +265,11 @@ namespace Squeal
     if (stream.bad())
       throw not_written(shown + "/" + name, ENOMEM);
     const std::string text = stream.str();
+    write_now(name, text);
+  }
+
+  fs::path ResultFolder::write_now(const std::string &name, const std::string &text) const
+  {
     // Once a signal has begun to clear away, nothing new may come up.
     const auto held = uninterrupted();
     check_not_removed(unfinished, shown);
@@ -274,6 +279,23 @@ namespace Squeal
     if (const int problem = write_file(file, O_TRUNC, {text}, false); problem != 0)
       throw not_written(shown + "/" + name, problem);
     written[name] = text.size();
+    return file;
+  }
+
+  fs::path ResultFolder::begin_file(const std::string &name) const
+  {
+    return is_root ? write_now(name, "") : fs::path();
+  }
+
+  void ResultFolder::end_file(const std::string &name) const
+  {
+    if (!is_root)
+      return;
+    check_not_removed(unfinished, shown);
+    std::error_code problem;
+    written[name] = fs::file_size(unfinished / name, problem);
+    if (problem)
+      throw not_written(shown + "/" + name, problem.value());
   }
 
   FileSizes ResultFolder::files() const

@@ -1,3 +1,5 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
 #include <squeal/output/vtu_writer.h>
 
 #include <deal.II/base/data_out_base.h>
@@ -6,8 +8,11 @@
 #include <deal.II/grid/reference_cell.h>
 #include <deal.II/numerics/data_out.h>
 
+#include <fcntl.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iomanip>
 #include <map>
 #include <sstream>
@@ -52,7 +57,7 @@ namespace Squeal
           });
       }
 
-      void add(const Vector<double> &displacement, const char *name)
+      void add(const DofVector &displacement, const char *name)
       {
         add_data_vector(displacement, std::vector<std::string>(3, name), type_dof_data, vector_field);
       }
@@ -67,21 +72,49 @@ namespace Squeal
         std::ostringstream piece;
         if (!get_patches().empty())
           DataOutBase::write_vtu_main(get_patches(), get_dataset_names(), get_nonscalar_data_ranges(), compressed(), piece);
-        // gather() compresses what it sends once more, which takes longer than all the rest
-        const std::vector<std::string> pieces = Utilities::MPI::n_mpi_processes(model.communicator()) == 1 ?
-                                                  std::vector<std::string>{piece.str()} :
-                                                  Utilities::MPI::gather(model.communicator(), piece.str());
-        folder.write(name, [&](std::ostream &stream) {
-          DataOutBase::write_vtu_header(stream, compressed());
-          if (!title.empty())
-            write_text(stream, "mode", title);
-          for (const std::string &text : pieces)
-            stream << text;
-          DataOutBase::write_vtu_footer(stream);
-        });
+        std::ostringstream header, footer;
+        DataOutBase::write_vtu_header(header, compressed());
+        if (!title.empty())
+          write_text(header, "mode", title);
+        DataOutBase::write_vtu_footer(footer);
+        write_pieces(folder, name, header.str(), piece.str(), footer.str());
       }
 
     private:
+      /// Process 0 writes the pieces of all, of which it has one at a time.
+      void write_pieces(const ResultFolder &folder,
+                        const std::string  &name,
+                        const std::string  &header,
+                        const std::string  &piece,
+                        const std::string  &footer) const
+      {
+        const MPI_Comm communicator = model.communicator();
+        const auto     path         = folder.begin_file(name);
+        if (model.free_map().rank() != 0)
+          {
+            const unsigned long size = piece.size();
+            MPI_Send(&size, 1, MPI_UNSIGNED_LONG, 0, 0, communicator);
+            MPI_Send(piece.data(), static_cast<int>(size), MPI_CHAR, 0, 0, communicator);
+            return;
+          }
+        const auto append = [&](const std::string &text) {
+          if (const int problem = write_file(path, O_APPEND, {text}, false); problem != 0)
+            throw FileError(std::string("the file cannot be written: ") + std::strerror(problem), "file " + folder.name() + "/" + name,
+                            "check permissions and free space");
+        };
+        append(header + piece);
+        for (int process = 1; process < model.free_map().n_processes(); ++process)
+          {
+            unsigned long size;
+            MPI_Recv(&size, 1, MPI_UNSIGNED_LONG, process, 0, communicator, MPI_STATUS_IGNORE);
+            std::string other(size, ' ');
+            MPI_Recv(other.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator, MPI_STATUS_IGNORE);
+            append(other);
+          }
+        append(footer);
+        folder.end_file(name);
+      }
+
       const Model &model;
     };
   } // namespace
@@ -102,34 +135,41 @@ namespace Squeal
       components(cell->active_cell_index()) = cell->material_id();
 
     // Vertices of the pins' contact faces are contact nodes; nodes between them (degree 2) are not shown
-    std::map<unsigned int, unsigned int> pair_of_node;
+    std::map<std::int64_t, unsigned int> pair_of_node;
     for (unsigned int c = 0; c < interface.size(); ++c)
-      pair_of_node[interface[c].pin_node] = c;
-    const types::boundary_id id = model.surface_id(PhysicalNames::pin_contact);
+      pair_of_node[interface[c].pin_node.number] = c;
+    const types::boundary_id                 id = model.surface_id(PhysicalNames::pin_contact);
+    std::vector<std::array<unsigned int, 4>> faces_here;
     for (const auto &cell : model.dof_handler().active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary() && face->boundary_id() == id)
-          {
-            contact_faces.emplace_back();
-            for (unsigned int v = 0; v < 4; ++v)
-              contact_faces.back()[v] = pair_of_node.at(model.node_of_dof(face->vertex_dof_index(v, 0)));
-          }
+      if (cell->is_locally_owned())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary() && face->boundary_id() == id)
+            {
+              faces_here.emplace_back();
+              for (unsigned int v = 0; v < 4; ++v)
+                faces_here.back()[v] = pair_of_node.at(model.nodes()[model.node_of_dof(face->vertex_dof_index(v, 0))].number);
+            }
+    for (const auto &faces : Utilities::MPI::gather(model.communicator(), faces_here))
+      contact_faces.insert(contact_faces.end(), faces.begin(), faces.end());
   }
 
   template <typename Number, typename Function>
-  Vector<double> VtuWriter::dof_vector(const std::vector<Number> &displacement, const Function &value) const
+  DofVector VtuWriter::dof_vector(const std::vector<Number> &displacement, const Function &value) const
   {
-    Vector<double> result(model.n_dofs());
-    for (types::global_dof_index dof = 0; dof < result.size(); ++dof)
-      if (const int free = model.free_dof(dof); free >= 0)
-        result(dof) = value(displacement[free]);
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(model.dof_handler(), relevant);
+    DofVector result(model.dof_handler().locally_owned_dofs(), relevant, model.communicator());
+    for (const auto dof : result.locally_owned_elements())
+      if (const int row = model.free_map().place(model.free_dof(dof)); row >= 0)
+        result(dof) = value(displacement[row]);
+    result.update_ghost_values();
     return result;
   }
 
   void VtuWriter::write_mode(const ModeField &mode)
   {
     using Complex      = std::complex<double>;
-    const double scale = 1. / largest_amplitude(mode.displacement);
+    const double scale = 1. / largest_amplitude(mode.displacement, model.communicator());
     const auto   re    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.real(); });
     const auto   im    = dof_vector(mode.displacement, [&](const Complex &u) { return scale * u.imag(); });
     const auto   mod   = dof_vector(mode.displacement, [&](const Complex &u) { return scale * std::abs(u); });
@@ -159,7 +199,7 @@ namespace Squeal
 
   void VtuWriter::write_mode(const RealModeField &mode)
   {
-    const double scale = 1. / largest_amplitude(mode.displacement);
+    const double scale = 1. / largest_amplitude(mode.displacement, model.communicator());
     const auto   u     = dof_vector(mode.displacement, [&](const double value) { return scale * value; });
     const auto   mod   = dof_vector(mode.displacement, [&](const double value) { return scale * std::abs(value); });
 
@@ -194,7 +234,7 @@ namespace Squeal
         for (unsigned int v = 0; v < 4; ++v)
           {
             const unsigned int pair   = contact_faces[face][v];
-            const auto &[x, y, z]     = model.nodes()[interface[pair].pin_node].position;
+            const auto &[x, y, z]     = interface[pair].pin_node.position;
             patches[face].vertices[v] = {x, y, z};
             for (std::size_t f = 0; f < fields.size(); ++f)
               patches[face].data(f, v) = (*fields[f].first)[pair];
@@ -206,16 +246,17 @@ namespace Squeal
   void VtuWriter::write_contact_state(const ContactField &state) const
   {
     // Clamped dofs follow their backplate
-    Vector<double>   u = dof_vector(state.displacement, [](const double value) { return value; });
+    DofVector        u = dof_vector(state.displacement, [](const double value) { return value; });
     std::vector<int> side(state.approach.size(), 0);
     for (const ContactNode &node : interface)
       side[node.pin] = node.side();
     for (const auto dof : DoFTools::extract_dofs(model.dof_handler(), ComponentMask(std::vector<bool>{false, false, true})))
-      if (model.free_dof(dof) < 0)
+      if (u.locally_owned_elements().is_element(dof) && model.free_dof(dof) < 0)
         {
           const unsigned int component = model.nodes()[model.node_of_dof(dof)].component;
           u(dof)                       = -side[component] * state.approach[component];
         }
+    u.update_ghost_values();
 
     BodyOutput bodies(model);
     bodies.add(u, "displacement");
@@ -236,7 +277,7 @@ namespace Squeal
   void VtuWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
   {
     std::vector<std::pair<double, std::string>> files;
-    for (const AnimationFrame &frame : animation_frames(mode, options))
+    for (const AnimationFrame &frame : animation_frames(mode, options, model.communicator()))
       {
         const auto u = dof_vector(mode.displacement, [&](const std::complex<double> &value) { return (frame.turn * value).real(); });
 

@@ -1,5 +1,5 @@
 #include <squeal/base/text.h>
-#include <squeal/output/hdf5_image.h>
+#include <squeal/output/hdf5_file.h>
 #include <squeal/output/xdmf_writer.h>
 
 #include <boost/property_tree/ptree.hpp>
@@ -30,75 +30,99 @@ namespace Squeal
 
     // ---------------------------------------------------------------------------------------------------- values in HDF5
 
-    void add_mesh(Hdf5Image &image, const std::string &group, const FieldMesh &mesh, const Model &model)
+    /// A file of HDF5 in the result folder whose fields are noted where they belong.
+    class FieldFile
     {
-      std::vector<float> points;
-      for (const unsigned int node : mesh.nodes)
-        for (const double x : model.nodes()[node].position)
-          points.push_back(x);
-      image.add(group + "/points", points, 3);
-      image.add(group + "/cells", mesh.cells, mesh.corners);
-      image.add(group + "/component", mesh.components);
-    }
+    public:
+      FieldFile(const ResultFolder &folder, std::string given_name, const MPI_Comm communicator)
+        : folder(folder)
+        , name(std::move(given_name))
+        , file(folder.begin_file(name), folder.name() + "/" + name, communicator)
+      {}
+
+      void add(const std::string &group, const FieldMesh &mesh)
+      {
+        std::vector<float> points;
+        for (const Node &node : mesh.nodes)
+          points.insert(points.end(), node.position.begin(), node.position.end());
+        file.add(group + "/points", points, 3);
+        file.add(group + "/cells", mesh.cells, mesh.corners);
+        file.add(group + "/component", mesh.components);
+      }
+
+      /// @param values one for each vertex that this process writes
+      void add(const std::string &dataset, const std::vector<float> &values)
+      {
+        file.add(dataset, values);
+      }
+
+      /// @param values one or three for each vertex that this process writes
+      void add(Grid                     &grid,
+               const std::string        &field,
+               const std::string        &dataset,
+               const std::vector<float> &values,
+               const unsigned int        n_columns)
+      {
+        file.add(dataset, values, n_columns);
+        grid.fields.push_back({field, name, dataset, n_columns});
+      }
+
+      void describe(const std::string &title, const std::string &mesh)
+      {
+        file.describe("mode", title);
+        file.describe("mesh", std::filesystem::path(mesh).lexically_relative(std::filesystem::path(name).parent_path()));
+      }
+
+      void finish()
+      {
+        file.close();
+        folder.end_file(name);
+      }
+
+    private:
+      const ResultFolder &folder;
+      const std::string   name;
+      Hdf5File            file;
+    };
 
     /// √Σ|u|² over the three displacements of each vertex, times a factor.
     template <typename Number>
-    std::vector<float> amplitudes(const FieldMesh &mesh, const Model &model, const std::vector<Number> &displacement, const double scale)
+    std::vector<float> amplitudes(const FieldMesh &mesh, const RowMap &map, const std::vector<Number> &displacement, const double scale)
     {
-      std::vector<float> result;
-      result.reserve(mesh.nodes.size());
-      for (const unsigned int node : mesh.nodes)
+      DenseMatrix result(mesh.own.size(), 1);
+      for (std::size_t i = 0; i < mesh.own.size(); ++i)
         {
           double sum = 0.;
-          for (const int dof : model.nodes()[node].dofs)
-            sum += dof >= 0 ? std::norm(displacement[dof]) : 0.;
-          result.push_back(scale * std::sqrt(sum));
+          for (const int dof : mesh.own[i].dofs)
+            if (const int row = map.place(dof); row >= 0)
+              sum += std::norm(displacement[row]);
+          result(i, 0) = scale * std::sqrt(sum);
         }
-      return result;
+      return mesh.delivered(result);
     }
 
     /// value(u) of the three displacements of each vertex, u = 0 where it is clamped.
     template <typename Number, typename Function>
     std::vector<float> vertex_values(const FieldMesh           &mesh,
-                                     const Model               &model,
+                                     const RowMap              &map,
                                      const std::vector<Number> &displacement,
                                      const Function            &value)
     {
-      std::vector<float> result;
-      result.reserve(3 * mesh.nodes.size());
-      for (const unsigned int node : mesh.nodes)
-        for (const int dof : model.nodes()[node].dofs)
-          result.push_back(dof >= 0 ? value(displacement[dof]) : 0.);
-      return result;
+      DenseMatrix result(mesh.own.size(), 3);
+      for (std::size_t i = 0; i < mesh.own.size(); ++i)
+        for (int d = 0; d < 3; ++d)
+          {
+            const int row = map.place(mesh.own[i].dofs[d]);
+            result(i, d)  = row >= 0 ? value(displacement[row]) : 0.;
+          }
+      return mesh.delivered(result);
     }
 
-    /// A file of HDF5 whose fields are noted where they belong.
-    class FieldFile
+    /// Values of all contact pairs, which process 0 writes.
+    std::vector<float> on_root(const Model &model, std::vector<float> values)
     {
-    public:
-      explicit FieldFile(std::string name)
-        : name(std::move(name))
-      {}
-
-      /// @param values one or three for each vertex
-      void add(Grid &grid, const std::string &field, const std::string &dataset, const std::vector<float> &values)
-      {
-        const unsigned int n_columns = values.size() / grid.mesh->nodes.size();
-        image.add(dataset, values, n_columns);
-        grid.fields.push_back({field, name, dataset, n_columns});
-      }
-
-      void write(const ResultFolder &folder, const std::string &title, const std::string &mesh)
-      {
-        image.describe("mode", title);
-        image.describe("mesh", std::filesystem::path(mesh).lexically_relative(std::filesystem::path(name).parent_path()));
-        folder.write(name, [&](std::ostream &stream) { stream << image.bytes(); });
-      }
-
-    private:
-      const std::string name;
-      Hdf5Image         image;
-    };
+      return model.free_map().rank() == 0 ? std::move(values) : std::vector<float>();
+    }
 
     // ---------------------------------------------------------------------------------------------------- XDMF
 
@@ -132,19 +156,19 @@ namespace Squeal
       const FieldMesh &mesh = *grid.mesh;
       Tree             topology, geometry, result;
       topology.put("<xmlattr>.TopologyType", mesh.corners == 8 ? "Hexahedron" : "Quadrilateral");
-      topology.put("<xmlattr>.NumberOfElements", mesh.n_cells());
-      topology.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/cells"), mesh.n_cells(), mesh.corners, true));
+      topology.put("<xmlattr>.NumberOfElements", mesh.n_all_cells);
+      topology.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/cells"), mesh.n_all_cells, mesh.corners, true));
       geometry.put("<xmlattr>.GeometryType", "XYZ");
-      geometry.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/points"), mesh.nodes.size(), 3, false));
+      geometry.add_child("DataItem", data_item(seen(grid.mesh_file, grid.group + "/points"), mesh.n_all_nodes, 3, false));
       result.put("<xmlattr>.Name", grid.title);
       result.put("<xmlattr>.GridType", "Uniform");
       result.add_child("Topology", topology);
       result.add_child("Geometry", geometry);
       for (const auto &[name, file, dataset, n_columns] : grid.fields)
         result.add_child("Attribute",
-                         attribute(name, "Node", n_columns, data_item(seen(file, dataset), mesh.nodes.size(), n_columns, false)));
+                         attribute(name, "Node", n_columns, data_item(seen(file, dataset), mesh.n_all_nodes, n_columns, false)));
       result.add_child("Attribute", attribute("component", "Cell", 1,
-                                              data_item(seen(grid.mesh_file, grid.group + "/component"), mesh.n_cells(), 1, true)));
+                                              data_item(seen(grid.mesh_file, grid.group + "/component"), mesh.n_all_cells, 1, true)));
       return result;
     }
 
@@ -210,14 +234,14 @@ namespace Squeal
     if (is_new)
       {
         mesh = body_mesh(model, component);
-        Hdf5Image image;
-        add_mesh(image, body_group, mesh, model);
-        if (!component && contact_faces.n_cells() > 0)
+        FieldFile file(folder, mesh_file(component), model.communicator());
+        file.add(body_group, mesh);
+        if (!component && contact_faces.n_all_cells > 0)
           {
-            add_mesh(image, contact_group, contact_faces, model);
-            image.add(closed_dataset, closed);
+            file.add(contact_group, contact_faces);
+            file.add(closed_dataset, on_root(model, closed));
           }
-        folder.write(mesh_file(component), [&](std::ostream &stream) { stream << image.bytes(); });
+        file.finish();
       }
     return mesh;
   }
@@ -232,17 +256,17 @@ namespace Squeal
 
   void XdmfWriter::write_mode(const ModeField &mode)
   {
-    const double scale = 1. / largest_amplitude(mode.displacement);
+    const double scale = 1. / largest_amplitude(mode.displacement, model.communicator());
     Shape        shape{{mode.title, mesh_file({}), body_group, &bodies({}), {}}, {}};
-    FieldFile    file("modes/" + mode.name + ".h5");
+    FieldFile    file(folder, "modes/" + mode.name + ".h5", model.communicator());
     const auto   add = [&](const char *name, const auto &value) {
-      file.add(shape.bodies, name, name, vertex_values(bodies({}), model, mode.displacement, value));
+      file.add(shape.bodies, name, name, vertex_values(bodies({}), model.free_map(), mode.displacement, value), 3);
     };
     add("displacement_real", [&](const Complex &u) { return scale * u.real(); });
     add("displacement_imag", [&](const Complex &u) { return scale * u.imag(); });
-    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(bodies({}), model, mode.displacement, scale));
+    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(bodies({}), model.free_map(), mode.displacement, scale), 1);
 
-    if (contact_faces.n_cells() > 0)
+    if (contact_faces.n_all_cells > 0)
       {
         Grid               faces{mode.title, mesh_file({}), contact_group, &contact_faces, {}};
         std::vector<float> re, im;
@@ -251,27 +275,29 @@ namespace Squeal
             re.push_back(scale * r.real());
             im.push_back(scale * r.imag());
           }
-        file.add(faces, "normal_reaction_real", "normal_reaction_real", re);
-        file.add(faces, "normal_reaction_imag", "normal_reaction_imag", im);
+        file.add(faces, "normal_reaction_real", "normal_reaction_real", on_root(model, re), 1);
+        file.add(faces, "normal_reaction_imag", "normal_reaction_imag", on_root(model, im), 1);
         if (!mode.energy_input.empty())
-          file.add(faces, "energy_input", "energy_input", {mode.energy_input.begin(), mode.energy_input.end()});
+          file.add(faces, "energy_input", "energy_input", on_root(model, {mode.energy_input.begin(), mode.energy_input.end()}), 1);
         faces.fields.push_back({"closed", mesh_file({}), closed_dataset, 1});
         shape.contact_faces = faces;
       }
-    file.write(folder, mode.title, mesh_file({}));
+    file.describe(mode.title, mesh_file({}));
+    file.finish();
     keep(mode.name, shape);
   }
 
   void XdmfWriter::write_mode(const RealModeField &mode)
   {
-    const double     scale = 1. / largest_amplitude(mode.displacement);
+    const double     scale = 1. / largest_amplitude(mode.displacement, model.communicator());
     const FieldMesh &mesh  = bodies(mode.component);
     Shape            shape{{mode.title, mesh_file(mode.component), body_group, &mesh, {}}, {}};
-    FieldFile        file("modes/" + mode.name + ".h5");
+    FieldFile        file(folder, "modes/" + mode.name + ".h5", model.communicator());
     file.add(shape.bodies, "displacement", "displacement",
-             vertex_values(mesh, model, mode.displacement, [&](const double u) { return scale * u; }));
-    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(mesh, model, mode.displacement, scale));
-    file.write(folder, mode.title, mesh_file(mode.component));
+             vertex_values(mesh, model.free_map(), mode.displacement, [&](const double u) { return scale * u; }), 3);
+    file.add(shape.bodies, "amplitude", "amplitude", amplitudes(mesh, model.free_map(), mode.displacement, scale), 1);
+    file.describe(mode.title, mesh_file(mode.component));
+    file.finish();
     keep(mode.name, shape);
   }
 
@@ -293,9 +319,9 @@ namespace Squeal
 
   void XdmfWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
   {
-    const auto frames = animation_frames(mode, options);
+    const auto frames = animation_frames(mode, options, model.communicator());
     GridList   list(mode.title, "animations");
-    FieldFile  file("animations/" + mode.name + ".h5");
+    FieldFile  file(folder, "animations/" + mode.name + ".h5", model.communicator());
     for (std::size_t j = 0; j < frames.size(); ++j)
       {
         const AnimationFrame &frame = frames[j];
@@ -303,10 +329,12 @@ namespace Squeal
         std::ostringstream    dataset;
         dataset << "displacement/" << std::setw(3) << std::setfill('0') << j;
         file.add(grid, "displacement", dataset.str(),
-                 vertex_values(bodies({}), model, mode.displacement, [&](const Complex &u) { return (frame.turn * u).real(); }));
+                 vertex_values(bodies({}), model.free_map(), mode.displacement, [&](const Complex &u) { return (frame.turn * u).real(); }),
+                 3);
         list.add(frame.time, grid);
       }
-    file.write(folder, mode.title, mesh_file({}));
+    file.describe(mode.title, mesh_file({}));
+    file.finish();
     write_document(folder, "animations/" + mode.name + ".xdmf", list.tree);
   }
 } // namespace Squeal

@@ -29,7 +29,14 @@ namespace Squeal
   void SolverParameters::declare(Declarations &declarations)
   {
     declarations.enter("Real modes");
-    declarations.add("Solver", real_solver, "Shift-invert solver of the symmetric problem: block Krylov-Schur or Lanczos.");
+    declarations.add(
+      "Solver", real_solver,
+      "Of the symmetric problem. Shift-invert: block Lanczos, block Krylov-Schur (Anasazi), Lanczos with implicit restarts (ARPACK). LOBPCG: preconditioned by "
+      "multigrid, with Linear algebra/Factorization = multigrid; slower wherever it was measured (doc/multigrid.md).");
+    declarations.add(
+      "Count", mode_counting,
+      "How it is known that no real mode is missing. inertia: by the pivots of a factor, which takes its memory. none: not at "
+      "all, with LOBPCG, and the run says so.");
     declarations.add("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", {1e-14, 1e-4});
     declarations.add("Maximum number of modes", maximum_modes,
                      "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
@@ -50,17 +57,29 @@ namespace Squeal
     declarations.add("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", {1});
 
     declarations.enter("Linear algebra");
-    declarations.add("Factorization", library, "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
-    declarations.add("Threads", n_threads,
-                     "Values of the friction coefficient, loads and speeds that a process evaluates at a time. 0: as many as "
-                     "OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it. Units: none.",
-                     {0, 1024});
+    declarations.add("Factorization", library,
+                     "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several. multigrid: block conjugate "
+                     "gradients in place of the Cholesky factor: more time, less memory on fine meshes (doc/multigrid.md).");
+    declarations.add(
+      "Threads", n_threads,
+      "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and large factors. 0: as many as "
+      "OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it. Units: none.",
+      {0, 1024});
     declarations.add("BLAS threads", blas_threads,
                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", {1, 256});
   }
 
   void SolverParameters::check() const
   {
+    if (real_solver == RealSolver::lobpcg && library != FactorizationLibrary::multigrid)
+      throw ParameterError("LOBPCG is preconditioned by multigrid, but systems are solved by " + to_string(library),
+                           "parameter Real modes/Solver", "set Linear algebra/Factorization = multigrid, or choose Anasazi or ARPACK");
+    if (mode_counting == ModeCounting::none && real_solver != RealSolver::lobpcg)
+      throw ParameterError("without a count nobody tells " + to_string(real_solver) + " how many real modes to look for",
+                           "parameter Real modes/Count", "set it to inertia, or Real modes/Solver = LOBPCG");
+    if (library == FactorizationLibrary::multigrid && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)
+      throw ParameterError("multigrid cannot solve with the nonsymmetric matrix that `Shift inverse = sparse LU` asks for",
+                           "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");
     if (library == FactorizationLibrary::umfpack)
       return;
     if (library == FactorizationLibrary::cholmod && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)

@@ -1,3 +1,4 @@
+#include <squeal/linear_algebra/weighted_gram.h>
 #include <squeal/reduction/reduced_model.h>
 
 #include <array>
@@ -24,9 +25,12 @@ namespace Squeal
     , matrices(system.terms.size())
   {}
 
-  void ReducedModel::extend(const MultiVector &vectors)
+  void ReducedModel::extend(MultiVector given)
   {
-    T = std::make_shared<MultiVector>(size() > 0 ? join({&basis(), &vectors}) : vectors);
+    const int old = size();
+    T             = std::make_shared<MultiVector>(old > 0 ? join({&basis(), &given}) : std::move(given));
+    // Where they are now
+    const MultiVector vectors = view(*T, old, T->n_columns() - old);
 
     std::map<const LowRankFactor *, bool> is_extended;
     for (std::size_t k = 0; k < matrices.size(); ++k)
@@ -34,7 +38,7 @@ namespace Squeal
         const Term &term = system->terms[k];
         if (term.matrix)
           {
-            border(matrices[k], gram(*T, *term.matrix * vectors), term.symmetry == Symmetry::skew ? -1. : 1.);
+            border(matrices[k], weighted_gram(*T, *term.matrix, vectors), term.symmetry == Symmetry::skew ? -1. : 1.);
             continue;
           }
         for (const LowRankFactor *factor : {term.left.get(), term.right.get()})

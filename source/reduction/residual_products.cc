@@ -1,5 +1,6 @@
 #include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>
@@ -66,11 +67,11 @@ namespace Squeal
     for (Sparse &part : sparse)
       if (is_stiffness(*part.term) || is_mass(*part.term))
         part.sigma = part.term->coefficient.at(system.values) * (is_mass(*part.term) ? shift * shift : 1.);
+    factor_gram = DenseMatrix(n_factor_columns, n_factor_columns);
     for (const Factor &f : factors)
-      // The responses to friction forces are at hand
-      factor_gram = append_columns(factor_gram, factor_products(f.factor == system.friction_forces.get() ?
-                                                                  inverse.attachment_modes() :
-                                                                  inverse.solve_frictionless(f.factor->columns(0, f.factor->rank()))));
+      inverse.for_responses(*f.factor, [&](const int first, const MultiVector &X) {
+        factor_gram.middleCols(f.first + first, X.n_columns()) = factor_products(X);
+      });
     clear();
   }
 
@@ -111,14 +112,14 @@ namespace Squeal
     std::vector<DenseMatrix> columns(n * n);
     for (std::size_t k = 0; k < n; ++k)
       {
-        const MultiVector U       = inverse.solve_frictionless(*sparse[k].term->matrix * fresh);
-        sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
         for (std::size_t l = 0; l < n; ++l)
-          {
-            MultiVector F = *sparse[l].term->matrix * U;
-            F *= sparse[l].sign;
-            columns[l + n * k] = gram(T, F);
-          }
+          columns[l + n * k] = DenseMatrix(r, r - old);
+        for_column_blocks(r - old, [&](const int first, const int width) {
+          const MultiVector U       = inverse.solve_frictionless(*sparse[k].term->matrix * view(fresh, first, width));
+          sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
+          for (std::size_t l = 0; l < n; ++l)
+            columns[l + n * k].middleCols(first, width) = sparse[l].sign * gram(T, *sparse[l].term->matrix * U);
+        });
       }
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t l = 0; l < n; ++l)
@@ -367,5 +368,73 @@ namespace Squeal
     const DenseMatrix Gy = multiply_sparing_zeros(right_block, y), Gz = multiply_sparing_zeros(left_columns, z);
     return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),
             hermitian_products(z, Gz.topRows(z.rows()))};
+  }
+
+  DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const
+  {
+    // In an M-orthonormal basis
+    const auto scaled = [&](const ComplexDenseMatrix &X) -> ComplexDenseMatrix {
+      const Eigen::VectorXcd factors =
+        (X.colwise().norm().transpose().array() * as_column(modes.lambda).array().abs()).inverse().matrix().cast<Complex>();
+      return X * factors.asDiagonal();
+    };
+    const DenseMatrix y                         = coefficients(modes.values, modes.lambda, scaled(modes.right), false),
+                      z                         = coefficients(modes.values, modes.lambda, scaled(modes.left), true);
+    DenseMatrix result                          = DenseMatrix::Zero(n_columns, y.cols() + z.cols());
+    result.bottomLeftCorner(y.rows(), y.cols()) = y;
+    result.topRightCorner(z.rows(), z.cols())   = z;
+    std::vector<int> others;
+    for (int j = 0; j < result.cols(); ++j)
+      if (!(result.col(j).array() == 0.).all())
+        others.push_back(j);
+    return result(Eigen::all, others);
+  }
+
+  DenseMatrix ProjectedResiduals::bracket_times(const DenseMatrix &Y) const
+  {
+    // Rows of left residuals only, of both, of right ones only
+    const int   n_right_only = n_columns - n_in_left;
+    DenseMatrix result       = left_columns * Y.topRows(n_in_left);
+    result.topRows(n_left_only) += left_columns.bottomRows(n_right_only).leftCols(n_left_only).transpose() * Y.bottomRows(n_right_only);
+    result.bottomRows(n_columns - n_left_only) += right_block.rightCols(n_right_only) * Y.bottomRows(n_right_only);
+    return result;
+  }
+
+  MultiVector ProjectedResiduals::columns_times(const ReducedModel &model, const DenseMatrix &C) const
+  {
+    MultiVector result(inverse.map(), static_cast<int>(C.cols()));
+    for (const Block &block : blocks)
+      {
+        const DenseMatrix rows = C.middleRows(block.first, block.n);
+        if (block.sparse >= 0)
+          result += *sparse[block.sparse].term->matrix * model.times_basis(rows);
+        else if (block.term != nullptr)
+          result += *factors[block.factor].factor * (motions.at(&block.term->source(!block.in_right)) * rows);
+        else
+          result += *factors[block.factor].factor * rows;
+      }
+    return result;
+  }
+
+  std::optional<MultiVector> ProjectedResiduals::principal_responses(const ReducedModel         &model,
+                                                                     const std::vector<ModesAt> &modes,
+                                                                     const double                tolerance) const
+  {
+    prepare();
+    DenseMatrix Y;
+    for (const ModesAt &some : modes)
+      if (!some.lambda.empty())
+        Y = append_columns(Y, coordinates(some));
+    if (Y.cols() == 0)
+      return {};
+    const DenseMatrix energies = Y.transpose() * bracket_times(Y);
+    const auto [squares, axes] =
+      agreed(inverse.map().communicator(), symmetric_eigenpairs(0.5 * (energies + energies.transpose()))); // ascending
+    if (!(squares.back() > 0.))
+      return {};
+    const auto        first = std::upper_bound(squares.begin(), squares.end(), tolerance * tolerance * squares.back()) - squares.begin();
+    const auto        kept  = static_cast<Eigen::Index>(squares.size()) - first;
+    const DenseMatrix C     = Y * axes.rightCols(kept) * as_column(squares).tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
+    return inverse.solve_frictionless(columns_times(model, C));
   }
 } // namespace Squeal

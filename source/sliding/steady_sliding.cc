@@ -238,6 +238,10 @@ namespace Squeal
     std::vector<Eigen::AlignedBox3d> bodies(model.component_names().size());
     for (const Node &node : model.nodes())
       bodies[node.component].extend(Eigen::Vector3d::Map(node.position.data()));
+    std::vector<double> heights;
+    for (const auto &body : bodies)
+      heights.push_back(dealii::Utilities::MPI::max(body.max()[2], model.communicator()) -
+                        dealii::Utilities::MPI::min(body.min()[2], model.communicator()));
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 
@@ -246,7 +250,7 @@ namespace Squeal
     for (std::size_t c = 0; c < interface.size(); ++c)
       {
         const unsigned int pin    = interface[c].pin;
-        const double       height = bodies[pin].sizes()[2];
+        const double       height = heights[pin];
         if (std::abs(gaps[c]) >= height)
           throw ParameterError(
             "the gap of " + exact_text(gaps[c]) + " m is larger than the height of the pin, " + exact_text(height) + " m",

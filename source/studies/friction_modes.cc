@@ -3,7 +3,6 @@
 #include <squeal/base/text.h>
 #include <squeal/estimates/conditioning.h>
 #include <squeal/estimates/residual_iteration.h>
-#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/krylov_modes.h>
 #include <squeal/modes/verdict.h>
@@ -189,7 +188,7 @@ namespace Squeal
     const Scene        &scene  = *frictionless.linearisation.scene;
     const SparseMatrix &T_c    = *frictionless.linearisation.coupled.kernel;
     auto                result = wave_shares(*scene.model, nodal_masses(*scene.model, *scene.system.mass), friction.labels,
-                                             replicate(T_c * *friction.modes.real_part), replicate(T_c * *friction.modes.imaginary_part));
+                                             T_c * *friction.modes.real_part, T_c * *friction.modes.imaginary_part);
     if (rotation == Rotation::negative)
       for (auto &shares : result)
         if (shares)
@@ -206,10 +205,10 @@ namespace Squeal
     const CoupledSystem             &system    = linearisation.coupled;
     const std::vector<unsigned int> &closed    = linearisation.closed;
     const auto                       reactions = normal_reactions(system, {lambda}, real_part, imaginary_part);
-    const DenseMatrix                re = replicate(*system.kernel * real_part), im = replicate(*system.kernel * imaginary_part);
+    const MultiVector                re = *system.kernel * real_part, im = *system.kernel * imaginary_part;
 
     ModeField field{name, lambda, {}, std::vector<std::complex<double>>(linearisation.scene->interface.size())};
-    for (int i = 0; i < re.rows(); ++i)
+    for (int i = 0; i < re.n_local_rows(); ++i)
       field.displacement.emplace_back(re(i, 0), im(i, 0));
     for (std::size_t c = 0; c < closed.size(); ++c)
       field.reactions[closed[c]] = reactions(c, 0);

@@ -1,7 +1,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/bases/near_null_space.h>
 #include <squeal/bases/rigid_body.h>
-#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/iterative_inverse.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/frictionless_modes.h>
 
@@ -31,19 +32,32 @@ namespace Squeal
                              "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
     }
 
-    /// Refuses a band with more modes than allowed before any mode is computed: counting them takes one factorisation.
-    void check_number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
+    /// Counts the modes of the band, and refuses more than allowed before any is computed: counting them takes one factorisation.
+    std::optional<ModeCount> number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
     {
+      if (run.parameters.solvers.mode_counting == ModeCounting::none)
+        return {};
       run.progress.begin("Mode count");
-      const int          n         = count_modes(*coupled.stiffness, *coupled.mass, largest_circular_frequency * largest_circular_frequency,
+      const ModeCount    count     = count_below(*coupled.stiffness, *coupled.mass, largest_circular_frequency * largest_circular_frequency,
                                                  "real modes of the coupled system");
       const unsigned int allowed   = run.parameters.solvers.maximum_modes;
       const double       frequency = hertz(largest_circular_frequency);
-      if (n > static_cast<int>(allowed))
-        throw ParameterError(text(n, " modes lie below ", frequency, " Hz, more than the ", allowed, " allowed"),
+      if (count.n_modes > static_cast<int>(allowed))
+        throw ParameterError(text(count.n_modes, " modes lie below ", frequency, " Hz, more than the ", allowed, " allowed"),
                              "parameter Real modes/Maximum number of modes",
                              "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; time grows up to its cube");
-      run.progress.finish(text(n, " below ", frequency, " Hz by inertia"));
+      run.progress.finish(text(count.n_modes, " below ", frequency, " Hz by inertia"));
+      return count;
+    }
+
+    /// What a step says of the factor or of what takes its place.
+    std::string factor_summary(const Factorization &factor)
+    {
+      const auto *iterative = dynamic_cast<const IterativeInverse *>(&factor);
+      return text(factor.n_factor_entries() / 1e6, iterative != nullptr ? " million entries of multigrid" : " million entries",
+                  iterative != nullptr && iterative->n_vectors() > 0 ?
+                    text("; ", iterative->n_vectors(), " vectors in ", iterative->n_steps(), " steps of blocks") :
+                    "");
     }
   } // namespace
 
@@ -98,12 +112,26 @@ namespace Squeal
   {
     SymmetricModesOptions options;
     options.solver    = solvers.real_solver;
+    options.counting  = solvers.mode_counting;
     options.tolerance = solvers.real_tolerance;
     options.library   = solvers.library;
     options.what      = what;
     options.shift     = shift * shift;
     return options;
   }
+
+  namespace
+  {
+    /// Bodies that are solved one by one are small: by factors, and counted, whatever is chosen for the others.
+    void factorize_parts(SymmetricModesOptions &options)
+    {
+      if (options.library == FactorizationLibrary::multigrid)
+        options.library = FactorizationLibrary::automatic;
+      if (options.solver == RealSolver::lobpcg)
+        options.solver = RealSolver::anasazi;
+      options.counting = ModeCounting::inertia;
+    }
+  } // namespace
 
   FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
   {
@@ -116,9 +144,16 @@ namespace Squeal
     result.linearisation = linearisation;
     result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
+    // A factor that may be made beside them is begun before the component modes
+    const AttachmentModes attachment = !may_keep_attachment_modes(coupled) ? AttachmentModes::not_kept : AttachmentModes::when_needed;
+    if (parameters.solvers.uses_multigrid())
+      result.linearisation.coupled.near_null_space = std::make_shared<NearNullSpace>(near_null_space(*scene.model, *coupled.kernel));
+    result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
+                                                      FactorTime::beside);
+
     // -------------------------------------------------------- component modes
     check_speed(coupled, parameters);
-    check_number_of_modes(coupled, (1. + margin) * omega_max, run);
+    const std::optional<ModeCount> count = number_of_modes(coupled, (1. + margin) * omega_max, run);
 
     const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);
     const auto   components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
@@ -126,6 +161,10 @@ namespace Squeal
       SymmetricModesOptions options = real_modes_options(parameters.solvers, name, component == Component::disc ? disc_shift : 0.);
       // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
       options.by_parts = component == Component::pins;
+      if (component == Component::disc)
+        options.n_expected = static_cast<int>(scene.expected_modes / 2.);
+      else
+        factorize_parts(options);
       return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit,
                                options);
     };
@@ -143,26 +182,35 @@ namespace Squeal
 
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");
-    const AttachmentModes attachment =
-      parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed : AttachmentModes::at_once;
-    result.inverse = std::make_shared<UpdatedInverse>(coupled, result.shift, parameters.solvers.library, attachment);
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
-    result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
-                                                    result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
+    if (attachment == AttachmentModes::when_needed && !parameters.solves_by(ComplexSolver::residual_iteration))
+      result.inverse->attachment_modes();
+    result.factorisation = run.progress.finish(
+      text(factor_summary(result.inverse->frictionless()), result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
+    // Steps before it have what another thread did
+    result.factorisation.cpu_seconds += result.inverse->factor_seconds_beside();
 
     run.progress.begin("Real modes");
     SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
+    options.count                 = count;
+    // As many modes as there are pins that are alike may have one frequency
+    options.block_size = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
     // The factor at hand serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.has_damping())
       options.inverse = &result.inverse->frictionless();
-    result.real              = symmetric_modes(*coupled.stiffness, *coupled.mass, (1. + margin) * (1. + margin) * limit, options);
+    if (const auto *iterative = dynamic_cast<const IterativeInverse *>(&result.inverse->frictionless()); iterative != nullptr)
+      options.preconditioner = &iterative->preconditioner();
+    options.near_null_space = result.linearisation.coupled.near_null_space.get();
+    options.n_expected      = static_cast<int>(scene.expected_modes);
+    result.real = symmetric_modes(*coupled.stiffness, *coupled.mass, count ? count->limit : (1. + margin) * (1. + margin) * limit, options);
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
     run.count("real modes", n_real);
     run.count("rigid-body modes", result.real.n_rigid_body);
     result.solution =
-      run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
+      run.progress.finish(text(result.real.eigenvalues.size(), " found, ",
+                               result.real.n_counted == not_counted ? "not counted" : text(result.real.n_counted, " counted by inertia"),
                                n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                                result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 

@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/verdict.h>
 #include <squeal/studies/mode_shapes.h>
@@ -27,11 +26,10 @@ namespace Squeal
       return text(what, " ", to_string(label), ", ", decimal_text(frequency), " Hz");
     }
 
-    /// A displacement on the dofs of the uncoupled bodies, n_free × 1.
-    std::vector<double> all_rows(const MultiVector &displacement)
+    /// A displacement on the dofs of the uncoupled bodies, n_free × 1: rows of this process.
+    std::vector<double> rows_here(const MultiVector &displacement)
     {
-      const DenseMatrix rows = replicate(displacement);
-      return {rows.data(), rows.data() + rows.size()};
+      return {displacement.col(0).begin(), displacement.col(0).end()};
     }
 
     /// What an animation shows of the growth of a mode, e^{2π ξ n} in n periods.
@@ -91,7 +89,7 @@ namespace Squeal
           const std::string name      = file_name("real", j, modes.labels[j]);
           const MultiVector shape     = *modes.linearisation.coupled.kernel * view(*modes.real.vectors, static_cast<int>(j), 1);
           run.progress.update(name);
-          writer.write_mode({name, real_mode_title("real mode", modes.labels[j], frequency), all_rows(shape), {}});
+          writer.write_mode({name, real_mode_title("real mode", modes.labels[j], frequency), rows_here(shape), {}});
           list.push_back({name, frequency});
         }
       writer.write_list("real_modes", list);
@@ -113,7 +111,7 @@ namespace Squeal
           const std::string          name    = file_name("component_" + set, row, mode.label);
           run.progress.update(name);
           writer.write_mode({name, real_mode_title(is_disc ? "free disc" : text(mode.contact, " pins"), mode.label, mode.frequency()),
-                             all_rows(view(*mode.set->vectors, mode.number, 1)), is_disc ? Component::disc : Component::pins});
+                             rows_here(view(*mode.set->vectors, mode.number, 1)), is_disc ? Component::disc : Component::pins});
           lists["component_modes_" + set].push_back({name, mode.frequency()});
         }
       for (const auto &[name, list] : lists)

@@ -54,7 +54,7 @@ namespace Squeal
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(
       text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
-    summarise_scene(scene.mesh, run);
+    scene.expected_modes = summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));

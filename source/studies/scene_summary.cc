@@ -94,7 +94,7 @@ namespace Squeal
     }
   } // namespace
 
-  void summarise_scene(const HexMesh &mesh, Run &run)
+  double summarise_scene(const HexMesh &mesh, Run &run)
   {
     const Parameters &parameters = run.parameters;
     const double      band       = parameters.discretization.maximum_frequency;
@@ -124,7 +124,7 @@ namespace Squeal
     const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, solved);
     const double bytes   = size.memory(degree, solved) + further;
     run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9,
-                           " GB of memory; ", available_memory() / 1e9, " GB are available"));
+                           " GB of memory; ", available_memory(run.communicator) / 1e9, " GB are available"));
     run.measure("expected modes [-]", n_modes);
     run.measure("expected memory [byte]", bytes);
 
@@ -138,6 +138,7 @@ namespace Squeal
     if (n_modes > allowed)
       run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
                     ": lower Band/Maximum frequency, or check units"));
-    check_memory(size, degree, solved, parameters.geometry.path(), further);
+    check_memory(size, degree, solved, parameters.geometry.path(), further, run.communicator);
+    return n_modes;
   }
 } // namespace Squeal

@@ -171,8 +171,8 @@ namespace Squeal
       if (parameters.operation.rotating_disc)
         add_rotation(result.bodies, model, parameters.operation.angular_velocity());
       for (std::size_t c = 0; c < result.interface.size(); ++c)
-        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node != scene.interface[c].disc_node ||
-            result.interface[c].pin_node != scene.interface[c].pin_node)
+        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node.dofs != scene.interface[c].disc_node.dofs ||
+            result.interface[c].pin_node.dofs != scene.interface[c].pin_node.dofs)
           throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
                           "set Sensitivity/Geometry = none");
       return result;

@@ -84,9 +84,9 @@ namespace Squeal
     const Scene               &scene     = *linearisation.scene;
     const SlidingState        &state     = *linearisation.sliding;
     const OperationParameters &operation = run.parameters.operation;
-    const DenseMatrix          u         = replicate(*state.total_displacement);
+    const auto                 u         = state.total_displacement->col(0);
     VtuWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
-      .write_contact_state({std::vector<double>(u.col(0).begin(), u.col(0).end()), state.approach, state.reactions, state.gaps,
+      .write_contact_state({std::vector<double>(u.begin(), u.end()), state.approach, state.reactions, state.gaps,
                             radial_dissipation(scene.interface, state.reactions, operation),
                             sliding_dissipation(state.reactions, operation)});
   }

@@ -138,6 +138,26 @@ namespace Squeal
     return result;
   }
 
+  namespace
+  {
+    /// A, of low rank or not.
+    Matrix sparse_form(const Term &term, const ParameterValues &values)
+    {
+      if (!term.is_sparse())
+        throw SolverError("the term `" + term.name + "` has no sparse matrix", "system matrices",
+                          "choose a solver that takes such terms as products, or leave the term out");
+      return term.matrix ? term.matrix : product(term, values);
+    }
+  } // namespace
+
+  double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, const int power)
+  {
+    double result = 0.;
+    for (const Term *term : terms_of(terms, values, power))
+      result += std::abs(term->coefficient.at(values)) * row_sum_norm(*sparse_form(*term, values));
+    return result;
+  }
+
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values)
   {
     std::array<Matrix, 3> matrices;
@@ -145,12 +165,7 @@ namespace Squeal
       {
         std::vector<std::pair<double, Matrix>> summands;
         for (const Term *term : terms_of(terms, values, power))
-          {
-            if (!term->is_sparse())
-              throw SolverError("the term `" + term->name + "` has no sparse matrix", "system matrices",
-                                "choose a solver that takes such terms as products, or leave the term out");
-            summands.emplace_back(term->coefficient.at(values), term->matrix ? term->matrix : product(*term, values));
-          }
+          summands.emplace_back(term->coefficient.at(values), sparse_form(*term, values));
         matrices[power] = sum(summands);
       }
     return {matrices[2], matrices[1], matrices[0]};

@@ -1,6 +1,7 @@
 #include "tracked_modes.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 
 #include <algorithm>
 #include <cmath>
@@ -39,9 +40,14 @@ namespace Squeal
         }
       if (refines)
         modes.n_refinements += static_cast<int>(values.size());
+      std::vector<int> unlinked;
       for (std::size_t k = 0; k < modes.intervals.size(); ++k)
         if (!modes.intervals[k].links)
-          modes.intervals[k].links = link_modes(modes.points[k], modes.points[k + 1], modes.options.largest_circular_frequency);
+          unlinked.push_back(static_cast<int>(k));
+      run_tasks(static_cast<int>(unlinked.size()), [&](const int i) {
+        const int k              = unlinked[i];
+        modes.intervals[k].links = link_modes(modes.points[k], modes.points[k + 1], modes.options.largest_circular_frequency);
+      });
     }
   } // namespace
 

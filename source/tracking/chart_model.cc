@@ -15,6 +15,11 @@ namespace Squeal
 {
   namespace
   {
+    /// Directions whose M-norm is below this part of the largest are taken for rounding errors.
+    constexpr double dependence_tolerance = 1e-8;
+    /// Principal axes of residuals below this part of the largest are left to the next growth.
+    constexpr double compression_tolerance = 0.02;
+
     /// Part of the largest principal axis of some vectors below which one is left out.
     constexpr double least_axis = 1e-7;
 
@@ -179,18 +184,39 @@ namespace Squeal
 
   std::optional<MultiVector> ChartModel::new_vectors(const std::vector<ModesAt> &sets) const
   {
-    std::vector<MultiVector> directions;
+    std::vector<ProjectedResiduals::ModesAt> modes;
     for (const ModesAt &set : sets)
       {
         if (set.modes.empty())
           continue;
-        ReducedModes modes;
-        modes.values = system.at(set.point.friction_coefficient, set.point.values);
+        std::vector<std::complex<double>> lambda;
         for (const int j : set.modes)
-          modes.lambda.push_back(set.chart->lambda[j]);
-        modes.right = with_rows(orthonormal_in_clusters(set.chart->right(Eigen::all, set.modes), modes.lambda), model.size());
-        modes.left  = with_rows(orthonormal_in_clusters(set.chart->left(Eigen::all, set.modes), modes.lambda), model.size());
-        std::vector<int> all(set.modes.size());
+          lambda.push_back(set.chart->lambda[j]);
+        modes.push_back({system.at(set.point.friction_coefficient, set.point.values), lambda,
+                         with_rows(orthonormal_in_clusters(set.chart->right(Eigen::all, set.modes), lambda), model.size()),
+                         with_rows(orthonormal_in_clusters(set.chart->left(Eigen::all, set.modes), lambda), model.size())});
+      }
+    if (model.is_restricted())
+      return vectors_of_member(modes);
+    std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
+    if (!responses)
+      return {};
+    // First, so that what is left is not compared with what they have in the basis
+    remove_basis(*system.mass, model, *responses);
+    return orthonormalize_if_any(*system.mass, &model.basis(), *responses, dependence_tolerance);
+  }
+
+  std::optional<MultiVector> ChartModel::vectors_of_member(const std::vector<ProjectedResiduals::ModesAt> &sets) const
+  {
+    std::vector<MultiVector> directions;
+    for (const ProjectedResiduals::ModesAt &set : sets)
+      {
+        ReducedModes modes;
+        modes.values = set.values;
+        modes.lambda = set.lambda;
+        modes.right  = set.right;
+        modes.left   = set.left;
+        std::vector<int> all(set.lambda.size());
         std::iota(all.begin(), all.end(), 0);
         directions.push_back(residual_directions(residual_vectors(system, inverse, model, modes), modes, all));
       }
@@ -234,9 +260,9 @@ namespace Squeal
     const DenseMatrix   parts = principal_parts(gram(T, M * *real_modes), charts, tolerance);
     if (parts.cols() == 0)
       return *real_modes;
-    constexpr double dependence_tolerance = 1e-10;
-    const auto       rest                 = orthonormalize_if_any(M, real_modes, T * parts, dependence_tolerance);
-    const int        n_rest               = rest ? std::min(rest->n_columns(), maximum - real_modes->n_columns()) : 0;
+    constexpr double independent = 1e-10;
+    const auto       rest        = orthonormalize_if_any(M, real_modes, T * parts, independent);
+    const int        n_rest      = rest ? std::min(rest->n_columns(), maximum - real_modes->n_columns()) : 0;
     if (n_rest <= 0)
       return *real_modes;
     const MultiVector largest = view(*rest, 0, n_rest);

@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <deque>
 
 namespace Squeal
 {
@@ -59,6 +60,13 @@ namespace Squeal
       return "";
     }
 
+    /// Points that threads and processes evaluate at once; processes may have different numbers of threads.
+    int n_at_once(const MPI_Comm communicator)
+    {
+      return static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator) *
+                              dealii::Utilities::MPI::min(n_task_threads(), communicator));
+    }
+
     using Report = std::function<void(double error)>;
 
     /// Grows the basis for some operating points, one after the other, and compresses it; returns how often it grew.
@@ -70,17 +78,29 @@ namespace Squeal
               const MPI_Comm                     communicator,
               const Report                      &report)
     {
-      const double            tolerance = training_factor * options.tolerance;
+      const double            tolerance  = training_factor * options.tolerance;
+      const std::size_t       n_together = n_at_once(communicator);
       std::vector<ChartPoint> charts;
+      std::deque<ChartPoint>  evaluated; ///< the next training points with the basis as it is
       Achievement             achievement;
       double                  before    = 0.; ///< the error of this point before the last growth for it
       bool                    may_grow  = true;
       int                     n_growths = 0;
       for (std::size_t t = 0; t < training.size();)
         {
+          // Threads without work evaluate what comes next, which holds unless the basis grows first
+          if (evaluated.empty())
+            {
+              std::vector<OperatingPoint> next;
+              for (std::size_t i = t; i < std::min(training.size(), t + n_together); ++i)
+                next.push_back(points[training[i]]);
+              for (ChartPoint &found : evaluate(model, next, communicator))
+                evaluated.push_back(std::move(found));
+            }
           const OperatingPoint &point = points[training[t]];
-          const ChartPoint      chart = evaluate(model, {point}, communicator).front();
+          const ChartPoint      chart = std::move(evaluated.front());
           const double          error = model.largest_error(chart);
+          evaluated.pop_front();
           report(error);
           if (before > 0.)
             achievement.observe(before, error);
@@ -97,6 +117,7 @@ namespace Squeal
               before   = error;
               may_grow = grow(model, point, chart, tolerance, options.maximum_basis, nullptr).empty();
               ++n_growths;
+              evaluated.clear();
             }
         }
       for (ChartPoint &chart : charts)
@@ -117,8 +138,9 @@ namespace Squeal
   {
     const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
     const int n_points = static_cast<int>(points.size());
-    // Processes may have different numbers of threads
-    const int n_rounds = dealii::Utilities::MPI::min(static_cast<int>(n_task_threads()), communicator);
+    // Some for each thread, so that none waits long for the last of them
+    constexpr int points_of_thread = 4;
+    const int     n_rounds         = points_of_thread * n_at_once(communicator) / n;
     model.prepare();
     std::vector<ChartPoint> result;
     for (int first = 0; first < n_points; first += n * n_rounds)

@@ -87,14 +87,14 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
           const ContactNode &node = positive[c];
           const double       r    = node.axis_distance();
           area += node.area;
-          disc_nodes.insert(node.disc_node);
-          pin_nodes.insert(node.pin_node);
-          EXPECT_EQ(model.nodes()[node.disc_node].component, 0u);
-          EXPECT_EQ(model.nodes()[node.pin_node].component, node.pin);
+          disc_nodes.insert(node.disc_node.number);
+          pin_nodes.insert(node.pin_node.number);
+          EXPECT_EQ(node.disc_node.component, 0u);
+          EXPECT_EQ(node.pin_node.component, node.pin);
           for (int k = 0; k < 3; ++k)
             {
-              EXPECT_EQ(node.position[k], model.nodes()[node.disc_node].position[k]);
-              EXPECT_NEAR(node.position[k], model.nodes()[node.pin_node].position[k], 1e-15);
+              EXPECT_EQ(node.position[k], node.disc_node.position[k]);
+              EXPECT_NEAR(node.position[k], node.pin_node.position[k], 1e-15);
             }
           // n outwards, t along e_θ, b = n × t: outwards on top, inwards below
           const double side = node.position[2] > 0. ? 1. : -1.;

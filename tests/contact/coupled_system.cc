@@ -273,7 +273,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
         }
       // Attachment modes that are solved for when they are needed, or not at all
       const UpdatedInverse waiting(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::when_needed);
-      const DenseMatrix    Y    = DenseMatrix::Random(s.coupled.n_contact(), 3);
+      const DenseMatrix    Y    = agreed_random_matrix(s.coupled.n_contact(), 3);
       MultiVector          U    = inverse.attachment_modes_times(Y);
       const double         size = column_norms(U)[0];
       U -= waiting.attachment_modes_times(Y);
@@ -281,6 +281,16 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       MultiVector late(waiting.attachment_modes());
       late -= inverse.attachment_modes();
       EXPECT_LT(column_norms(late)[0], 1e-12 * column_norms(inverse.attachment_modes())[0]);
+
+      // ... or are not kept
+      UpdatedInverse frugal(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::not_kept);
+      MultiVector    kept(B), solved(B);
+      inverse.set_friction_coefficient(0.7);
+      inverse.apply(B, kept);
+      frugal.set_friction_coefficient(0.7);
+      frugal.apply(B, solved);
+      solved -= kept;
+      EXPECT_LT(column_norms(solved)[0], 1e-10 * column_norms(kept)[0]);
 
       // Attachment modes: S X = A
       auto S = add(shift * shift, *s.coupled.mass, 1., *s.coupled.stiffness);

@@ -32,7 +32,7 @@ namespace
   };
   INSTANTIATE_TEST_SUITE_P(Solvers,
                            SymmetricModesBy,
-                           ::testing::Combine(::testing::Values(RealSolver::anasazi, RealSolver::arpack),
+                           ::testing::Combine(::testing::Values(RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack),
                                               ::testing::Values(Distribution::even, Distribution::first_process_empty)));
 
   /// What every result must satisfy.
@@ -173,7 +173,7 @@ TEST(SymmetricModes, SolversLibrariesAndSeedsAgree)
   const double limit = std::pow(2. * M_PI * 15e3, 2);
 
   std::vector<SymmetricModes> results;
-  for (const RealSolver solver : {RealSolver::anasazi, RealSolver::arpack})
+  for (const RealSolver solver : {RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack})
     for (const FactorizationLibrary library : {FactorizationLibrary::automatic, FactorizationLibrary::mumps})
       for (const unsigned int seed : {1, 2})
         {

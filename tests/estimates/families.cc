@@ -102,7 +102,7 @@ TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
   model.extend(view(T, 5, T.n_columns() - 5));
   residuals.extend(model);
 
-  const DenseMatrix Z = DenseMatrix::Random(T.n_columns(), T.n_columns() - 4);
+  const DenseMatrix Z = agreed_random_matrix(T.n_columns(), T.n_columns() - 4);
   for (std::size_t design = 0; design < 3; ++design)
     {
       const SystemMember  member = member_of(family.system, family.terms.members[design]);
@@ -136,7 +136,7 @@ TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
       EXPECT_GT(largest, 1e-9); // there is something to compare
 
       // A model of a model
-      const DenseMatrix  Y     = DenseMatrix::Random(Z.cols(), 6);
+      const DenseMatrix  Y     = agreed_random_matrix(Z.cols(), 6);
       const ReducedModel least = small.restricted(Y);
       EXPECT_LT(max_norm(least.at(values).stiffness - Y.transpose() * ours.stiffness * Y), 1e-12 * max_norm(ours.stiffness) * 36.);
       EXPECT_LT(max_norm(DenseMatrix(replicate(least.basis()) - replicate(T * DenseMatrix(Z * Y)))), 1e-11 * max_norm(replicate(T)) * 36.);

@@ -16,6 +16,28 @@ namespace
     double coupling = 0., energy = 0., largest_energy = 0.;
   };
 
+  /// What displacement residuals have outside of the basis is in the span of their principal axes.
+  void expect_same_span(const ProjectedResiduals          &projected,
+                        const ReducedModel                &model,
+                        const ProjectedResiduals::ModesAt &modes,
+                        const ResidualVectors             &vectors,
+                        const SparseMatrix                &M)
+  {
+    const auto all = projected.principal_responses(model, {modes}, 1e-7), few = projected.principal_responses(model, {modes}, 0.02);
+    ASSERT_TRUE(all && few);
+    EXPECT_LE(few->n_columns(), all->n_columns());
+    const auto outside = orthonormalize_if_any(M, &model.basis(), *all, 1e-10);
+    ASSERT_TRUE(outside);
+    for (const MultiVector *displacements : {&vectors.right_displacements, &vectors.left_displacements})
+      {
+        MultiVector rest = *displacements;
+        rest -= model.basis() * gram(model.basis(), M * rest);
+        const double largest = max_norm(as_column(column_norms(rest)));
+        rest -= *outside * gram(*outside, M * rest);
+        EXPECT_LT(max_norm(as_column(column_norms(rest))), 1e-4 * largest);
+      }
+  }
+
   Deviation deviation(const CoupledSystem  &system,
                       const double          shift,
                       const double          friction,
@@ -43,6 +65,8 @@ namespace
     const auto products = projected.products(values, modes.lambda, modes.right, modes.left);
     const int  k        = static_cast<int>(modes.lambda.size());
     EXPECT_GT(k, 3);
+    if (friction > 0.) // else residuals are rounding errors
+      expect_same_span(projected, model, {values, modes.lambda, modes.right, modes.left}, vectors(modes), M);
     const DenseMatrix K      = model.stiffness();
     const auto        energy = [&](const ComplexDenseMatrix &X, const int j) {
       const ComplexDenseMatrix KX  = K * X;

@@ -4,6 +4,7 @@
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <gtest/gtest.h>
 
@@ -220,4 +221,18 @@ TEST_P(MultiVectors, OrthonormalizeRefusesUndefinedValues)
   if (X.n_local_rows() > 0)
     X(0, 1) = std::nan("");
   EXPECT_THROW(orthonormalize(*inner_product(map), nullptr, X, 1e-10), SolverError);
+}
+
+TEST_P(MultiVectors, ProductsByBlocksAreThoseOfTheWhole)
+{
+  // More columns than a block has, more rows than a part has
+  const auto        M = inner_product(rows(2500, GetParam()));
+  const MultiVector X = random_vectors(M->rows(), 70, 1), Y = random_vectors(M->rows(), 130, 2);
+  const DenseMatrix expected = gram(X, *M * Y);
+  EXPECT_LT(max_norm(weighted_gram(X, *M, Y) - expected), 1e-13 * max_norm(expected));
+
+  const DenseMatrix S       = agreed_random_matrix(70, 70);
+  MultiVector       product = X;
+  multiply_in_place(product, S);
+  EXPECT_LT(max_norm(replicate(product) - replicate(X * S)), 1e-13 * max_norm(replicate(product)));
 }

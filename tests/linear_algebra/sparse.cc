@@ -1,6 +1,7 @@
 #include "matrices.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -124,4 +125,17 @@ TEST(BlasThreads, AreSet)
   // 0: another BLAS than OpenBLAS, which cannot be asked.
   const int reported = set_blas_threads(1);
   EXPECT_TRUE(reported == 0 || reported == 1);
+
+  // All threads of tasks for large matrices, as long as they are factorised
+  set_task_threads(2);
+  {
+    const BlasThreadsOfLarge small(1000);
+    EXPECT_EQ(blas_threads(), reported);
+  }
+  {
+    const BlasThreadsOfLarge large(1000000);
+    EXPECT_EQ(blas_threads(), 2 * reported);
+  }
+  EXPECT_EQ(blas_threads(), reported);
+  set_task_threads(1);
 }

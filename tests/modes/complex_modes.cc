@@ -236,7 +236,7 @@ TEST(ComplexModes, AllProcessesFindWhatOneFinds)
       const Scene alone    = scene(dissipation, skewed_pins, Rotation::positive, MPI_COMM_SELF);
       EXPECT_LT(largest(distances(krylov(together.coupled, mu).lambda, krylov(alone.coupled, mu).lambda)), 1e-9);
       EXPECT_LT(largest(distances(iterated(together.coupled, mu, 1e-10).lambda, iterated(alone.coupled, mu, 1e-10).lambda)), 1e-9);
-      for (const RealSolver solver : {RealSolver::anasazi, RealSolver::arpack})
+      for (const RealSolver solver : {RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack})
         {
           const auto real = real_modes(together.coupled, solver), real_alone = real_modes(alone.coupled, solver);
           ASSERT_EQ(real.eigenvalues.size(), real_alone.eigenvalues.size());

@@ -1,8 +1,9 @@
 #include "files.h"
 #include "scenes.h"
 
+#include <squeal/base/exceptions.h>
 #include <squeal/output/field_mesh.h>
-#include <squeal/output/hdf5_image.h>
+#include <squeal/output/hdf5_file.h>
 #include <squeal/output/xdmf_writer.h>
 
 #include <deal.II/base/hdf5.h>
@@ -41,11 +42,11 @@ namespace
   }
 
   /// Corners of a cell.
-  std::vector<Corner> corners(const FieldMesh &mesh, const Model &model, const unsigned int cell)
+  std::vector<Corner> corners(const FieldMesh &mesh, const unsigned int cell)
   {
     std::vector<Corner> result;
     for (unsigned int v = 0; v < mesh.corners; ++v)
-      result.push_back(model.nodes()[mesh.nodes[mesh.cells[cell * mesh.corners + v]]].position);
+      result.push_back(mesh.nodes[mesh.cells[cell * mesh.corners + v]].position);
     return result;
   }
 
@@ -111,11 +112,11 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
       double sum = 0.;
       for (unsigned int cell = 0; cell < all.n_cells(); ++cell)
         {
-          const double v = volume(corners(all, s.model, cell));
+          const double v = volume(corners(all, cell));
           EXPECT_GT(v, 0.);
           sum += v;
           for (unsigned int vertex = 0; vertex < 8; ++vertex)
-            EXPECT_EQ(s.model.nodes()[all.nodes[all.cells[8 * cell + vertex]]].component, static_cast<unsigned int>(all.components[cell]));
+            EXPECT_EQ(all.nodes[all.cells[8 * cell + vertex]].component, static_cast<unsigned int>(all.components[cell]));
         }
       EXPECT_NEAR(sum,
                   of_half_edges(dealii::GridTools::volume(s.model.triangulation()),
@@ -134,7 +135,7 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
       EXPECT_EQ(mesh.nodes.size(), s.interface.size());
       double of_cells = 0., of_pairs = 0., of_straight_faces = 0.;
       for (unsigned int cell = 0; cell < mesh.n_cells(); ++cell)
-        of_cells += area(corners(mesh, s.model, cell));
+        of_cells += area(corners(mesh, cell));
       for (const ContactNode &pair : s.interface)
         of_pairs += pair.area;
       EXPECT_EQ(mesh.n_cells() % (p * p), 0u);
@@ -148,36 +149,82 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
     }
 }
 
-TEST(Hdf5Images, AreReadByAnotherLibrary)
+TEST(Hdf5Files, AreReadByAnotherLibrary)
 {
+  // Parts of any length: a chunk may be spread over processes, and a process may have nothing
+  const int                 n_processes = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  const int                 me          = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+  const int                 n           = 200000; // more than one chunk
   const TemporaryFolder     folder;
-  const std::string         file = (folder.place / "image.h5").string();
+  const std::string         file = (folder.place / "fields.h5").string();
   std::vector<float>        values;
   std::vector<std::int32_t> numbers;
-  for (int i = 0; i < 3 * 70000; ++i) // more than one chunk
+  for (int i = 0; i < 3 * n; ++i)
     {
       values.push_back(std::sin(i));
       numbers.push_back((i % 40000) * (i % 40000));
     }
-  {
-    Hdf5Image image;
-    image.add("deep/inside/values", values, 3);
-    image.add("numbers", numbers);
-    image.describe("mode", "A0-4 +, µ");
-    std::ofstream     stream(file, std::ios::binary);
-    const std::string bytes = image.bytes();
-    stream << bytes;
-    EXPECT_LT(bytes.size(), 4 * (values.size() + numbers.size()));
-  }
+  for (const auto &ends : {std::vector<int>{50000, 50007, n, n}, std::vector<int>{0, 150000, 150000, n}})
+    {
+      const int begin = me == 0 ? 0 : ends[me - 1], end = me + 1 == n_processes ? n : ends[me];
+      {
+        Hdf5File writer(file, "fields.h5", MPI_COMM_WORLD);
+        writer.add("deep/inside/values", std::vector<float>(values.begin() + 3 * begin, values.begin() + 3 * end), 3);
+        writer.add("numbers", std::vector<std::int32_t>(numbers.begin() + begin, numbers.begin() + end));
+        writer.describe("mode", "A0-4 +, µ");
+        writer.close();
+      }
+      if (me != 0)
+        continue;
+      EXPECT_LT(fs::file_size(file), 4 * (values.size() + n));
+      dealii::HDF5::File reader(file, dealii::HDF5::File::FileAccessMode::open);
+      const auto         deep = reader.open_dataset("deep/inside/values");
+      EXPECT_EQ(deep.get_dimensions(), (std::vector<hsize_t>{n, 3}));
+      const auto read = reader.open_dataset("deep/inside/values").read<dealii::FullMatrix<float>>();
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < 3; ++j)
+          ASSERT_EQ(read(i, j), values[3 * i + j]);
+      EXPECT_EQ(reader.open_dataset("numbers").read<std::vector<int>>(), std::vector<int>(numbers.begin(), numbers.begin() + n));
+      EXPECT_EQ(reader.get_attribute<std::string>("mode"), "A0-4 +, µ");
+    }
+}
+
+TEST(Hdf5Files, KeepWhatDoesNotShrink)
+{
+  // Random bits, which the filter would make longer
+  const TemporaryFolder     folder;
+  const std::string         file = (folder.place / "noise.h5").string();
+  std::vector<std::int32_t> noise;
+  std::uint64_t             state = 1;
+  for (int i = 0; i < 1000; ++i)
+    {
+      state = 6364136223846793005u * state + 1442695040888963407u;
+      noise.push_back(static_cast<std::int32_t>(state >> 32));
+    }
+  const bool is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  Hdf5File   writer(file, "noise.h5", MPI_COMM_WORLD);
+  writer.add("noise", is_root ? noise : std::vector<std::int32_t>());
+  writer.close();
+  if (!is_root)
+    return;
   dealii::HDF5::File reader(file, dealii::HDF5::File::FileAccessMode::open);
-  const auto         deep = reader.open_dataset("deep/inside/values");
-  EXPECT_EQ(deep.get_dimensions(), (std::vector<hsize_t>{70000, 3}));
-  const auto read = reader.open_dataset("deep/inside/values").read<dealii::FullMatrix<float>>();
-  for (int i = 0; i < 70000; ++i)
-    for (int j = 0; j < 3; ++j)
-      ASSERT_EQ(read(i, j), values[3 * i + j]);
-  EXPECT_EQ(reader.open_dataset("numbers").read<std::vector<int>>(), numbers);
-  EXPECT_EQ(reader.get_attribute<std::string>("mode"), "A0-4 +, µ");
+  EXPECT_EQ(reader.open_dataset("noise").read<std::vector<int>>(), noise);
+}
+
+TEST(Hdf5Files, NameTheCauseWhereTheyCannotBeWritten)
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    GTEST_SKIP() << "process 0 alone throws";
+  try
+    {
+      Hdf5File("/nowhere/fields.h5", "results/fields.h5", MPI_COMM_WORLD);
+      FAIL();
+    }
+  catch (const FileError &error)
+    {
+      EXPECT_NE(std::string(error.what()).find("results/fields.h5"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("No such file"), std::string::npos) << error.what();
+    }
 }
 
 TEST(XdmfFields, ListsNameModesThatWereWritten)

@@ -19,11 +19,11 @@ COMPONENT_SHAPES = "Output/Component mode shapes=true"
 
 class Solvers(ProgramTest):
     def test_modes(self):
-        for name, overrides in {"Krylov": [VTU], "Krylov, dissipation": [DISSIPATION], "residual iteration": RESIDUAL_ITERATION,
+        for name, overrides in {"Krylov": [VTU], "quadratic": ["Discretization/Element=quadratic"], "Krylov, dissipation": [DISSIPATION], "residual iteration": RESIDUAL_ITERATION,
                                 "residual iteration, dissipation": [VTU, DISSIPATION, *RESIDUAL_ITERATION]}.items():
             one = self.run_scene("one", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides)
-            # Three processes see no other code than two: half of the cases do.
-            for n_processes in (2, 3) if name in ("Krylov", "residual iteration, dissipation") else (2,):
+            # Three processes see no other code than two: half of the cases do, one of them that of four.
+            for n_processes in {"Krylov": (2, 3, 4), "residual iteration, dissipation": (2, 3)}.get(name, (2,)):
                 with self.subTest(name, n_processes=n_processes):
                     several = self.run_scene("several", UNSTABLE_SHAPES, COMPONENT_SHAPES, *overrides, n_processes=n_processes)
                     self.assert_same_eigenvalues(eigenvalues(several), eigenvalues(one))

@@ -10,6 +10,7 @@ from program import ProgramTest, distance, eigenvalues, numbers, read_table, rea
 
 # With its default tolerance of 1e-7 the residual iteration stops earlier than the comparison asks.
 RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
+MULTIGRID = "Linear algebra/Factorization=multigrid"
 HERE = pathlib.Path(__file__).resolve().parent
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
@@ -27,7 +28,12 @@ class Solvers(ProgramTest):
                           ["Linear algebra/Factorization=UMFPACK"],
                           ["Complex modes/Shift inverse=sparse LU"],
                           ["Complex modes/Shift inverse=sparse LU", "Linear algebra/Factorization=MUMPS"],
-                          ["Real modes/Solver=ARPACK"]):
+                          ["Real modes/Solver=Anasazi"],
+                          ["Real modes/Solver=ARPACK"],
+                          [MULTIGRID],
+                          [MULTIGRID, "Real modes/Solver=LOBPCG"],
+                          [MULTIGRID, "Real modes/Solver=LOBPCG", "Real modes/Count=none"],
+                          [MULTIGRID, RESIDUAL_ITERATION[0], RESIDUAL_ITERATION[1]]):
             with self.subTest(overrides):
                 results = self.run_scene("results", *overrides)
                 self.assert_same_eigenvalues(eigenvalues(results), self.values)

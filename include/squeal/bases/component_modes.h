@@ -16,7 +16,7 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// Masses lumped to the nodes (row sums) [kg], the same on every process.
+  /// Masses lumped to the nodes (row sums) [kg] whose rows this process has; zero of the others, and of clamped ones.
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
   /**

@@ -2,7 +2,7 @@
 
 #include <squeal/bases/mode_label.h>
 #include <squeal/contact/contact_interface.h>
-#include <squeal/linear_algebra/dense.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/model/model.h>
 
 #include <optional>
@@ -19,10 +19,12 @@ namespace Squeal
    * by nodal masses; nodal circles are the sign changes of the radial profile
    * of the dominant harmonic.
    *
+   * Each process projects the nodes whose rows it has; all must call.
+   *
    * @param modes        n_free × k displacements
-   * @param nodal_masses n_nodes, lumped [kg]
+   * @param nodal_masses of nodal_masses() [kg]
    */
-  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const DenseMatrix &modes);
+  std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const MultiVector &modes);
 
   /// Parts of a disc mode that travel about the axis, of the energy of both; 0.5 each in a standing wave [-].
   struct WaveShares
@@ -48,8 +50,8 @@ namespace Squeal
   std::vector<std::optional<WaveShares>> wave_shares(const Model                  &model,
                                                      const std::vector<double>    &nodal_masses,
                                                      const std::vector<ModeLabel> &labels,
-                                                     const DenseMatrix            &real_part,
-                                                     const DenseMatrix            &imaginary_part);
+                                                     const MultiVector            &real_part,
+                                                     const MultiVector            &imaginary_part);
 
   /**
    * Names of pin modes: F flexural, T torsional, L longitudinal about the axis
@@ -60,5 +62,5 @@ namespace Squeal
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,
                                     const std::vector<double> &nodal_masses,
-                                    const DenseMatrix         &modes);
+                                    const MultiVector         &modes);
 } // namespace Squeal

@@ -13,7 +13,7 @@ namespace Squeal
   /// A pair of coincident nodes, one of the disc and one of a pin, with its local frame.
   struct ContactNode
   {
-    unsigned int    disc_node, pin_node; ///< numbers among Model::nodes()
+    Node            disc_node, pin_node; ///< the same on every process, but for is_own
     unsigned int    pin;                 ///< component of the pin node
     Eigen::Vector3d position;            ///< [m]
     Eigen::Vector3d normal;              ///< n: outward unit normal of the disc

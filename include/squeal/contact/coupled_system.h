@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/contact/contact_operators.h>
+#include <squeal/linear_algebra/multigrid.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
 
@@ -53,6 +54,7 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix>  mass, stiffness; ///< M_c and K_c, n × n: the symmetric terms without friction
     std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
     std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
+    std::shared_ptr<const NearNullSpace> near_null_space; ///< of K_c, for multigrid; null where nobody has asked for it
 
     /// Distribution of the coupled dofs.
     const RowMap &map() const;

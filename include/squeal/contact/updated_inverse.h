@@ -2,19 +2,32 @@
 
 #include <squeal/contact/coupled_system.h>
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/factorization_beside.h>
 
+#include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 
 namespace Squeal
 {
-  /// When the n_c columns of X are solved for, which takes longer than the factor and memory for a dense n × n_c matrix.
+  /// When the n_c columns of X are solved for, which takes longer than the factor, and whether they are kept, a dense n × n_c matrix.
   enum class AttachmentModes
   {
     at_once,
-    when_needed ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
+    when_needed, ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
+    not_kept     ///< each product with X is another solve with the factor
   };
+
+  /// When S is factorised, and what is wrong with it thrown.
+  enum class FactorTime
+  {
+    at_once,
+    beside ///< until it is needed: factorize_beside()
+  };
+
+  /// Whether a dense n × n_c matrix has room in the memory that is left: an eighth of it is what this process may take for one.
+  bool may_keep_attachment_modes(const CoupledSystem &system);
 
   /**
    * Inverse of the pencil with friction at a real shift s ≥ 0,
@@ -26,7 +39,8 @@ namespace Squeal
    *
    *   Q(s)⁻¹ = S⁻¹ + μ X (I − μ V X)⁻¹ V S⁻¹
    *
-   * The factor and X serve every μ; the n_c × n_c matrix is factorised for each.
+   * The factor and X serve every μ; the n_c × n_c matrix is factorised for each. Without X, whose columns are then solved for a
+   * few at a time to make V X, Q(s)⁻¹ B = S⁻¹ (B + μ A (I − μ V X)⁻¹ V S⁻¹ B).
    */
   class UpdatedInverse : public LinearOperator
   {
@@ -35,7 +49,8 @@ namespace Squeal
     UpdatedInverse(const CoupledSystem &system,
                    double               shift,
                    FactorizationLibrary library,
-                   AttachmentModes      attachment = AttachmentModes::at_once);
+                   AttachmentModes      attachment = AttachmentModes::at_once,
+                   FactorTime           time       = FactorTime::at_once);
 
     /// Friction coefficient of the following apply(); throws SolverError if Q(s) is singular there.
     void set_friction_coefficient(double mu);
@@ -48,25 +63,35 @@ namespace Squeal
 
     const RowMap &map() const override;
 
-    /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0).
+    /// S⁻¹ A, n × n_c: the coupled tangential attachment modes (for s = 0), kept from now on.
     const MultiVector &attachment_modes() const;
+
+    /// f(first, X_b) for blocks X_b of columns of S⁻¹ F that begin with column `first`.
+    void for_responses(const LowRankFactor &F, const std::function<void(int first, const MultiVector &X_b)> &f) const;
 
     /// X B for B, n_c × k, the same on every process: k solves if X is not there yet.
     MultiVector attachment_modes_times(const DenseMatrix &B) const;
 
     /// S⁻¹ by itself.
-    const Factorization &frictionless() const
+    const Factorization &frictionless() const;
+
+    /// Processor time of another thread on which the factor was made beside other work; 0 if there was none [s].
+    double factor_seconds_beside() const
     {
-      return *factor;
+      return seconds_beside;
     }
 
   private:
-    std::unique_ptr<Factorization>       factor;
-    std::shared_ptr<const LowRankFactor> A;
-    std::shared_ptr<const SparseMatrix>  V;
-    mutable std::unique_ptr<MultiVector> X;  ///< once it has been needed
-    std::optional<DenseMatrix>           VX; ///< the same, n_c × n_c, on every process
-    double                               friction_coefficient = 0.;
-    std::optional<RealLU>                correction;
+    const AttachmentModes                  attachment;
+    mutable std::future<FactorBeside>      later;
+    mutable std::unique_ptr<Factorization> factor;
+    mutable double                         seconds_beside = 0.;
+    const RowMap                           rows;
+    std::shared_ptr<const LowRankFactor>   A;
+    std::shared_ptr<const SparseMatrix>    V;
+    mutable std::unique_ptr<MultiVector>   X;  ///< once it has been needed
+    std::optional<DenseMatrix>             VX; ///< the same, n_c × n_c, on every process
+    double                                 friction_coefficient = 0.;
+    std::optional<RealLU>                  correction;
   };
 } // namespace Squeal

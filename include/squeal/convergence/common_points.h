@@ -59,7 +59,7 @@ namespace Squeal
    * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count:
    * incompatible modes of an element, which vanish with the square of its size, do not.
    *
-   * Throws MeshError if the mesh lacks a body.
+   * Throws MeshError if the mesh lacks a body, or has no cell near a point. All processes must call; each looks for all points in its cells.
    */
   std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points,
                                                        const Model        &model,

@@ -86,9 +86,9 @@ namespace Squeal
     /**
      * A process of its own that starts from the Schur vectors of the first
      * @p n_locked Ritz values, which have converged, and an empty active
-     * block: what is injected there looks for what is missing.
+     * block: what is injected there looks for what is missing. It has room for @p n_more vectors.
      */
-    CompactKrylov deflated(const RitzPairs &ritz, int n_locked) const;
+    CompactKrylov deflated(const RitzPairs &ritz, int n_locked, int n_more) const;
 
     /**
      * Upper parts of S x, n × k, for the Ritz vectors x in the columns
@@ -109,6 +109,9 @@ namespace Squeal
 
     /// Makes room for @p n vectors in U.
     void reserve(int n);
+
+    /// Becomes the process of the Schur vectors of some Ritz values of @p from, which may be this one, and its active block.
+    void take_schur_vectors(const CompactKrylov &from, const RitzPairs &ritz, int n_kept, int n_reserved);
 
     RowMap                       map;
     int                          degree;

@@ -35,7 +35,7 @@ namespace Squeal
     double stiffness_norm = 0.;
     double damping_norm   = 0.; ///< of C, likewise, for those of λCφ
 
-    int block_size = 4; ///< vectors per block solve
+    int block_size = 8; ///< vectors per block solve
 
     /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
     int n_fresh_directions = 4;

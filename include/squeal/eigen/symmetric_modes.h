@@ -3,23 +3,32 @@
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
 #include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/multigrid.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace Squeal
 {
+  /// A limit and the number of eigenvalues of K φ = ω² M φ below it.
+  struct ModeCount
+  {
+    int    n_modes;
+    double limit; ///< at or, where an eigenvalue lies on it, slightly above what was asked for [rad²/s²]
+  };
+
   /// How the modes of K φ = ω² M φ are computed.
   struct SymmetricModesOptions
   {
-    RealSolver solver = RealSolver::anasazi;
+    RealSolver solver = RealSolver::lanczos;
 
     /// Largest residual of a mode [-]; see SymmetricModes::residuals.
     double tolerance = 1e-10;
 
-    /// Vectors per step of the block solver (Anasazi); 0: chosen.
+    /// Vectors per step of the block solvers; 0: chosen.
     int block_size = 0;
 
     /**
@@ -32,10 +41,25 @@ namespace Squeal
     /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
     const LinearOperator *inverse = nullptr;
 
+    /// The count of the modes below the limit where the caller has it already, by count_below(); without by_parts.
+    std::optional<ModeCount> count;
+
     /// K and M fall into many uncoupled parts, such as pins, each of which is solved alone; without inverse.
     bool by_parts = false;
 
     FactorizationLibrary library = FactorizationLibrary::automatic;
+
+    /// Of K: LOBPCG and FactorizationLibrary::multigrid need it.
+    const NearNullSpace *near_null_space = nullptr;
+
+    /// A symmetric positive definite approximation of (K + s M)⁻¹ for LOBPCG where the caller has it; null: multigrid is set up here.
+    const LinearOperator *preconditioner = nullptr;
+
+    /// LOBPCG also works without a count: it searches until nothing else is found in the band.
+    ModeCounting counting = ModeCounting::inertia;
+
+    /// Without a count: with how many modes the search begins.
+    int n_expected = 0;
 
     /// Seed of the random start vectors; results do not depend on it but for rounding.
     unsigned int seed = 1;
@@ -43,6 +67,9 @@ namespace Squeal
     /// Whose modes these are, for error messages.
     std::string what = "a symmetric eigenvalue problem";
   };
+
+  /// Of modes that were found without a count.
+  inline constexpr int not_counted = -1;
 
   /// Modes of K φ = ω² M φ, lowest first.
   struct SymmetricModes
@@ -59,7 +86,7 @@ namespace Squeal
     /// Eigenvalues below 1e-8 of the largest wanted one, frequencies below 1e-4: those of rigid-body motions.
     int n_rigid_body = 0;
 
-    /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found.
+    /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found. not_counted where nobody counted.
     int n_counted = 0;
   };
 
@@ -68,10 +95,11 @@ namespace Squeal
    * K symmetric positive semidefinite, M symmetric positive definite.
    *
    * The inertia of K - limit M tells how many there are. They are computed by
-   * shift-invert (K + s M)⁻¹ M, block Krylov-Schur (Anasazi) or implicitly
-   * restarted Lanczos (ARPACK), then by a Rayleigh-Ritz procedure in the space
-   * found. Where members of multiple eigenvalues are missing, the solver is
-   * started again, orthogonally to what was found.
+   * shift-invert (K + s M)⁻¹ M, block Lanczos, block Krylov-Schur (Anasazi) or
+   * implicitly restarted Lanczos (ARPACK), then by a Rayleigh-Ritz procedure in
+   * the space found. Where members of multiple eigenvalues are missing, the solver is
+   * started again, orthogonally to what was found. LOBPCG takes the place of shift-invert where there is no factor; without a
+   * count it is started until what is orthogonal to the modes found has none in the band: modes may then be missing.
    *
    * Throws SolverError if fewer modes are found than exist, or if the residual
    * of one exceeds both the tolerance and what rounding in K φ allows,
@@ -84,10 +112,13 @@ namespace Squeal
                                  const SymmetricModesOptions &options = {});
 
   /**
-   * Number of eigenvalues ω² ≤ @p largest_eigenvalue of K φ = ω² M φ by the
+   * Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ by the
    * inertia of K - limit M: exact, multiplicities and rigid-body modes
    * included, without computing any mode. Throws SolverError naming @p what.
    */
+  ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
+
+  /// The number alone.
   int count_modes(const SparseMatrix &K, const SparseMatrix &M, double largest_eigenvalue, const std::string &what);
 
   /**

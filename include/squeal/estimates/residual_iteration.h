@@ -25,6 +25,9 @@ namespace Squeal
    */
   ReducedModel starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, bool friction);
 
+  /// Leaves what X has outside of the M-orthonormal basis of a model.
+  void remove_basis(const SparseMatrix &M, const ReducedModel &model, MultiVector &X);
+
   /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each scaled to its mode: n × 4k.
   MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen);
 

@@ -9,7 +9,9 @@
 
 namespace Squeal
 {
-  /// The inverse of a sparse matrix by a direct factorisation.
+  struct NearNullSpace;
+
+  /// The inverse of a sparse matrix, by a direct factorisation in general.
   class Factorization : public LinearOperator
   {
   public:
@@ -25,9 +27,12 @@ namespace Squeal
    * matrix, of which only one triangle is read. Throws SolverError naming
    * @p what if the matrix is not positive definite to working precision (a
    * pivot that is negative, or rounding error of its diagonal entry) or if the
-   * library cannot be used here.
+   * library cannot be used here. Multigrid needs the near null space of A and makes an iterative_inverse().
    */
-  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
+  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix  &A,
+                                                             FactorizationLibrary library,
+                                                             const std::string   &what,
+                                                             const NearNullSpace *near_null_space = nullptr);
 
   /**
    * LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws

@@ -27,21 +27,19 @@ namespace Squeal
    * since a Gram matrix squares the condition; tolerances down to 1e-13 make
    * sense.
    *
+   * X handed over by std::move() becomes the result; beside it no copy is made unless axes wait for another pass.
+   *
    * Returns the kept directions, or nothing if none is left. @p axes, if given, receives what was
    * found about the columns.
    */
   std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
                                                    const MultiVector  *Q,
-                                                   const MultiVector  &X,
+                                                   MultiVector         X,
                                                    double              tolerance,
                                                    PrincipalAxes      *axes = nullptr);
 
   /// The same where at least one direction must be left; throws SolverError otherwise.
-  MultiVector orthonormalize(const SparseMatrix &M,
-                             const MultiVector  *Q,
-                             const MultiVector  &X,
-                             double              tolerance,
-                             PrincipalAxes      *axes = nullptr);
+  MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, double tolerance, PrincipalAxes *axes = nullptr);
 
   /**
    * Proper orthogonal decomposition: the M-orthonormal principal axes of the

@@ -4,6 +4,19 @@
 
 namespace Squeal
 {
+  /// A circular cylinder about an axis parallel to z.
+  struct Cylinder
+  {
+    dealii::types::manifold_id id;   ///< of the faces and edges on it
+    std::array<double, 2>      axis; ///< x and y [m]
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &id &axis;
+    }
+  };
+
   /**
    * Makes quadratic elements follow their cylinders: where all vertices of a named surface (disc_bore, disc_rim; pin_side, pin by
    * pin) lie on a circular cylinder about an axis parallel to z, its faces and edges get that cylinder as their manifold. So do
@@ -13,7 +26,9 @@ namespace Squeal
    *   180 degrees, keeps them straight;
    * - coincident edges of the contact faces on the other side, so that contact nodes pair in degree 2 as well.
    *
-   * Surfaces of any other shape keep straight edges.
+   * Surfaces of any other shape keep straight edges. Returns the cylinders, whose manifolds are still to be set.
+   *
+   * @param triangulation all cells of the mesh
    */
-  void follow_cylinders(const Model &model, dealii::Triangulation<3> &triangulation);
+  std::vector<Cylinder> follow_cylinders(const Model &model, dealii::Triangulation<3> &triangulation);
 } // namespace Squeal

@@ -5,12 +5,16 @@
 #include <squeal/linear_algebra/row_map.h>
 #include <squeal/parameters/materials.h>
 
-#include <deal.II/distributed/shared_tria.h>
+#include <deal.II/base/index_set.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
 #include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_system.h>
 #include <deal.II/fe/mapping_q.h>
 
+#include <boost/serialization/array.hpp>
+
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,6 +27,14 @@ namespace Squeal
     std::array<double, 3> position;  ///< [m]
     std::array<int, 3>    dofs;      ///< numbers among the free dofs; -1 where clamped
     unsigned int          component; ///< 0: the disc; k ≥ 1: pin k
+    std::int64_t          number;    ///< tells the nodes of all processes apart; ascends in the order of the cells
+    bool                  is_own;    ///< every node is that of one process, which has the rows of its dofs
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &position &dofs &component &number &is_own;
+    }
   };
 
   /**
@@ -30,17 +42,18 @@ namespace Squeal
    * faces know their surface, the displacement dofs, and their numbering
    * without the clamped ones, which never reach a matrix.
    *
-   * The mesh is present on every process; dofs and matrices are distributed.
+   * Mesh, dofs and matrices are distributed: a process has its cells and those around them, all cells that meet at a node of its own
+   * among them. Process 0 makes the parts.
    */
   class Model
   {
   public:
     /**
-     * @param mesh      hexahedra with named parts
+     * @param mesh      hexahedra with named parts; other processes than 0 need the names only
      * @param element   quadratic ones follow named cylindrical surfaces about axes parallel to z
      * @param communicator processes that share the work
      *
-     * Throws MeshError if deal.II refuses the mesh.
+     * Throws MeshError, on all processes, if deal.II refuses the mesh.
      */
     Model(const HexMesh &mesh, Element element, MPI_Comm communicator);
 
@@ -57,10 +70,13 @@ namespace Squeal
     /// Names of the components, in the order of the cells' material ids.
     const std::vector<std::string> &component_names() const;
 
-    /// All nodes, the same on every process.
+    /// Nodes of the cells that this process has, in the order of these.
     const std::vector<Node> &nodes() const;
 
-    /// Node of a dof of deal.II's numbering.
+    /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
+    std::vector<Node> gathered_nodes() const;
+
+    /// Place among nodes() of the node of a dof of deal.II's numbering, one of the cells that this process has.
     unsigned int node_of_dof(dealii::types::global_dof_index dof) const;
 
     /// Boundary id of a named surface; throws MeshError naming the known ones if there is none.
@@ -71,7 +87,7 @@ namespace Squeal
     /// Distribution of the free dofs.
     const RowMap &free_map() const;
 
-    /// Number of a deal.II dof among the free ones; -1 where clamped.
+    /// Number of a deal.II dof, one of the cells that this process has, among the free ones of all processes; -1 where clamped.
     int free_dof(dealii::types::global_dof_index dof) const;
 
     /// Number of all dofs, clamped ones included.
@@ -79,17 +95,19 @@ namespace Squeal
 
   private:
     void create_triangulation(const HexMesh &mesh);
-    void distribute_dofs();
+    void number_free_dofs();
+    void find_nodes();
 
-    std::vector<std::string>                   components, surfaces;
-    Element                                    element_type;
-    dealii::parallel::shared::Triangulation<3> tria;
-    dealii::FESystem<3>                        fe;
-    dealii::MappingQ<3>                        geometry_mapping;
-    dealii::DoFHandler<3>                      dofs;
-    std::vector<int>                           free_numbers;
-    std::vector<unsigned int>                  dof_nodes;
-    std::vector<Node>                          node_table;
-    RowMap                                     map;
+    std::vector<std::string>                             components, surfaces;
+    Element                                              element_type;
+    dealii::parallel::fullydistributed::Triangulation<3> tria;
+    dealii::FESystem<3>                                  fe;
+    dealii::MappingQ<3>                                  geometry_mapping;
+    dealii::DoFHandler<3>                                dofs;
+    dealii::IndexSet                                     relevant;     ///< dofs of the cells that this process has
+    std::vector<int>                                     free_numbers; ///< of these
+    std::vector<unsigned int>                            dof_nodes;    ///< of these
+    std::vector<Node>                                    node_table;
+    RowMap                                               map;
   };
 } // namespace Squeal

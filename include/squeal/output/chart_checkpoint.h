@@ -4,6 +4,7 @@
 
 #include <mpi.h>
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -23,7 +24,7 @@ namespace Squeal
    * remove(). All processes must call everything; process 0 alone reads and writes, and an error there is thrown on all.
    *
    * The archive begins with the version of its format and what identifies the sweep; results and blocks of bases follow as they are
-   * found, each on the disk before the sweep goes on. What a killed run or a full disk leaves of one is cut off when the archive is
+   * found, each written before the sweep goes on; a loss of power costs what the last second has found. What a killed run or a full disk leaves of one is cut off when the archive is
    * read or the next one comes. To append costs what a record costs, while a file that replaces the former one would cost all of
    * them every time. Blocks have all rows in the order of their numbers: a sweep may continue on another number of processes. A
    * damaged result is computed anew; where a block is damaged everything is, since results and later
@@ -79,13 +80,14 @@ namespace Squeal
     bool read(); ///< whether no block is missing on which others rest
     void append(const Record &record);
 
-    const std::string               folder, identity;
-    const std::filesystem::path     archive;
-    const MPI_Comm                  communicator;
-    const double                    largest_circular_frequency;
-    std::map<std::string, Contents> parts;
-    bool                            is_begun  = false; ///< whether the archive is this sweep's
-    int                             n_results = 0;
-    std::uintmax_t                  end       = 0; ///< of the last record of the archive [byte]
+    const std::string                     folder, identity;
+    const std::filesystem::path           archive;
+    const MPI_Comm                        communicator;
+    const double                          largest_circular_frequency;
+    std::map<std::string, Contents>       parts;
+    bool                                  is_begun  = false; ///< whether the archive is this sweep's
+    int                                   n_results = 0;
+    std::uintmax_t                        end       = 0; ///< of the last record of the archive [byte]
+    std::chrono::steady_clock::time_point last_on_disk;
   };
 } // namespace Squeal

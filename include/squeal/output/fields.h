@@ -18,7 +18,7 @@ namespace Squeal
   {
     std::string                       name;         ///< of its files, without extension
     std::complex<double>              lambda;       ///< [rad/s]
-    std::vector<std::complex<double>> displacement; ///< on the free dofs
+    std::vector<std::complex<double>> displacement; ///< on the free dofs, rows of this process
     std::vector<std::complex<double>> reactions;    ///< r_n of each pair of contact nodes [N per unit amplitude]; compression negative
     std::string                       title = {};   ///< what its files say of the mode
     std::vector<double> energy_input        = {};   ///< what each pair adds to the divergence rate, over its area [1/m²]; empty: not known
@@ -29,7 +29,7 @@ namespace Squeal
   {
     std::string              name;         ///< of its file, without extension
     std::string              title;        ///< what the file says of the mode
-    std::vector<double>      displacement; ///< on the free dofs
+    std::vector<double>      displacement; ///< on the free dofs, rows of this process
     std::optional<Component> component;    ///< the bodies to write; nothing: all
   };
 
@@ -56,14 +56,14 @@ namespace Squeal
   };
 
   /// Pictures of Re(φ e^{iωt}), or of Re(φ e^{λt}) where the animation grows, with a largest amplitude as ModeFieldWriter::write_animation() has it.
-  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options);
+  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, MPI_Comm communicator);
 
   /// Frequencies [Hz] as times that ParaView keeps apart, each beyond the one before by at least 10⁻⁶ of it; @p modes in ascending order.
   std::vector<double> distinct_times(const std::vector<ListedMode> &modes);
 
-  /// Largest |u| of all dofs, by which fields are divided; one where nothing moves.
-  double largest_amplitude(const std::vector<double> &displacement);
-  double largest_amplitude(const std::vector<std::complex<double>> &displacement);
+  /// Largest |u| of the dofs of all processes, by which fields are divided; one where nothing moves.
+  double largest_amplitude(const std::vector<double> &displacement, MPI_Comm communicator);
+  double largest_amplitude(const std::vector<std::complex<double>> &displacement, MPI_Comm communicator);
 
   /**
    * Writes shapes of modes for ParaView. All processes must call.

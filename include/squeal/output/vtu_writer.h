@@ -2,6 +2,7 @@
 
 #include <squeal/output/fields.h>
 
+#include <deal.II/lac/la_parallel_vector.h>
 #include <deal.II/lac/vector.h>
 
 #include <array>
@@ -9,10 +10,13 @@
 
 namespace Squeal
 {
+  /// A field on the dofs of deal.II: those of the cells of a process.
+  using DofVector = dealii::LinearAlgebra::distributed::Vector<double>;
+
   /// A state of contact as the field writer needs it; one value for each pair of contact nodes.
   struct ContactField
   {
-    std::vector<double> displacement;    ///< on the free dofs [m], with the travel of the backplates
+    std::vector<double> displacement;    ///< on the free dofs [m], rows of this process, with the travel of the backplates
     std::vector<double> approach;        ///< travel of the backplate of each component towards the disc [m]
     std::vector<double> reactions;       ///< R_n0 [N]
     std::vector<double> gaps;            ///< [m]
@@ -50,9 +54,9 @@ namespace Squeal
     void write_contact_state(const ContactField &state) const;
 
   private:
-    /// A field on all dofs of deal.II from one on the free dofs.
+    /// A field on the dofs of deal.II from one on the free dofs, rows of this process.
     template <typename Number, typename Function>
-    dealii::Vector<double> dof_vector(const std::vector<Number> &displacement, const Function &value) const;
+    DofVector dof_vector(const std::vector<Number> &displacement, const Function &value) const;
 
     /// Fields on the contact faces: values of the pairs of contact nodes with their names.
     void write_contact(const std::string &file, const std::vector<std::pair<const std::vector<double> *, const char *>> &fields) const;
@@ -62,6 +66,6 @@ namespace Squeal
     const ResultFolder                      &folder;
     dealii::Vector<double>                   components;
     std::vector<double>                      closed;        ///< 1 for pairs in contact
-    std::vector<std::array<unsigned int, 4>> contact_faces; ///< of the pins, by pairs of contact nodes
+    std::vector<std::array<unsigned int, 4>> contact_faces; ///< of the pins, by pairs of contact nodes; on process 0
   };
 } // namespace Squeal

@@ -48,7 +48,8 @@ namespace Squeal
   /// Eigensolvers and factorisations (sections `Real modes`, `Complex modes`, `Linear algebra`).
   struct SolverParameters
   {
-    RealSolver           real_solver         = RealSolver::anasazi;
+    RealSolver           real_solver         = RealSolver::lanczos;
+    ModeCounting         mode_counting       = ModeCounting::inertia;
     double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
     unsigned int         maximum_modes       = 500;   ///< in the band
     ComplexSolver        complex_solver      = ComplexSolver::krylov;
@@ -61,6 +62,12 @@ namespace Squeal
     unsigned int         blas_threads        = 1;
 
     void declare(Declarations &declarations);
+
+    /// Whether anything is done by multigrid.
+    bool uses_multigrid() const
+    {
+      return library == FactorizationLibrary::multigrid || real_solver == RealSolver::lobpcg;
+    }
 
     /// Throws ParameterError.
     void check() const;

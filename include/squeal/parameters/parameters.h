@@ -86,5 +86,6 @@ namespace Squeal
   private:
     void check_contact_state() const;
     void check_damping_in_band() const;
+    void check_multigrid() const;
   };
 } // namespace Squeal

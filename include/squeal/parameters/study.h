@@ -51,6 +51,9 @@ namespace Squeal
     /// Whether some of its modes have radial dissipation, whatever the parameters say.
     bool adds_dissipation = false;
 
+    /// Whether it knows the near null spaces of all its systems, which multigrid needs.
+    bool knows_near_null_spaces = false;
+
     /// Memory that it takes beside what modes of the scene do [byte]; null: little.
     double (*further_memory)(const Parameters &, const ProblemSize &, double n_modes) = nullptr;
 

@@ -30,7 +30,7 @@ namespace Squeal
     explicit ReducedModel(const CoupledSystem &system);
 
     /// Appends the columns of @p vectors, n × k, to the basis.
-    void extend(const MultiVector &vectors);
+    void extend(MultiVector vectors);
 
     /// The model on the basis TZ, Z: r × k; it refers to this basis.
     ReducedModel restricted(const DenseMatrix &Z) const;

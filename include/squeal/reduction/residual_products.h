@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -66,6 +67,22 @@ namespace Squeal
                               const ComplexDenseMatrix                &right,
                               const ComplexDenseMatrix                &left) const;
 
+    /// Modes of a reduced model at an operating point.
+    struct ModesAt
+    {
+      ParameterValues                   values;
+      std::vector<std::complex<double>> lambda;
+      ComplexDenseMatrix                right, left; ///< r × k
+    };
+
+    /**
+     * S⁻¹ W C, n × p: what right and left displacement residuals of modes have outside of the basis, by principal axes in the norm of
+     * S, those below @p tolerance times the largest left out. Of unit strain energy each mode counts by the error of its λ. The axes
+     * are found from the small matrices, so that block solves are as many as axes, not as residuals; the span of the basis may come
+     * along. Nothing if all residuals vanish; not for a member of a family. All processes must call.
+     */
+    std::optional<MultiVector> principal_responses(const ReducedModel &model, const std::vector<ModesAt> &modes, double tolerance) const;
+
   private:
     /// Finds the parts of W without their numbers; @p values as above.
     ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values);
@@ -75,6 +92,15 @@ namespace Squeal
                              const std::vector<std::complex<double>> &lambda,
                              const ComplexDenseMatrix                &vectors,
                              bool                                     transposed) const;
+
+    /// Rows of y and z of right and left residuals among all columns of W, those of zeros left out, each of a mode of unit strain energy.
+    DenseMatrix coordinates(const ModesAt &modes) const;
+
+    /// The bracket times Y.
+    DenseMatrix bracket_times(const DenseMatrix &Y) const;
+
+    /// W C.
+    MultiVector columns_times(const ReducedModel &model, const DenseMatrix &C) const;
 
     /// Products of the factors with a block of vectors.
     DenseMatrix factor_products(const MultiVector &X) const;

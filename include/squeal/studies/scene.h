@@ -17,10 +17,11 @@ namespace Squeal
   {
     HexMesh                mesh;
     std::unique_ptr<Model> model;
-    ContactInterface       interface; ///< all pairs of contact nodes
-    ContactOperators       contact;   ///< of all pairs
-    std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
-    SecondOrderSystem      system;    ///< M, C, K: their sum
+    ContactInterface       interface;           ///< all pairs of contact nodes
+    ContactOperators       contact;             ///< of all pairs
+    std::vector<Term>      bodies;              ///< merged terms of the uncoupled bodies
+    SecondOrderSystem      system;              ///< M, C, K: their sum
+    double                 expected_modes = 0.; ///< of the coupled system in the band, by the sizes of the bodies
 
     unsigned int n_pins() const
     {

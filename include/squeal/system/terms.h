@@ -130,6 +130,9 @@ namespace Squeal
    */
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
+  /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ of the terms in a power of λ, all of which have a sparse form.
+  double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
+
   /**
    * The same sum at these values with as few terms as possible: of the sparse terms, one of each power and symmetry is
    * left, with a coefficient of one. Terms that vanish are gone. Terms of low rank are not allowed.

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <squeal/linear_algebra/factorization.h>
+
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+
+namespace Squeal
+{
+  struct FactorBeside
+  {
+    std::unique_ptr<Factorization> factor;
+    double                         cpu_seconds = 0.; ///< of the other thread on which it was made; 0 if there was none [s]
+  };
+
+  /**
+   * What factorize_positive_definite() returns or throws, when it is asked for. Where another thread may work and the factorisation needs no
+   * other process, it is made beside what is done until then; a matrix so large that all threads share its fronts, and memory matters, waits.
+   *
+   * @param rows   of the matrix
+   * @param matrix gives it when its factorisation begins, and is not called later
+   */
+  std::future<FactorBeside> factorize_beside(const RowMap                                               &rows,
+                                             const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
+                                             FactorizationLibrary                                        library,
+                                             const std::string                                          &what,
+                                             const NearNullSpace                                        *near_null_space = nullptr);
+} // namespace Squeal

@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+"""Time and memory over the size of the mesh: the default scene with finer and finer meshes, one process with all its cores.
+
+    scripts/measure_scaling.py [--sizes 32,78,138,281,476,1000] [--study stability|sweep] [--set "Section/Name=value"]...
+
+Sizes are thousands of coupled dofs, by their names in MESHES below. Each is one run in a process of its own, without fields. Prints for every
+run what it took by the clock, its peak of memory beside what `squeal --dry-run` had expected, its steps, and for columns of more than one
+size the exponent of a power law through the last two.
+"""
+
+import argparse
+import json
+import math
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import benchmarking
+
+# Element size [m], layers of the disc, nodes on a pin's face, layers of the pins
+MESHES = {"32": (0.0115, 3, 19, 4), "78": (0.008, 4, 37, 6), "138": (0.006, 4, 61, 6), "281": (0.0045, 5, 91, 8),
+          "476": (0.0036, 6, 91, 10), "1000": (0.0029, 9, 91, 10)}
+STUDIES = {"stability": "disc_pins.prm", "sweep": "sweep.prm"}
+STEPS = ("Mode count", "Component modes", "Factorisation", "Real modes", "Complex modes", "Reduced model", "Sweep", "Branches")
+
+
+def settings_of(mesh):
+    """What makes the mesh."""
+    element, disc_layers, nodes, pin_layers = mesh
+    return [f"Geometry/Element size={element}", f"Geometry/Disc layers={disc_layers}", f"Geometry/Nodes per pin face={nodes}",
+            f"Geometry/Pin layers={pin_layers}", "Output/Mode shapes=none"]
+
+
+def run(study, mesh, settings):
+    """The record of one run."""
+    with tempfile.TemporaryDirectory() as folder:
+        options = [word for setting in [*settings_of(mesh), *settings] for word in ("--set", setting)]
+        command = [benchmarking.SQUEAL, benchmarking.SOURCE / "prm" / STUDIES[study], "--output", f"{folder}/run", *options]
+        process = subprocess.run(list(map(str, command)), text=True, capture_output=True, check=False)
+        if process.returncode != 0:
+            sys.exit(f"{process.stdout}{process.stderr}")
+        return json.loads((pathlib.Path(folder) / "run" / "run.json").read_text(encoding="utf-8"))
+
+
+def columns(record):
+    """What is shown of a run, by name."""
+    result = {"coupled dofs": record["counts"]["coupled dofs"], "contact nodes": record["counts"]["contact nodes"],
+              "entries of the factor [million]": record["quantities"]["entries of the Cholesky factor"] / 1e6,
+              "whole run [s]": record["wall time [s]"],
+              "peak [GB]": max(step["peak memory so far [byte]"] for step in record["steps"]) / 1e9,
+              "expected [GB]": record["quantities"]["expected memory [byte]"] / 1e9}
+    for name in STEPS:
+        seconds = sum(step["wall time [s]"] for step in record["steps"] if step["name"] == name)
+        if seconds > 0.:
+            result[f"{name} [s]"] = seconds
+    return result
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--sizes", default="32,78,138,281", help="names of meshes (default: %(default)s)")
+    parser.add_argument("--study", default="stability", choices=STUDIES)
+    parser.add_argument("--set", action="append", default=[], dest="settings", metavar="Section/Name=value")
+    arguments = parser.parse_args()
+    names = arguments.sizes.split(",")
+    if unknown := [name for name in names if name not in MESHES]:
+        sys.exit(f"There is no mesh {unknown[0]}: give some of {', '.join(MESHES)}.")
+    print(benchmarking.describe_machine("all"), flush=True)
+    before = None
+    for name in names:
+        found = columns(run(arguments.study, MESHES[name], arguments.settings))
+        print(f"\n{name} 000 dofs")
+        for column, value in found.items():
+            exponent = ""
+            if before and column != "coupled dofs" and before.get(column, 0.) > 0.:
+                exponent = f"  ~ n^{math.log(value / before[column]) / math.log(found['coupled dofs'] / before['coupled dofs']):.2f}"
+            print(f"  {column:<32} {value:12.5g}{exponent}", flush=True)
+        before = found
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,212 @@
+#include "shift_invert.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Parts of a vector below this fraction of the whole are rounding errors.
+    constexpr double rounding_of_whole = 1e-15;
+    /// Unit vectors of which projecting them again leaves less than this were rounding errors.
+    constexpr double rounding_of_unit = 1e-3;
+
+    /**
+     * W = Q R by Gram–Schmidt in the inner product of M, with B = M W carried along; columns of which no more than the fraction
+     * @p smallest is left are dropped. Q and M Q replace the first columns of W and B; returns R, k × b.
+     */
+    DenseMatrix mass_qr(MultiVector &W, MultiVector &B, const double smallest)
+    {
+      const int   b = W.n_columns();
+      DenseMatrix R = DenseMatrix::Zero(b, b);
+      int         k = 0;
+      for (int j = 0; j < b; ++j)
+        {
+          MultiVector  w = view(W, j, 1), image = view(B, j, 1);
+          const double before = std::sqrt(std::max(0., gram(w, image)(0, 0)));
+          if (k > 0)
+            {
+              R.col(j).head(k) = gram(view(B, 0, k), w);
+              multiply_add(-1., view(W, 0, k), R.col(j).head(k), 1., w);
+              multiply_add(-1., view(B, 0, k), R.col(j).head(k), 1., image);
+            }
+          const double norm = std::sqrt(std::max(0., gram(w, image)(0, 0)));
+          if (!(norm > smallest * before))
+            continue;
+          R(k, j)       = norm;
+          MultiVector q = view(W, k, 1), image_of_q = view(B, k, 1);
+          q.local()          = w.local() / norm;
+          image_of_q.local() = image.local() / norm;
+          ++k;
+        }
+      return R.topRows(k);
+    }
+
+    /**
+     * Block Lanczos process for A = (K + s M)⁻¹ M, which is self-adjoint in the inner product of M, with full orthogonalisation:
+     *
+     *   A V = V T + Q R Eᵀ,   [V Q] M-orthonormal,
+     *
+     * T block tridiagonal, E the last columns of the identity (R. G. Grimes, J. G. Lewis, H. D. Simon, SIAM J. Matrix Anal. Appl.
+     * 15 (1994) 228).
+     */
+    class BlockLanczos
+    {
+    public:
+      /// @p start is used up. Columns of it that depend on others are left out.
+      BlockLanczos(const ShiftInvert &A, MultiVector start, const int n_reserved)
+        : A(A)
+        , basis(std::make_unique<MultiVector>(A.map(), std::max(n_reserved, 1), false))
+        , image(A.map(), 0)
+      {
+        append(start);
+      }
+
+      /// Vectors of V.
+      int dimension() const
+      {
+        return m;
+      }
+
+      /// Vectors of Q; none is left where V spans an invariant subspace.
+      int block_size() const
+      {
+        return b;
+      }
+
+      /// Q becomes part of V.
+      void expand()
+      {
+        const int   first = m, width = b;
+        MultiVector W(A.map(), width, false);
+        A.apply_to_image(image, W);
+        m += width;
+        const auto [H, next] = append(W);
+        T.conservativeResizeLike(DenseMatrix::Zero(m, m));
+        const DenseMatrix diagonal          = H.middleRows(first, width);
+        T.block(first, first, width, width) = 0.5 * (diagonal + diagonal.transpose());
+        if (first > 0)
+          {
+            T.block(first, first - R.cols(), width, R.cols()) = R;
+            T.block(first - R.cols(), first, R.cols(), width) = R.transpose();
+          }
+        R = next;
+      }
+
+      /// Eigenpairs of T, largest first, and ‖A x − ν x‖ of their Ritz vectors in the norm of M.
+      struct RitzPairs
+      {
+        std::vector<double> values, errors;
+        DenseMatrix         vectors;
+      };
+
+      RitzPairs ritz_pairs() const
+      {
+        RealPairs         pairs = agreed(A.map().communicator(), symmetric_eigenpairs(T));
+        const DenseMatrix left  = R * pairs.vectors.bottomRows(R.cols());
+        RitzPairs         result;
+        result.vectors = pairs.vectors.rowwise().reverse();
+        result.values.assign(pairs.values.rbegin(), pairs.values.rend());
+        for (int i = m - 1; i >= 0; --i)
+          result.errors.push_back(left.col(i).norm());
+        return result;
+      }
+
+      /// A x / ν of the first @p n Ritz vectors: one more step of inverse iteration than x, at no cost.
+      MultiVector ritz_vectors(const RitzPairs &ritz, const int n) const
+      {
+        const DenseMatrix Y = ritz.vectors.leftCols(n);
+        DenseMatrix       coordinates(m + b, n);
+        coordinates << Y, R * Y.bottomRows(R.cols()) * as_column(ritz.values).head(n).cwiseInverse().asDiagonal();
+        return view(*basis, 0, m + b) * coordinates;
+      }
+
+    private:
+      struct Coefficients
+      {
+        DenseMatrix H, R;
+      };
+
+      /// Makes W = V H + Q R the new active block Q; W is used up.
+      Coefficients append(MultiVector &W)
+      {
+        const MultiVector V = view(*basis, 0, m);
+        MultiVector       B = A.mass() * W;
+        DenseMatrix       H = DenseMatrix::Zero(m, W.n_columns()), all = DenseMatrix::Identity(W.n_columns(), W.n_columns());
+        // Normalising between the rounds makes "twice is enough" hold for each direction, however little the first one left.
+        for (const double smallest : {rounding_of_whole, rounding_of_unit})
+          {
+            MultiVector rest = view(W, 0, static_cast<int>(all.rows())), its_image = view(B, 0, static_cast<int>(all.rows()));
+            if (m > 0 && all.rows() > 0)
+              {
+                const DenseMatrix removed = gram(V, its_image);
+                multiply_add(-1., V, removed, 1., rest);
+                H += removed * all;
+              }
+            A.mass().apply(rest, its_image);
+            all = mass_qr(rest, its_image, smallest) * all;
+          }
+        b = static_cast<int>(all.rows());
+        if (m + b > basis->n_columns())
+          throw SolverError("the basis of Lanczos vectors is full", "symmetric eigenproblem",
+                            "this is a mistake in the program: please report it");
+        if (b > 0)
+          {
+            MultiVector place = view(*basis, m, b);
+            place             = view(W, 0, b);
+          }
+        image = MultiVector(view(B, 0, b));
+        return {H, all};
+      }
+
+      const ShiftInvert           &A;
+      std::unique_ptr<MultiVector> basis; ///< [V Q]
+      MultiVector                  image; ///< M Q
+      DenseMatrix                  T, R;
+      int                          m = 0, b = 0;
+    };
+
+    /// How many Ritz values have converged, counted from the largest up to the first that has not.
+    int n_converged(const BlockLanczos::RitzPairs &ritz, const double tolerance)
+    {
+      int n = 0;
+      while (n < static_cast<int>(ritz.values.size()) && ritz.errors[n] <= tolerance * ritz.values[n])
+        ++n;
+      return n;
+    }
+  } // namespace
+
+  std::optional<MultiVector> lanczos_vectors(const ShiftInvert &A, const KrylovRequest &request)
+  {
+    // The basis and one more block must be linearly independent
+    const int n = A.n_free(), width = std::max(1, std::min(request.block_size, n / 4));
+    const int largest = std::min(n - width, 4 * request.n_wanted + (20 + 10 * request.attempt) * width);
+
+    // One application takes from the start what belongs to high frequencies
+    MultiVector random = random_vectors(A.map(), width, request.seed), start(A.map(), width, false);
+    A.apply(random, start);
+    // Room that is not written to takes no memory, while more room later would be a copy beside the former one
+    BlockLanczos process(A, std::move(start), largest + 2 * width);
+
+    // Some two vectors for each mode are what it takes in the end
+    BlockLanczos::RitzPairs ritz;
+    int                     n_found = 0;
+    for (int size = std::min(largest, 3 * request.n_wanted / 2 + 2 * width); n_found < request.n_wanted;)
+      {
+        while (process.dimension() < size && process.block_size() > 0)
+          process.expand();
+        ritz    = process.ritz_pairs();
+        n_found = std::min(n_converged(ritz, request.tolerance), request.n_wanted);
+        if (process.block_size() == 0 || process.dimension() >= largest)
+          break;
+        size = std::min(largest, process.dimension() + std::max(width, (request.n_wanted - n_found) / 2));
+      }
+    if (n_found == 0)
+      return {};
+    return process.ritz_vectors(ritz, n_found);
+  }
+} // namespace Squeal

@@ -1,0 +1,40 @@
+#include <squeal/base/tasks.h>
+#include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/linear_algebra/factorization_beside.h>
+
+#include <ctime>
+
+namespace Squeal
+{
+  namespace
+  {
+    double thread_seconds()
+    {
+      timespec time = {};
+      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+      return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+    }
+  } // namespace
+
+  std::future<FactorBeside> factorize_beside(const RowMap                                               &rows,
+                                             const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
+                                             const FactorizationLibrary                                  library,
+                                             const std::string                                          &what,
+                                             const NearNullSpace                                        *near_null_space)
+  {
+    // MUMPS communicates even on one process
+    const bool is_alone =
+      rows.n_processes() == 1 && (library == FactorizationLibrary::automatic || library == FactorizationLibrary::cholmod);
+    const bool is_beside = is_alone && n_task_threads() > 1 && rows.n() < rows_of_large_matrices;
+    if (!is_beside)
+      return std::async(std::launch::deferred,
+                        [=] { return FactorBeside{factorize_positive_definite(*matrix(), library, what, near_null_space)}; });
+    // To make the matrix may take communication
+    return std::async(std::launch::async, [A = matrix(), library, what] {
+      const double before = thread_seconds();
+      FactorBeside result{factorize_positive_definite(*A, library, what)};
+      result.cpu_seconds = thread_seconds() - before;
+      return result;
+    });
+  }
+} // namespace Squeal

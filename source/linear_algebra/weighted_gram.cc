@@ -1,0 +1,24 @@
+#include <squeal/base/tasks.h>
+#include <squeal/linear_algebra/weighted_gram.h>
+
+namespace Squeal
+{
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A, const MultiVector &Y)
+  {
+    DenseMatrix result(X.n_columns(), Y.n_columns());
+    for_column_blocks(Y.n_columns(), [&](const int first, const int n) { result.middleCols(first, n) = gram(X, A * view(Y, first, n)); });
+    return result;
+  }
+
+  void multiply_in_place(MultiVector &X, const DenseMatrix &S)
+  {
+    constexpr int rows_together = 1024;
+    auto          x             = X.local();
+    const int     n_rows        = X.n_local_rows();
+    run_tasks((n_rows + rows_together - 1) / rows_together, [&](const int part) {
+      auto              rows    = x.middleRows(part * rows_together, std::min(rows_together, n_rows - part * rows_together));
+      const DenseMatrix product = rows * S;
+      rows                      = product;
+    });
+  }
+} // namespace Squeal

@@ -1,0 +1,73 @@
+#include "matrices.h"
+
+#include <squeal/base/tasks.h>
+#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// What a number of threads computes from the same vectors.
+  struct Results
+  {
+    explicit Results(const unsigned int n_threads)
+    {
+      set_task_threads(n_threads);
+      const MultiVector X = random_vectors(K->rows(), 11);
+      products            = std::make_shared<MultiVector>(*K * X);
+      inner               = gram(X, *products);
+      combinations        = std::make_shared<MultiVector>(X);
+      multiply_add(0.5, X, inner, -2., *combinations);
+      solutions = std::make_shared<MultiVector>(X.map(), X.n_columns());
+      factorize_positive_definite(*K, FactorizationLibrary::automatic, "test matrix")->apply(X, *solutions);
+      set_task_threads(1);
+    }
+
+    // More rows than a task has
+    std::shared_ptr<const SparseMatrix> K = laplacian(24, 1);
+    std::shared_ptr<MultiVector>        products, combinations, solutions;
+    DenseMatrix                         inner;
+  };
+
+  double relative_difference(const MultiVector &X, const MultiVector &Y)
+  {
+    const auto norms = column_norms(X - Y), sizes = column_norms(Y);
+    double     result = 0.;
+    for (std::size_t j = 0; j < norms.size(); ++j)
+      result = std::max(result, norms[j] / sizes[j]);
+    return result;
+  }
+} // namespace
+
+TEST(Threads, ChangeNothing)
+{
+  // MUMPS on several processes adds contributions in the order in which messages arrive: no two factorisations are the same to the bit
+  const double  solver_noise = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1 ? 0. : 1e-14;
+  const Results one(1);
+  for (const unsigned int n_threads : {2, 3})
+    {
+      const Results several(n_threads);
+      EXPECT_EQ(relative_difference(*several.products, *one.products), 0.);
+      EXPECT_EQ(max_norm(several.inner - one.inner), 0.);
+      EXPECT_EQ(relative_difference(*several.combinations, *one.combinations), 0.);
+      EXPECT_LE(relative_difference(*several.solutions, *one.solutions), solver_noise);
+    }
+}
+
+TEST(Threads, ProductsOfManyRowsAreRight)
+{
+  const Results     many(2);
+  const MultiVector X = random_vectors(many.K->rows(), 11);
+  // K is symmetric, and its transpose is multiplied by another library
+  EXPECT_LT(relative_difference(*many.products, transpose_times(*many.K, X)), 1e-14);
+  EXPECT_LT(relative_difference(*many.K * *many.solutions, X), 1e-12);
+  for (int j = 0; j < X.n_columns(); ++j)
+    for (int i = 0; i <= j; ++i)
+      EXPECT_NEAR(many.inner(i, j), column_products(view(X, i, 1), view(*many.products, j, 1))[0], 1e-10);
+}

@@ -1,0 +1,114 @@
+#include "scenes.h"
+
+#include <squeal/base/exceptions.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+using namespace Squeal;
+using namespace Testing;
+
+namespace
+{
+  /// A disc with two pins, one of them on the rim.
+  HexMesh mesh()
+  {
+    return extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 0, 2, 1, 2}, {Plan::Side::bottom, 5, 3, 0, 1}}), layers(2, 2));
+  }
+
+  /// Own nodes of all processes, by their numbers.
+  std::map<std::int64_t, Node> all_nodes(const Model &model)
+  {
+    std::vector<Node> own;
+    for (const Node &node : model.nodes())
+      if (node.is_own)
+        own.push_back(node);
+    std::map<std::int64_t, Node> result;
+    std::size_t                  n = 0;
+    for (const auto &part : dealii::Utilities::MPI::all_gather(model.communicator(), own))
+      {
+        n += part.size();
+        for (const Node &node : part)
+          result[node.number] = node;
+      }
+    EXPECT_EQ(result.size(), n) << "every node belongs to one process";
+    return result;
+  }
+
+  double distance(const Node &a, const Node &b)
+  {
+    return std::hypot(a.position[0] - b.position[0], a.position[1] - b.position[1], a.position[2] - b.position[2]);
+  }
+} // namespace
+
+TEST(Models, HaveTheSameNodesHoweverTheyAreDistributed)
+{
+  for (const Element element : {Element::trilinear, Element::quadratic})
+    {
+      const Model model(mesh(), element, MPI_COMM_WORLD), whole(mesh(), element, MPI_COMM_SELF);
+      const auto  nodes = all_nodes(model), expected = all_nodes(whole);
+      EXPECT_EQ(expected.size(), whole.nodes().size());
+      ASSERT_EQ(nodes.size(), expected.size());
+      EXPECT_EQ(model.n_dofs(), whole.n_dofs());
+      EXPECT_EQ(model.free_map().n(), whole.free_map().n());
+      std::set<int> dofs;
+      for (const auto &[number, node] : nodes)
+        {
+          ASSERT_EQ(expected.count(number), 1u);
+          const Node &other = expected.at(number);
+          EXPECT_LT(distance(node, other), 1e-15);
+          EXPECT_EQ(node.component, other.component);
+          for (int d = 0; d < 3; ++d)
+            {
+              EXPECT_EQ(node.dofs[d] < 0, other.dofs[d] < 0);
+              if (node.dofs[d] >= 0)
+                dofs.insert(node.dofs[d]);
+            }
+        }
+      EXPECT_EQ(static_cast<int>(dofs.size()), model.free_map().n());
+      EXPECT_EQ(*dofs.rbegin() + 1, model.free_map().n());
+
+      // What a process knows of nodes of others
+      for (const Node &node : model.nodes())
+        {
+          ASSERT_EQ(nodes.count(node.number), 1u);
+          EXPECT_EQ(nodes.at(node.number).dofs, node.dofs);
+          EXPECT_LT(distance(nodes.at(node.number), node), 1e-15);
+          EXPECT_EQ(node.is_own, node.dofs[0] < 0 ? node.is_own : model.free_map().place(node.dofs[0]) >= 0);
+        }
+    }
+}
+
+TEST(Models, ProcessesHaveTheirCellsAndTheNeighboursOfThese)
+{
+  const HexMesh      all = mesh();
+  const Model        model(all, Element::trilinear, MPI_COMM_WORLD);
+  const unsigned int n_processes = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  unsigned int       n_own       = 0;
+  for (const auto &cell : model.triangulation().active_cell_iterators())
+    n_own += cell->is_locally_owned();
+  EXPECT_EQ(dealii::Utilities::MPI::sum(n_own, MPI_COMM_WORLD), all.hexahedra.size());
+  EXPECT_LE(n_own, 1.1 * all.hexahedra.size() / n_processes + 2);
+  EXPECT_EQ(model.triangulation().n_active_cells() == all.hexahedra.size(), n_processes == 1);
+}
+
+TEST(Models, MeshesThatDealiiRefusesAreRefusedOnAllProcesses)
+{
+  // A name on a face between two cells
+  HexMesh     inside = mesh();
+  const auto &nodes  = inside.hexahedra.front().nodes;
+  for (const auto &face : {std::array<int, 4>{{0, 3, 7, 4}}, std::array<int, 4>{{1, 2, 6, 5}}, std::array<int, 4>{{0, 1, 5, 4}},
+                           std::array<int, 4>{{3, 2, 6, 7}}})
+    inside.quadrilaterals.push_back({{{nodes[face[0]], nodes[face[1]], nodes[face[2]], nodes[face[3]]}}, 0});
+  EXPECT_THROW(Model(inside, Element::trilinear, MPI_COMM_WORLD), MeshError);
+
+  // The same cell three times
+  HexMesh thrice = mesh();
+  thrice.hexahedra.push_back(thrice.hexahedra.front());
+  thrice.hexahedra.push_back(thrice.hexahedra.front());
+  EXPECT_THROW(Model(thrice, Element::trilinear, MPI_COMM_WORLD), MeshError);
+}
