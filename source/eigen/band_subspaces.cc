@@ -13,13 +13,13 @@ namespace Squeal
     constexpr double largest_part = 0.6;
     /// Ratio of the squares of the frequencies on either side of the gap from which the steps are few.
     constexpr double narrowest_gap = 1.2;
-    /// Norm of a step, in coordinates of unit modes, that is the last.
-    constexpr double last_step  = 1e-12;
+    /// Norm, in coordinates of unit modes, of what the last step may leave.
+    constexpr double error_left = 1e-12;
     constexpr int    most_steps = 24;
     /// A step has to be shorter than this part of the one before.
     constexpr double contraction = 0.7;
     /// Bound on ‖Z^m‖ that leaves rounding errors of the powers their room, and number of squarings.
-    constexpr double proof          = 0.1;
+    constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
     /// Part of the band's end by which modes of lower frequencies, rigid-body motions among them, are scaled.
     constexpr double smallest_part = 1e-2;
@@ -50,13 +50,21 @@ namespace Squeal
           const DenseMatrix step = divided(residual(X));
           const double      norm = step.norm();
           if (!(i == 0 || norm < contraction * before))
-            return norm <= last_step;
+            return norm <= error_left;
           X -= step;
-          if (norm <= last_step)
+          // The next one would be as much smaller again
+          if (norm <= error_left || (i > 0 && norm * norm <= error_left * (before - norm)))
             return true;
           before = norm;
         }
       return false;
+    }
+
+    /// Upper bound of ‖Z‖₂: √(‖Z‖₁ ‖Z‖_∞) or ‖Z‖_F.
+    double norm_bound(const DenseMatrix &Z)
+    {
+      const DenseMatrix sizes = Z.cwiseAbs();
+      return std::min(std::sqrt(sizes.colwise().sum().maxCoeff() * sizes.rowwise().sum().maxCoeff()), Z.norm());
     }
 
     /// Whether Re κ > limit for all eigenvalues κ of T, as far as powers of the Cayley transform show.
@@ -70,16 +78,84 @@ namespace Squeal
       DenseMatrix Z = unit - 2. * scale * lu.solve(unit);
       for (int i = 0; i <= most_squarings; ++i)
         {
-          if (Z.norm() < proof)
+          if (norm_bound(Z) < proof)
             return true;
           Z = Z * Z;
         }
       return false;
     }
+
+    /**
+     * A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ where rows and columns are
+     * of different modes. Products cost half of those of a dense block.
+     */
+    class CompanionBlock
+    {
+    public:
+      CompanionBlock(const DenseMatrix     &stiffness,
+                     const DenseMatrix     &damping,
+                     const Eigen::VectorXd &rows,
+                     const Eigen::VectorXd &columns,
+                     const bool             is_diagonal)
+        : lower(stiffness.rows(), 2 * stiffness.cols())
+        , sigma(is_diagonal ? columns : Eigen::VectorXd())
+      {
+        const auto inverse = rows.cwiseInverse().asDiagonal();
+        lower << -(inverse * stiffness), -(inverse * damping * columns.asDiagonal());
+      }
+
+      DenseMatrix dense() const
+      {
+        const Eigen::Index p      = lower.rows();
+        DenseMatrix        result = DenseMatrix::Zero(2 * p, lower.cols());
+        if (sigma.size() > 0)
+          result.topRightCorner(p, p).diagonal() = sigma;
+        result.bottomRows(p) = lower;
+        return result;
+      }
+
+      friend DenseMatrix operator*(const CompanionBlock &A, const DenseMatrix &X)
+      {
+        const Eigen::Index p      = A.lower.rows();
+        DenseMatrix        result = DenseMatrix::Zero(2 * p, X.cols());
+        if (A.sigma.size() > 0)
+          result.topRows(p) = A.sigma.asDiagonal() * X.bottomRows(p);
+        result.bottomRows(p).noalias() = A.lower * X;
+        return result;
+      }
+
+      friend DenseMatrix operator*(const DenseMatrix &X, const CompanionBlock &A)
+      {
+        const Eigen::Index p      = A.lower.rows();
+        DenseMatrix        result = X.rightCols(p) * A.lower;
+        if (A.sigma.size() > 0)
+          result.rightCols(p) += X.leftCols(p) * A.sigma.asDiagonal();
+        return result;
+      }
+
+    private:
+      DenseMatrix     lower;
+      Eigen::VectorXd sigma;
+    };
+
+    const DenseMatrix &dense(const DenseMatrix &A)
+    {
+      return A;
+    }
+
+    DenseMatrix dense(const CompanionBlock &A)
+    {
+      return A.dense();
+    }
+
     /// Blocks of a matrix in modal coordinates, those of the band first.
+    template <typename Block>
     struct Blocks
     {
-      DenseMatrix band, band_rest, rest_band, rest; ///< B_11, B_12, B_21, B_22
+      DenseMatrix band;      ///< B_11
+      Block       band_rest; ///< B_12
+      DenseMatrix rest_band; ///< B_21
+      Block       rest;      ///< B_22
     };
 
     /// What separates the band: R = [I; X], Lᵀ = [I − Y X, Y] and S, in modal coordinates.
@@ -92,40 +168,28 @@ namespace Squeal
      * @param divided_right, divided_left the inverse of the reference's operators on residuals of X and Y
      * @param is_beyond whether T has nothing of the band
      */
-    template <typename Right, typename Left, typename Proof>
-    std::optional<Separation> separated(const Blocks &B, const Right &divided_right, const Left &divided_left, const Proof &is_beyond)
+    template <typename Block, typename Right, typename Left, typename Proof>
+    std::optional<Separation> separated(const Blocks<Block> &B,
+                                        const Right         &divided_right,
+                                        const Left          &divided_left,
+                                        const Proof         &is_beyond)
     {
-      const Eigen::Index k = B.band.rows(), m = B.rest.rows();
+      const Eigen::Index k = B.band.rows(), m = B.rest_band.rows();
       Separation         result;
       DenseMatrix       &X = result.X = DenseMatrix::Zero(m, k), &Y = result.Y = DenseMatrix::Zero(k, m);
       if (!solve_step_by_step(
             X, [&](const DenseMatrix &of) -> DenseMatrix { return B.rest_band + B.rest * of - of * (B.band + B.band_rest * of); },
             divided_right))
         return {};
-      const DenseMatrix S_1 = B.band + B.band_rest * X, T = B.rest - X * B.band_rest;
+      const DenseMatrix S_1 = B.band + B.band_rest * X, T = dense(B.rest) - X * B.band_rest;
       if (!is_beyond(T))
         return {};
       if (!solve_step_by_step(
-            Y, [&](const DenseMatrix &of) -> DenseMatrix { return of * T - S_1 * of + B.band_rest; }, divided_left))
+            Y, [&, B_12 = DenseMatrix(dense(B.band_rest))](const DenseMatrix &of) -> DenseMatrix { return of * T - S_1 * of + B_12; },
+            divided_left))
         return {};
       result.first = DenseMatrix::Identity(k, k) - Y * X;
       result.small = result.first * S_1 + Y * (B.rest_band + B.rest * X);
-      return result;
-    }
-
-    /// [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] or, of different modes, without Σ: one block of the companion form in coordinates (x, λ x / σ).
-    DenseMatrix companion_block(const DenseMatrix     &stiffness,
-                                const DenseMatrix     &damping,
-                                const Eigen::VectorXd &rows,
-                                const Eigen::VectorXd &columns,
-                                const bool             is_diagonal)
-    {
-      const Eigen::Index p = stiffness.rows(), q = stiffness.cols();
-      DenseMatrix        result = DenseMatrix::Zero(2 * p, 2 * q);
-      if (is_diagonal)
-        result.topRightCorner(p, q).diagonal() = columns;
-      result.bottomLeftCorner(p, q)  = -(rows.cwiseInverse().asDiagonal() * stiffness);
-      result.bottomRightCorner(p, q) = -(rows.cwiseInverse().asDiagonal() * damping * columns.asDiagonal());
       return result;
     }
 
@@ -165,7 +229,7 @@ namespace Squeal
     const DenseMatrix  B     = coordinates.inverse * A * coordinates.vectors;
     const DenseMatrix  D     = w.tail(m).replicate(1, k) - w.head(k).transpose().replicate(m, 1);
     const auto         apart = separated(
-              Blocks{B.topLeftCorner(k, k), B.topRightCorner(k, m), B.bottomLeftCorner(m, k), B.bottomRightCorner(m, m)},
+              Blocks<DenseMatrix>{B.topLeftCorner(k, k), B.topRightCorner(k, m), B.bottomLeftCorner(m, k), B.bottomRightCorner(m, m)},
               [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D); },
               [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D.transpose()); },
               [&](const DenseMatrix &T) { return all_beyond(T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });
@@ -196,10 +260,10 @@ namespace Squeal
     const DenseMatrix     differences = s_2.replicate(1, k) - s_1.transpose().replicate(m, 1),
                       sums            = s_2.replicate(1, k) + s_1.transpose().replicate(m, 1);
     const auto apart                  = separated(
-                       Blocks{companion_block(K.topLeftCorner(k, k), D.topLeftCorner(k, k), s_1, s_1, true),
-             companion_block(K.topRightCorner(k, m), D.topRightCorner(k, m), s_1, s_2, false),
-             companion_block(K.bottomLeftCorner(m, k), D.bottomLeftCorner(m, k), s_2, s_1, false),
-             companion_block(K.bottomRightCorner(m, m), D.bottomRightCorner(m, m), s_2, s_2, true)},
+                       Blocks<CompanionBlock>{CompanionBlock(K.topLeftCorner(k, k), D.topLeftCorner(k, k), s_1, s_1, true).dense(),
+                                              CompanionBlock(K.topRightCorner(k, m), D.topRightCorner(k, m), s_1, s_2, false),
+                                              CompanionBlock(K.bottomLeftCorner(m, k), D.bottomLeftCorner(m, k), s_2, s_1, false).dense(),
+                                              CompanionBlock(K.bottomRightCorner(m, m), D.bottomRightCorner(m, m), s_2, s_2, true)},
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences, sums); },
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences.transpose(), -sums.transpose()); },
                        [&](const DenseMatrix &T) { return all_beyond(-T * T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });

@@ -165,10 +165,10 @@ namespace Squeal
     const std::vector<int> columns = nonzero_columns(all); // imaginary parts of neutral modes are zero
     if (columns.empty())
       return {};
-    const MultiVector X = compress(M, model, selected(all, columns));
+    MultiVector X = compress(M, model, selected(all, columns));
     if (!model.is_restricted())
-      return orthonormalize_if_any(M, &model.basis(), X, dependence_tolerance);
-    auto result = orthonormalize_if_any(M, nullptr, X, dependence_tolerance);
+      return orthonormalize_if_any(M, &model.basis(), std::move(X), dependence_tolerance, nullptr, Projection::done);
+    auto result = orthonormalize_if_any(M, nullptr, std::move(X), dependence_tolerance);
     if (result)
       remove_basis(M, model, *result);
     return result;

@@ -50,6 +50,18 @@ namespace Squeal
       unit_norm
     };
 
+    /// Largest ‖WᵀMW − I‖ from which one symmetric orthonormalisation leaves rounding errors only.
+    constexpr double nearly_orthonormal = 1e-3;
+
+    /// W ← W (WᵀMW)^(-1/2), the orthonormal vectors next to W; whether W had been so close to them that this is enough.
+    bool orthonormalize_symmetrically(const SparseMatrix &M, MultiVector &W)
+    {
+      const DenseMatrix G    = weighted_gram(W, M);
+      const double      away = (G - DenseMatrix::Identity(G.rows(), G.cols())).norm();
+      multiply_in_place(W, inverse_root(common_eigenpairs(W.communicator(), G)));
+      return away <= nearly_orthonormal;
+    }
+
     /// Largest over smallest of ascending eigenvalues.
     double condition_number(const std::vector<double> &values)
     {
@@ -61,6 +73,7 @@ namespace Squeal
                                                 MultiVector         X,
                                                 const double        tolerance,
                                                 const Scaling       scaling,
+                                                const Projection    projection,
                                                 PrincipalAxes      *axes)
     {
       // A Gram matrix resolves directions down to the square root of the
@@ -78,9 +91,10 @@ namespace Squeal
 
       // Scale to unit norm; the largest direction of the scaled columns is the yardstick.
       std::optional<MultiVector> remaining;
+      RealPairs                  pairs; // of what remains
       double                     largest = 0.;
       {
-        const DenseMatrix   G = weighted_gram(X, M, X);
+        const DenseMatrix   G = weighted_gram(X, M);
         std::vector<double> scale;
         std::vector<int>    nonzero;
         for (int j = 0; j < X.n_columns(); ++j)
@@ -99,22 +113,26 @@ namespace Squeal
           return {};
         for (int j = 0; j < k; ++j)
           X.col(nonzero[j]) *= scale[j];
-        const auto                scales  = as_column(scale).asDiagonal();
-        const std::vector<double> squares = common_eigenpairs(communicator, scales * G(nonzero, nonzero) * scales).values;
-        largest                           = squares.back();
+        const auto scales = as_column(scale).asDiagonal();
+        pairs             = common_eigenpairs(communicator, scales * G(nonzero, nonzero) * scales);
+        largest           = pairs.values.back();
         if (axes != nullptr)
-          *axes = {{}, condition_number(squares)};
+          *axes = {{}, condition_number(pairs.values)};
         remaining.emplace(k == X.n_columns() ? std::move(X) : selected(X, nonzero));
       }
       const double smallest = tolerance * tolerance * largest;
 
       // One projection leaves components of the size of the rounding error, the second none.
-      project(*remaining);
-      project(*remaining);
+      const auto project_remaining = [&] {
+        project(*remaining);
+        project(*remaining);
+        pairs = common_eigenpairs(communicator, weighted_gram(*remaining, M));
+      };
+      if (Q != nullptr && projection == Projection::wanted)
+        project_remaining();
 
       while (remaining)
         {
-          const RealPairs            pairs  = common_eigenpairs(communicator, weighted_gram(*remaining, M, *remaining));
           const std::vector<double> &values = pairs.values;
           const int                  k      = values.size();
 
@@ -139,8 +157,8 @@ namespace Squeal
           for (int pass = 0; pass < 2; ++pass)
             {
               project(W);
-              // Symmetric orthonormalisation W ← W (WᵀMW)^(-1/2): the vectors change least.
-              multiply_in_place(W, inverse_root(common_eigenpairs(communicator, weighted_gram(W, M, W))));
+              if (orthonormalize_symmetrically(M, W))
+                break;
             }
           kept.push_back(std::move(W));
 
@@ -148,8 +166,7 @@ namespace Squeal
           if (n_rest > 0)
             {
               remaining.emplace(*remaining * pairs.vectors.leftCols(n_rest));
-              project(*remaining);
-              project(*remaining);
+              project_remaining();
             }
           else
             remaining.reset();
@@ -167,9 +184,10 @@ namespace Squeal
                                                    const MultiVector  *Q,
                                                    MultiVector         X,
                                                    const double        tolerance,
-                                                   PrincipalAxes      *axes)
+                                                   PrincipalAxes      *axes,
+                                                   const Projection    projection)
   {
-    return orthonormal_axes(M, Q, std::move(X), tolerance, Scaling::unit_norm, axes);
+    return orthonormal_axes(M, Q, std::move(X), tolerance, Scaling::unit_norm, projection, axes);
   }
 
   MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, const double tolerance, PrincipalAxes *axes)
@@ -184,7 +202,7 @@ namespace Squeal
 
   MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
   {
-    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, axes);
+    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, Projection::wanted, axes);
     if (!W)
       throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
                         "give other vectors");
@@ -202,6 +220,6 @@ namespace Squeal
 
   double orthonormality_defect(const SparseMatrix &M, const MultiVector &X)
   {
-    return max_norm(weighted_gram(X, M, X) - DenseMatrix::Identity(X.n_columns(), X.n_columns()));
+    return max_norm(weighted_gram(X, M) - DenseMatrix::Identity(X.n_columns(), X.n_columns()));
   }
 } // namespace Squeal

@@ -10,6 +10,20 @@ namespace Squeal
     return result;
   }
 
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A)
+  {
+    const int   k = X.n_columns();
+    DenseMatrix result(k, k);
+    for_column_blocks(k, [&](const int first, const int n) {
+      const int         rows           = first + n;
+      const DenseMatrix block          = gram(view(X, 0, rows), A * view(X, first, n));
+      result.block(0, first, rows, n)  = block;
+      result.block(first, 0, n, first) = block.topRows(first).transpose();
+      result.block(first, first, n, n) = 0.5 * (block.bottomRows(n) + block.bottomRows(n).transpose());
+    });
+    return result;
+  }
+
   void multiply_in_place(MultiVector &X, const DenseMatrix &S)
   {
     constexpr int rows_together = 1024;

@@ -246,7 +246,7 @@ namespace Squeal
         }
       for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
         if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
-          result.modes.push_back({modes.mode(b, k - 1), modes.mode(b, k), modes.mode(b, k + 1), modes.mode(b, k + 2)});
+          result.modes.push_back({{modes.mode(b, k - 1), modes.mode(b, k), modes.mode(b, k + 1), modes.mode(b, k + 2)}});
       return result;
     }
   } // namespace

@@ -14,6 +14,13 @@ namespace Squeal
     double              condition = 1.; ///< of the Gram matrix of all columns, scaled or not; infinite where rounding makes it indefinite
   };
 
+  /// Whether vectors still have parts in the span of those against which they are orthonormalised.
+  enum class Projection
+  {
+    wanted,
+    done ///< beforehand, in two passes
+  };
+
   /**
    * Orthonormalises the columns of @p X in the inner product of the symmetric
    * positive definite @p M against the M-orthonormal columns of @p Q (may be
@@ -23,7 +30,7 @@ namespace Squeal
    * of Q is resolved into orthogonal directions (the principal axes of the
    * scaled columns, largest first); those whose M-norm is below @p tolerance
    * times the largest M-norm of a direction in X before the projection are
-   * dropped. The axes are computed in passes of five orders of magnitude each,
+   * dropped. @p projection says whether X is orthogonal to Q already. The axes are computed in passes of five orders of magnitude each,
    * since a Gram matrix squares the condition; tolerances down to 1e-13 make
    * sense.
    *
@@ -36,7 +43,8 @@ namespace Squeal
                                                    const MultiVector  *Q,
                                                    MultiVector         X,
                                                    double              tolerance,
-                                                   PrincipalAxes      *axes = nullptr);
+                                                   PrincipalAxes      *axes       = nullptr,
+                                                   Projection          projection = Projection::wanted);
 
   /// The same where at least one direction must be left; throws SolverError otherwise.
   MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, double tolerance, PrincipalAxes *axes = nullptr);
