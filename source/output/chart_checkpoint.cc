@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <iomanip>
 #include <sstream>
@@ -27,12 +28,12 @@ namespace Squeal
   {
     /// First words of every archive; the number after them is the version of its format.
     const std::string title             = "squeal sweep";
-    constexpr int     version_of_format = 3;
+    constexpr int     version_of_format = 4;
 
     constexpr const char *csv_header =
       "line [-],mu [-],frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-]\n";
 
-    /// Stands before every record.
+    /// Stands before every record: the size and checksum of what follows, the size of its packed part, that part, the entries of a block.
     struct Head
     {
       std::uint64_t size = 0, checksum = 0;
@@ -41,6 +42,12 @@ namespace Squeal
     std::string_view as_text(const std::vector<char> &record)
     {
       return {record.data(), record.size()};
+    }
+
+    template <typename Object>
+    std::string_view bytes_of(const Object &object)
+    {
+      return {reinterpret_cast<const char *>(&object), sizeof(object)};
     }
 
     /// As many as a Table has on disk.
@@ -68,24 +75,24 @@ namespace Squeal
     return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
   }
 
-  /// A block of the basis of a part, or one of its results.
+  /// A block of the basis of a part, whose entries follow, or one of its results.
   struct ChartCheckpoint::Record
   {
-    std::string part;
-    int         n_blocks; ///< of the part before it, on which it rests
-    DenseMatrix block;    ///< all rows; empty for a result
-    int         line;
-    ChartPoint  point;
+    std::string  part;
+    int          n_blocks;      ///< of the part before it, on which it rests
+    Eigen::Index rows, columns; ///< of the block, all rows; none for a result
+    int          line;
+    ChartPoint   point;
 
     bool is_block() const
     {
-      return block.cols() > 0;
+      return columns > 0;
     }
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &part &n_blocks &block &line &point;
+      archive &part &n_blocks &rows &columns &line &point;
     }
   };
 
@@ -111,7 +118,7 @@ namespace Squeal
 
     void keep(const OperatingPoint &point, const ChartPoint &result) override
     {
-      checkpoint.on_root([&] { checkpoint.append({name, contents.n_blocks, DenseMatrix(), point.line, result}); });
+      checkpoint.on_root([&] { checkpoint.append({name, contents.n_blocks, 0, 0, point.line, result}, nullptr); });
     }
 
     std::vector<MultiVector> basis() const override
@@ -125,8 +132,12 @@ namespace Squeal
 
     void keep(const MultiVector &block) override
     {
-      DenseMatrix all = gather(block);
-      checkpoint.on_root([&] { checkpoint.append({name, contents.n_blocks, std::move(all), 0, {}}); });
+      // A process that has all rows needs no copy of them
+      const bool        is_alone = rows.n_processes() == 1;
+      const DenseMatrix all      = is_alone ? DenseMatrix() : gather(block);
+      checkpoint.on_root([&] {
+        checkpoint.append({name, contents.n_blocks, rows.n(), block.n_columns(), 0, {}}, is_alone ? block.local().data() : all.data());
+      });
     }
 
   private:
@@ -234,12 +245,17 @@ namespace Squeal
           throw fs::filesystem_error("read", archive, std::make_error_code(std::errc::io_error));
         if (checksum(as_text(packed)) != head.checksum)
           continue;
-        Record    record   = dealii::Utilities::unpack<Record>(packed, false);
-        Contents &contents = parts[record.part];
-        is_complete        = is_complete && record.n_blocks == contents.n_blocks;
+        std::uint64_t size_of_packed;
+        std::memcpy(&size_of_packed, packed.data(), sizeof(size_of_packed));
+        const auto begin = packed.cbegin() + sizeof(size_of_packed), entries = begin + static_cast<std::ptrdiff_t>(size_of_packed);
+        Record     record   = dealii::Utilities::unpack<Record>(begin, entries, false);
+        Contents  &contents = parts[record.part];
+        is_complete         = is_complete && record.n_blocks == contents.n_blocks;
         if (record.is_block())
           {
-            contents.blocks.push_back(std::move(record.block));
+            DenseMatrix block(record.rows, record.columns);
+            std::memcpy(block.data(), &*entries, block.size() * sizeof(double));
+            contents.blocks.push_back(std::move(block));
             ++contents.n_blocks;
           }
         else
@@ -249,7 +265,7 @@ namespace Squeal
     return is_complete;
   }
 
-  void ChartCheckpoint::append(const Record &record)
+  void ChartCheckpoint::append(const Record &record, const double *block)
   {
     if (!is_begun)
       {
@@ -260,15 +276,18 @@ namespace Squeal
         is_begun = true;
       }
     const std::vector<char> packed = dealii::Utilities::pack(record, false);
-    const Head              head{packed.size(), checksum(as_text(packed))};
+    const std::string_view  entries{reinterpret_cast<const char *>(block), record.rows * record.columns * sizeof(double)};
+    const std::uint64_t     size_of_packed = packed.size();
+    const Head              head{sizeof(size_of_packed) + packed.size() + entries.size(),
+                    checksum(entries, checksum(as_text(packed), checksum(bytes_of(size_of_packed))))};
     fs::resize_file(archive, end); // what an attempt that failed has left
     // The disk may take longer for a point than the model: a loss of power costs what the last second has found
     const auto   now     = std::chrono::steady_clock::now();
     const OnDisk on_disk = record.is_block() || now - last_on_disk > std::chrono::seconds(1) ? OnDisk::now : OnDisk::later;
     if (on_disk == OnDisk::now)
       last_on_disk = now;
-    append_to_file(archive, {{reinterpret_cast<const char *>(&head), sizeof(head)}, as_text(packed)}, on_disk);
-    end += sizeof(head) + packed.size();
+    append_to_file(archive, {bytes_of(head), bytes_of(size_of_packed), as_text(packed), entries}, on_disk);
+    end += sizeof(head) + head.size;
     if (record.is_block())
       ++parts[record.part].n_blocks;
     else

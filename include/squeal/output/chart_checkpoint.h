@@ -77,8 +77,8 @@ namespace Squeal
 
     // On process 0 only:
     void open();
-    bool read(); ///< whether no block is missing on which others rest
-    void append(const Record &record);
+    bool read();                                            ///< whether no block is missing on which others rest
+    void append(const Record &record, const double *block); ///< the entries of a block are written from where they lie
 
     const std::string                     folder, identity;
     const std::filesystem::path           archive;
