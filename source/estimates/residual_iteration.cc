@@ -167,7 +167,7 @@ namespace Squeal
       return {};
     MultiVector X = compress(M, model, selected(all, columns));
     if (!model.is_restricted())
-      return orthonormalize_if_any(M, &model.basis(), std::move(X), dependence_tolerance, nullptr, Projection::done);
+      return orthonormalize_if_any(M, &model.basis(), std::move(X), dependence_tolerance, nullptr, FirstProjection::done);
     auto result = orthonormalize_if_any(M, nullptr, std::move(X), dependence_tolerance);
     if (result)
       remove_basis(M, model, *result);

@@ -68,13 +68,13 @@ namespace Squeal
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
-    std::optional<MultiVector> orthonormal_axes(const SparseMatrix &M,
-                                                const MultiVector  *Q,
-                                                MultiVector         X,
-                                                const double        tolerance,
-                                                const Scaling       scaling,
-                                                const Projection    projection,
-                                                PrincipalAxes      *axes)
+    std::optional<MultiVector> orthonormal_axes(const SparseMatrix   &M,
+                                                const MultiVector    *Q,
+                                                MultiVector           X,
+                                                const double          tolerance,
+                                                const Scaling         scaling,
+                                                const FirstProjection projection,
+                                                PrincipalAxes        *axes)
     {
       // A Gram matrix resolves directions down to the square root of the
       // rounding unit; with this ratio per pass they still come out accurate.
@@ -128,7 +128,7 @@ namespace Squeal
         project(*remaining);
         pairs = common_eigenpairs(communicator, weighted_gram(*remaining, M));
       };
-      if (Q != nullptr && projection == Projection::wanted)
+      if (Q != nullptr && projection == FirstProjection::wanted)
         project_remaining();
 
       while (remaining)
@@ -180,12 +180,12 @@ namespace Squeal
     }
   } // namespace
 
-  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix &M,
-                                                   const MultiVector  *Q,
-                                                   MultiVector         X,
-                                                   const double        tolerance,
-                                                   PrincipalAxes      *axes,
-                                                   const Projection    projection)
+  std::optional<MultiVector> orthonormalize_if_any(const SparseMatrix   &M,
+                                                   const MultiVector    *Q,
+                                                   MultiVector           X,
+                                                   const double          tolerance,
+                                                   PrincipalAxes        *axes,
+                                                   const FirstProjection projection)
   {
     return orthonormal_axes(M, Q, std::move(X), tolerance, Scaling::unit_norm, projection, axes);
   }
@@ -202,7 +202,7 @@ namespace Squeal
 
   MultiVector principal_axes(const SparseMatrix &M, const MultiVector &X, const double tolerance, const int maximum, PrincipalAxes *axes)
   {
-    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, Projection::wanted, axes);
+    const std::optional<MultiVector> W = orthonormal_axes(M, nullptr, X, tolerance, Scaling::none, FirstProjection::wanted, axes);
     if (!W)
       throw SolverError("all " + std::to_string(X.n_columns()) + " vectors are zero", "proper orthogonal decomposition",
                         "give other vectors");

@@ -203,7 +203,7 @@ namespace Squeal
       return {};
     // First, so that what is left is not compared with what they have in the basis
     remove_basis(*system.mass, model, *responses);
-    return orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, Projection::done);
+    return orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
   }
 
   std::optional<MultiVector> ChartModel::vectors_of_member(const std::vector<ProjectedResiduals::ModesAt> &sets) const

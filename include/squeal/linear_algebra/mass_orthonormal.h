@@ -15,7 +15,7 @@ namespace Squeal
   };
 
   /// Whether vectors still have parts in the span of those against which they are orthonormalised.
-  enum class Projection
+  enum class FirstProjection
   {
     wanted,
     done ///< beforehand, in two passes
@@ -44,7 +44,7 @@ namespace Squeal
                                                    MultiVector         X,
                                                    double              tolerance,
                                                    PrincipalAxes      *axes       = nullptr,
-                                                   Projection          projection = Projection::wanted);
+                                                   FirstProjection     projection = FirstProjection::wanted);
 
   /// The same where at least one direction must be left; throws SolverError otherwise.
   MultiVector orthonormalize(const SparseMatrix &M, const MultiVector *Q, MultiVector X, double tolerance, PrincipalAxes *axes = nullptr);
