@@ -4,6 +4,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/interruption.h>
 #include <squeal/base/mpi_environment.h>
+#include <squeal/base/resident_memory.h>
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/linear_algebra/blas_kernels.h>
@@ -139,6 +140,7 @@ Decides whether a disc rubbed by friction pins squeals.
 
 int main(int argc, char **argv)
 {
+  Squeal::return_freed_blocks();
   Squeal::ignore_again(); // before the program starts itself again, perhaps
   Squeal::use_native_blas_kernels(argv);
   Squeal::prepare_mpi_environment();

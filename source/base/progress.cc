@@ -1,4 +1,5 @@
 #include <squeal/base/progress.h>
+#include <squeal/base/resident_memory.h>
 
 #include <sys/resource.h>
 
@@ -90,6 +91,7 @@ namespace Squeal
     if (stream != nullptr)
       *stream << (live ? erase_line : "") << line_start(current, cost.seconds) << (summary.empty() ? "" : "   ") << summary << std::endl;
     current.clear();
+    return_freed_memory();
     return cost;
   }
 

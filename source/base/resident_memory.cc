@@ -31,9 +31,22 @@ namespace Squeal
     return status("VmHWM");
   }
 
-  bool reset_peak_memory()
+  void return_freed_blocks()
+  {
+    constexpr int large = 32 << 20; // the largest threshold that the allocator takes [byte]
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_MMAP_MAX, 65536);
+    mallopt(M_TRIM_THRESHOLD, 8 * large);
+  }
+
+  void return_freed_memory()
   {
     malloc_trim(0);
+  }
+
+  bool reset_peak_memory()
+  {
+    return_freed_memory();
     // 5: the peak of the resident memory becomes what is resident now, proc(5)
     std::ofstream stream("/proc/self/clear_refs");
     stream << 5 << std::flush;

@@ -66,10 +66,10 @@ namespace Squeal
     return result;
   }
 
-  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references,
-                                  const SparseMatrix                        &mass,
-                                  const MultiVector                         &real_part,
-                                  const MultiVector                         *imaginary_part)
+  std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
+                                        const SparseMatrix                        &mass,
+                                        const MultiVector                         &real_part,
+                                        const MultiVector                         *imaginary_part)
   {
     const int         n_modes = real_part.n_columns();
     const MultiVector M_re    = mass * real_part;
@@ -78,7 +78,7 @@ namespace Squeal
     const std::vector<double> norm_re = column_products(real_part, M_re),
                               norm_im = imaginary_part ? column_products(*imaginary_part, M_im) : std::vector<double>(n_modes, 0.);
 
-    std::vector<std::map<ModeShape, double>> shares(n_modes);
+    std::vector<ShapeShares> shares(n_modes);
     for (const ComponentModes *reference : references)
       if (reference->vectors)
         {
@@ -87,6 +87,12 @@ namespace Squeal
             for (int i = 0; i < re.rows(); ++i)
               shares[j][reference->labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
         }
+    return shares;
+  }
+
+  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references, const std::vector<ShapeShares> &shares)
+  {
+    const int n_modes = static_cast<int>(shares.size());
 
     // A label is given to no more modes than there are component modes of it
     std::vector<ModeLabel> names;

@@ -1,4 +1,5 @@
 #include <squeal/estimates/conditioning.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -107,16 +108,29 @@ namespace Squeal
       });
     }
 
-    /// γ of each vector.
-    std::vector<double> cancellations(const SparseMatrix &K, const MultiVector &X, const MultiVector &KX)
+    /// |φ|ᵀ |K| |φ| of each mode.
+    std::vector<double> sums_of_moduli(const SparseMatrix &K, const ComplexModes &modes)
     {
-      const int   k = X.n_columns() / 2;
-      MultiVector size(X.map(), k, false);
-      size.local()             = (X.local().leftCols(k).array().square() + X.local().rightCols(k).array().square()).sqrt().matrix();
-      const auto          sums = column_products(size, *moduli(K) * size), energies = complex_products(X, KX);
+      const auto          K_moduli = moduli(K);
       std::vector<double> result;
-      for (int j = 0; j < k; ++j)
-        result.push_back(sums[j] / std::abs(energies[j]));
+      for_column_blocks(static_cast<int>(modes.lambda.size()), [&](const int first, const int n) {
+        const MultiVector re = view(*modes.real_part, first, n), im = view(*modes.imaginary_part, first, n);
+        MultiVector       size(re.map(), n, false);
+        size.local()    = (re.local().array().square() + im.local().array().square()).sqrt().matrix();
+        const auto sums = column_products(size, *K_moduli * size);
+        result.insert(result.end(), sums.begin(), sums.end());
+      });
+      return result;
+    }
+
+    /// [Re Φ, Im Φ]ᵀ A [Re Φ, Im Φ].
+    DenseMatrix products_of_halves(const ComplexModes &modes, const SparseMatrix &A)
+    {
+      const MultiVector &re = *modes.real_part, &im = *modes.imaginary_part;
+      const Eigen::Index k     = re.n_columns();
+      const DenseMatrix  mixed = weighted_gram(re, A, im);
+      DenseMatrix        result(2 * k, 2 * k);
+      result << weighted_gram(re, A), mixed, mixed.transpose(), weighted_gram(im, A);
       return result;
     }
 
@@ -224,9 +238,11 @@ namespace Squeal
     if (modes.lambda.empty())
       return result;
 
-    const MultiVector         X = join({modes.real_part.get(), modes.imaginary_part.get()}), KX = *system.stiffness * X;
-    const std::vector<double> gamma     = cancellations(*system.stiffness, X, KX);
-    std::tie(result.modes, result.span) = conditions(modes.lambda, gram(X, KX), gram(X, M * X));
+    const DenseMatrix   stiffness = products_of_halves(modes, *system.stiffness);
+    std::vector<double> gamma     = sums_of_moduli(*system.stiffness, modes);
+    for (Eigen::Index j = 0, k = stiffness.rows() / 2; j < k; ++j)
+      gamma[j] /= stiffness(j, j) + stiffness(k + j, k + j);
+    std::tie(result.modes, result.span) = conditions(modes.lambda, stiffness, products_of_halves(modes, M));
     result.largest_cancellation         = *std::max_element(gamma.begin(), gamma.end());
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
       {

@@ -3,7 +3,7 @@
 #include <squeal/bases/near_null_space.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/iterative_inverse.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 #include <squeal/studies/frictionless_modes.h>
 
 #include <algorithm>
@@ -100,12 +100,22 @@ namespace Squeal
     add_modal_damping(modes.linearisation.coupled, vectors, eigenvalues, ratios);
   }
 
+  std::vector<ShapeShares> FrictionlessModes::shape_shares(const MultiVector &real_part, const MultiVector *imaginary_part) const
+  {
+    const SparseMatrix      &T_c = *linearisation.coupled.kernel;
+    std::vector<ShapeShares> result;
+    for_column_blocks(real_part.n_columns(), [&](const int first, const int n) {
+      const MultiVector                u_re = T_c * view(real_part, first, n);
+      const std::optional<MultiVector> u_im = imaginary_part ? std::optional(T_c * view(*imaginary_part, first, n)) : std::nullopt;
+      const auto some = Squeal::shape_shares(references(), *linearisation.scene->system.mass, u_re, u_im ? &*u_im : nullptr);
+      result.insert(result.end(), some.begin(), some.end());
+    });
+    return result;
+  }
+
   std::vector<ModeLabel> FrictionlessModes::identify(const MultiVector &real_part, const MultiVector *imaginary_part) const
   {
-    const SparseMatrix &T_c  = *linearisation.coupled.kernel;
-    const MultiVector   u_re = T_c * real_part;
-    const MultiVector   u_im = imaginary_part ? T_c * *imaginary_part : u_re;
-    return Squeal::identify({&disc, &pins_sliding}, *linearisation.scene->system.mass, u_re, imaginary_part ? &u_im : nullptr);
+    return Squeal::identify(references(), shape_shares(real_part, imaginary_part));
   }
 
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, const double shift)

@@ -31,7 +31,8 @@ namespace Squeal
       const MultiVector      u    = *frictionless.linearisation.coupled.kernel * *modes.real_part;
       std::vector<ModeLabel> labels;
       for (int j = 0; j < u.n_columns(); ++j)
-        labels.push_back(identify({&frictionless.pins_sliding}, mass, view(u, j, 1), nullptr).front());
+        labels.push_back(
+          identify({&frictionless.pins_sliding}, shape_shares({&frictionless.pins_sliding}, mass, view(u, j, 1), nullptr)).front());
       return labels;
     }
 

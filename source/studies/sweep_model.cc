@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/sweep_model.h>
 #include <squeal/tracking/mode_links.h>
@@ -94,8 +95,13 @@ namespace Squeal
 
   std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
   {
-    const auto [re, im] = shapes(point, modes);
-    return frictionless.identify(re, &im);
+    std::vector<ShapeShares> shares;
+    for_column_blocks(static_cast<int>(modes.size()), [&](const int first, const int n) {
+      const auto [re, im] = shapes(point, {modes.begin() + first, modes.begin() + first + n});
+      const auto some     = frictionless.shape_shares(re, &im);
+      shares.insert(shares.end(), some.begin(), some.end());
+    });
+    return identify(frictionless.references(), shares);
   }
 
   Linearisation SweepModel::linearisation_at(const double friction_coefficient) const

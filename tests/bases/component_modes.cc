@@ -296,7 +296,7 @@ namespace
 
     std::vector<ModeLabel> identities(const MultiVector &re, const MultiVector *im = nullptr) const
     {
-      return identify({&disc, &pins}, *s.system.mass, re, im);
+      return identify({&disc, &pins}, shape_shares({&disc, &pins}, *s.system.mass, re, im));
     }
   };
 } // namespace

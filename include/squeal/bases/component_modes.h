@@ -5,6 +5,8 @@
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/system/terms.h>
 
+#include <map>
+
 namespace Squeal
 {
   /// Normal modes of the disc, or of the whole set of pins, on the uncoupled dofs.
@@ -36,6 +38,22 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
+  /// Part of each shape of component modes in a mode: |v_iᵀ M φ|² / φᴴ M φ, summed over the v_i of the shape [-].
+  using ShapeShares = std::map<ModeShape, double>;
+
+  /**
+   * Those of real or complex modes.
+   *
+   * @param references     disc modes with contact free, pin modes with contact sliding
+   * @param mass           M of the uncoupled bodies
+   * @param real_part      n_free × k
+   * @param imaginary_part n_free × k; null for real modes
+   */
+  std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
+                                        const SparseMatrix                        &mass,
+                                        const MultiVector                         &real_part,
+                                        const MultiVector                         *imaginary_part);
+
   /**
    * Identities of real or complex coupled modes by their M-inner products with
    * component modes; those of one shape (a doublet, the F1 modes of all
@@ -45,13 +63,7 @@ namespace Squeal
    * sum of all participations is largest and none is given more often than there are
    * component modes of it. A participation below a tenth gives no name.
    *
-   * @param references  disc modes with contact free, pin modes with contact sliding
-   * @param mass        M of the uncoupled bodies
-   * @param real_part   n_free × k
-   * @param imaginary_part n_free × k; null for real modes
+   * @param references those of the @p shares, one for each mode
    */
-  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references,
-                                  const SparseMatrix                        &mass,
-                                  const MultiVector                         &real_part,
-                                  const MultiVector                         *imaginary_part);
+  std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references, const std::vector<ShapeShares> &shares);
 } // namespace Squeal

@@ -16,7 +16,7 @@ namespace Squeal
   template <typename Function>
   void for_column_blocks(const int n_columns, const Function &f)
   {
-    constexpr int width = 64;
+    constexpr int width = 32;
     for (int first = 0; first < n_columns; first += width)
       f(first, std::min(width, n_columns - first));
   }

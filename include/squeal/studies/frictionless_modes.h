@@ -22,6 +22,15 @@ namespace Squeal
     Cost                            factorisation, solution; ///< of the inverse, and of the real modes
     std::vector<ModeLabel>          labels;                  ///< of the coupled modes
 
+    /// Component modes that give coupled ones their names.
+    std::vector<const ComponentModes *> references() const
+    {
+      return {&disc, &pins_sliding};
+    }
+
+    /// What coupled modes have of them; @p imaginary_part may be null.
+    std::vector<ShapeShares> shape_shares(const MultiVector &real_part, const MultiVector *imaginary_part) const;
+
     /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
     std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
   };
