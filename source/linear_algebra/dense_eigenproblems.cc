@@ -56,8 +56,11 @@ namespace Squeal
     SingularValues result{std::vector<double>(k), DenseMatrix::Identity(n, n)};
     if (k == 0)
       return result;
-    DenseMatrix left(m, m);
-    check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, 'A', m, n, A.data(), m, result.values.data(), left.data(), m, result.right.data(), n),
+    // All of V, of the left vectors no more than that takes
+    const bool  is_tall = m >= n;
+    DenseMatrix left(m, is_tall ? n : m);
+    check_lapack(LAPACKE_dgesdd(LAPACK_COL_MAJOR, is_tall ? 'S' : 'A', m, n, A.data(), m, result.values.data(), left.data(), m,
+                                result.right.data(), n),
                  "dgesdd");
     result.right.transposeInPlace();
     return result;

@@ -12,6 +12,9 @@ namespace Squeal
 {
   namespace
   {
+    /// Part of a step below which another one is half of it, up to rounding errors.
+    constexpr double half_width = 0.5 + 1e-6;
+
     void insert(TrackedModes &modes, const EvaluateChart &evaluate, const std::vector<double> &values, const bool refines)
     {
       if (values.empty())
@@ -30,10 +33,10 @@ namespace Squeal
           modes.is_refinement.insert(modes.is_refinement.begin() + k, refines);
           if (k > 0 && k + 1 < modes.n_points())
             {
-              const int  stalls      = modes.intervals[k - 1].stalls + 1;
-              const bool left_halved = modes.width(k - 1) <= modes.width(k);
-              modes.intervals[k - 1] = {std::nullopt, left_halved ? 0 : stalls};
-              modes.intervals.insert(modes.intervals.begin() + k, {std::nullopt, left_halved ? stalls : 0});
+              const int    stalls    = modes.intervals[k - 1].stalls + 1;
+              const double half      = half_width * (modes.width(k - 1) + modes.width(k));
+              modes.intervals[k - 1] = {std::nullopt, modes.width(k - 1) <= half ? 0 : stalls};
+              modes.intervals.insert(modes.intervals.begin() + k, {std::nullopt, modes.width(k) <= half ? 0 : stalls});
             }
           else if (modes.n_points() > 1)
             modes.intervals.emplace_back();

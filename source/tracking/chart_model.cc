@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -21,17 +22,52 @@ namespace Squeal
     constexpr double compression_tolerance = 0.02;
 
     /// Part of the largest principal axis of some vectors below which one is left out.
-    constexpr double least_axis = 1e-7;
+    constexpr double least_axis = 1e-6;
 
     /// Orthonormal basis of the span of the columns of X, a few.
     DenseMatrix principal_columns(const DenseMatrix &X)
     {
-      const auto [squares, axes] = symmetric_eigenpairs(X.transpose() * X); // ascending
-      const double limit         = least_axis * least_axis * squares.back();
-      const auto   first         = std::lower_bound(squares.begin(), squares.end(), limit) - squares.begin();
+      const auto [sizes, axes] = singular_values(X); // descending
+      const auto n             = std::upper_bound(sizes.begin(), sizes.end(), least_axis * sizes.front(), std::greater<>()) - sizes.begin();
       // The small ones have lost their orthogonality
-      return orthonormal_columns(X * axes.rightCols(static_cast<Eigen::Index>(squares.size()) - first));
+      return orthonormal_columns(X * axes.leftCols(n));
     }
+
+    /// λ of a mode, or those of two by their mean and (λ_1 − λ_2)², which are smooth where the two coalesce.
+    struct LambdaPair
+    {
+      std::complex<double> mean, square;
+
+      LambdaPair(const std::complex<double> &mean, const std::complex<double> &square)
+        : mean(mean)
+        , square(square)
+      {}
+
+      explicit LambdaPair(const ModesAtPoint &at)
+        : LambdaPair(as_column(at.point->lambda)(at.modes).mean(),
+                     std::pow(at.point->lambda[at.modes.front()] - at.point->lambda[at.modes.back()], 2))
+      {}
+
+      LambdaPair towards(const LambdaPair &other, const double t) const
+      {
+        return {(1. - t) * mean + t * other.mean, (1. - t) * square + t * other.square};
+      }
+
+      /// The values next to these become the first ones: a small basis has others, too, which may be close to the mean.
+      void bring_to_front(std::vector<std::complex<double>> &values) const
+      {
+        auto place = values.begin();
+        for (const double sign : {1., -1.})
+          if (place != values.end())
+            {
+              const auto expected = mean + 0.5 * sign * std::sqrt(square);
+              std::iter_swap(place, std::min_element(place, values.end(), [&](const auto &x, const auto &y) {
+                               return std::abs(x - expected) < std::abs(y - expected);
+                             }));
+              ++place;
+            }
+      }
+    };
   } // namespace
 
   ChartModel::ChartModel(const CoupledSystem  &system,
@@ -123,10 +159,9 @@ namespace Squeal
         X = append_columns(X, halves(with_rows((*vectors)(Eigen::all, modes), model.size())));
     const ReducedModel small = model.restricted(principal_columns(X));
 
-    const double               a = first.friction_coefficient, b = second.friction_coefficient;
-    const auto                 mean   = [](const ModesAtPoint &at) { return as_column(at.point->lambda)(at.modes).mean(); };
-    const std::complex<double> before = mean(search.first), after = mean(search.second);
-    const auto                 value = [&](const double mu) {
+    const double     a = first.friction_coefficient, b = second.friction_coefficient;
+    const LambdaPair before(search.first), after(search.second);
+    const auto       value = [&](const double mu) {
       const double    t = (mu - a) / (b - a);
       ParameterValues others;
       for (const auto &[name, numbers] : first.values)
@@ -139,9 +174,7 @@ namespace Squeal
         local_reduced_modes(small, system.at(mu, others), (1. + margin) * largest_circular_frequency).lambda;
       if (lambda.size() < search.first.modes.size())
         return std::numeric_limits<double>::quiet_NaN();
-      const auto expected = (1. - t) * before + t * after;
-      std::sort(lambda.begin(), lambda.end(),
-                                [&](const auto &x, const auto &y) { return std::abs(x - expected) < std::abs(y - expected); });
+      before.towards(after, t).bring_to_front(lambda);
       switch (search.function)
         {
           case ModeFunction::growth:

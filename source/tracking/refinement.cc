@@ -16,12 +16,25 @@ namespace Squeal
     constexpr double remaining = 0.3;
     /// What coupling adds to the difference of two λ, over that difference, below which they do not interact.
     constexpr double interacting = 0.1;
+    /// |Re (λ_1 − λ_2)| / |Im (λ_1 − λ_2)| from which two modes do not meet: their growth rates tell them apart.
+    constexpr double other_growth = 0.5;
     /// Part of a step within which several approaches are looked at once.
     constexpr double one_look = 0.2;
     /// Steps of a search that may halve less than the interval before it is halved.
     constexpr int patience = 2;
     /// Steps of a search that a prediction may miss before the interval is halved; each has two values.
     constexpr int most_predictions = 5;
+
+    /// Whether a step has to be divided before a mode at its end can be told from others.
+    bool is_tangled(const TrackedModes &modes, const int k, const int branch)
+    {
+      if (modes.width(k) <= modes.options.smallest_step)
+        return false;
+      const std::vector<ModeBlock> &blocks = modes.intervals[k].links->blocks;
+      return std::any_of(blocks.begin(), blocks.end(), [&](const ModeBlock &block) {
+        return !block.resolved && std::find(block.first.begin(), block.first.end(), modes.mode(branch, k)) != block.first.end();
+      });
+    }
 
     bool located(const TrackedModes &modes, const EventSearch &search)
     {
@@ -225,10 +238,12 @@ namespace Squeal
           for (int q = 0; q < p; ++q)
             if (modes.mode(q, k) >= 0 && modes.mode(q, k + 1) >= 0)
               {
-                const double x = before.imag() - modes.lambda(q, k).imag(), y = after.imag() - modes.lambda(q, k + 1).imag(),
-                             size = before.imag();
-                if (x * y > 0. && std::max(std::abs(x), std::abs(y)) < nearby * size &&
-                    std::min(std::abs(x), std::abs(y)) > indistinguishable * size)
+                const Complex x = before - modes.lambda(q, k), y = after - modes.lambda(q, k + 1);
+                const double  size = before.imag(), nearest = std::min(std::abs(x.imag()), std::abs(y.imag())),
+                             farthest = std::max(std::abs(x.imag()), std::abs(y.imag()));
+                const auto may_meet   = [](const Complex &d) { return std::abs(d.real()) < other_growth * std::abs(d.imag()); };
+                if (x.imag() * y.imag() > 0. && farthest < nearby * size && nearest > indistinguishable * size && may_meet(x) &&
+                    may_meet(y))
                   look({EventSearch::coalescence, k, p, q, true});
               }
         }
@@ -258,7 +273,7 @@ namespace Squeal
       return {};
     std::vector<double> wanted;
     for (const EventSearch &search : searches)
-      if (!located(modes, search))
+      if (!located(modes, search) && !is_tangled(modes, search.interval, search.branch))
         {
           const auto predicted = predictions(modes, search, predict);
           wanted.insert(wanted.end(), predicted.begin(), predicted.end());

@@ -591,6 +591,32 @@ TEST(Branches, PinsAndDisc)
       EXPECT_EQ(fine.n_doubtful_steps, 0);
       EXPECT_EQ(coarse.branches.size(), 40u);
       expect_same(coarse, fine, 2e-8);
+
+      // Rounding errors and phases of another processor lead to the same points
+      std::mt19937 other(6);
+      family.disturb = [&](ChartPoint &point) {
+        std::uniform_real_distribution<double> any(-1., 1.);
+        Complex                                before, noise;
+        for (std::size_t j = 0; j < point.lambda.size(); ++j)
+          {
+            // Without damping λ² comes from a real matrix: both of R ± iω have one ω
+            const bool is_second = damping == 0. && j > 0 && point.lambda[j].real() == -before.real() && before.real() != 0.;
+            before               = point.lambda[j];
+            noise                = is_second ? -std::conj(noise) : 1e-14 * Complex(damping > 0. ? any(other) : 0., any(other));
+            point.lambda[j] += std::abs(point.lambda[j]) * noise;
+            for (ComplexDenseMatrix *vectors : {&point.right, &point.left})
+              {
+                vectors->col(j) *= std::polar(1., 3. * any(other));
+                for (int i = 0; i < n; ++i)
+                  (*vectors)(i, j) += 1e-13 * Complex(any(other), any(other));
+              }
+          }
+      };
+      const StabilityChart disturbed = family.chart(uniform_grid(0., 1., 20), precise(10., 1e-8));
+      ASSERT_EQ(disturbed.points.size(), coarse.points.size());
+      for (std::size_t k = 0; k < coarse.points.size(); ++k)
+        EXPECT_NEAR(disturbed.points[k].friction_coefficient, coarse.points[k].friction_coefficient, 1e-8);
+      expect_same(coarse, disturbed, 1e-8);
     }
 }
 
