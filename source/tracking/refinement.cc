@@ -112,6 +112,17 @@ namespace Squeal
       return result;
     }
 
+    /// Whether two modes lie beyond the band all along a step: what they do there is nobody's concern.
+    bool are_beyond(const TrackedModes &modes, const int k, const int p, const int q)
+    {
+      const double limit = modes.options.largest_circular_frequency;
+      for (const int branch : {p, q})
+        for (const int point : {k, k + 1})
+          if (modes.lambda(branch, point).imag() <= limit)
+            return false;
+      return true;
+    }
+
     /**
      * Where branches that change places in a step would meet if they interact.
      * With λ_a diagonal and B = X Λ_b X⁻¹ for Φ_b = Φ_a X, the 2 × 2 problem is linear
@@ -126,7 +137,8 @@ namespace Squeal
       for (std::size_t p = 0; p < modes.branches.size(); ++p)
         for (std::size_t q = 0; q < p; ++q)
           {
-            if (modes.mode(p, k) < 0 || modes.mode(q, k) < 0 || modes.mode(p, k + 1) < 0 || modes.mode(q, k + 1) < 0)
+            if (modes.mode(p, k) < 0 || modes.mode(q, k) < 0 || modes.mode(p, k + 1) < 0 || modes.mode(q, k + 1) < 0 ||
+                are_beyond(modes, k, p, q))
               continue;
             const Complex before = modes.lambda(p, k) - modes.lambda(q, k), after = modes.lambda(p, k + 1) - modes.lambda(q, k + 1);
             const double  size = std::abs(modes.lambda(p, k)), least = indistinguishable * size;
@@ -236,7 +248,7 @@ namespace Squeal
           if (modes.verdict(p, k) == Verdict::stable && modes.verdict(p, k + 1) == Verdict::stable)
             look({EventSearch::growth, k, p, -1, true});
           for (int q = 0; q < p; ++q)
-            if (modes.mode(q, k) >= 0 && modes.mode(q, k + 1) >= 0)
+            if (modes.mode(q, k) >= 0 && modes.mode(q, k + 1) >= 0 && !are_beyond(modes, k, p, q))
               {
                 const Complex x = before - modes.lambda(q, k), y = after - modes.lambda(q, k + 1);
                 const double  size = before.imag(), nearest = std::min(std::abs(x.imag()), std::abs(y.imag())),
