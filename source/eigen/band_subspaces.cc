@@ -1,8 +1,11 @@
 #include <squeal/eigen/band_subspaces.h>
 #include <squeal/linear_algebra/dense_lu.h>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 namespace Squeal
@@ -13,11 +16,18 @@ namespace Squeal
     constexpr double largest_part = 0.6;
     /// Ratio of the squares of the frequencies on either side of the gap from which the steps are few.
     constexpr double narrowest_gap = 1.2;
-    /// Norm, in coordinates of unit modes, of what the last step may leave.
-    constexpr double error_left = 1e-12;
+    /// Norm, in coordinates of unit modes, of what the last step should leave, and of what it may leave where rounding allows no more.
+    /// Friction carries what is left in high modes into residuals of low ones.
+    constexpr double error_wanted = 1e-13, error_allowed = 1e-12;
     constexpr int    most_steps = 24;
-    /// A step has to be shorter than this part of the one before.
+    /// A step that is not shorter than this part of the one before may consist of rounding errors.
     constexpr double contraction = 0.7;
+    /// Over the first step, from where steps lead nowhere.
+    constexpr double hopeless_growth = 10.;
+    /// Steps that the next one may combine.
+    constexpr std::size_t most_remembered = 3;
+    /// Least eigenvalue of a matrix with ones on its diagonal that rounding errors cannot have made positive.
+    constexpr double least_definite = 1e-6;
     /// Bound on ‖Z^m‖ that leaves rounding errors of the powers their room, and number of squarings.
     constexpr double proof          = 0.9;
     constexpr int    most_squarings = 8;
@@ -40,22 +50,64 @@ namespace Squeal
       return result;
     }
 
-    /// X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge.
+    /**
+     * X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge. Each step also takes the combination
+     * of the last few that would have left the least (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
+     */
     template <typename Residual, typename Divided>
     bool solve_step_by_step(DenseMatrix &X, const Residual &residual, const Divided &divided)
     {
-      double before = 0.;
+      std::deque<DenseMatrix> steps, changes;       // differences of successive steps, and what X changed by less that of the step
+      DenseMatrix             last_step, last_X, G; // G: of the differences
+      const auto              inner  = [](const DenseMatrix &A, const DenseMatrix &B) { return A.cwiseProduct(B).sum(); };
+      double                  before = 0., first = 0.;
       for (int i = 0; i < most_steps; ++i)
         {
-          const DenseMatrix step = divided(residual(X));
-          const double      norm = step.norm();
-          if (!(i == 0 || norm < contraction * before))
-            return norm <= error_left;
-          X -= step;
-          // The next one would be as much smaller again
-          if (norm <= error_left || (i > 0 && norm * norm <= error_left * (before - norm)))
+          DenseMatrix  step = divided(residual(X));
+          const double norm = step.norm();
+          if (i == 0)
+            first = norm;
+          // Rounding errors allow no more, or nothing comes closer
+          if (i > 0 && !(norm < contraction * before) && norm <= error_allowed)
             return true;
-          before = norm;
+          if (!(norm <= hopeless_growth * first))
+            return false;
+          // The next one would be as much smaller again
+          if (norm <= error_wanted || (i > 0 && norm < before && norm * norm <= error_wanted * (before - norm)))
+            {
+              X -= step;
+              return true;
+            }
+          if (i > 0)
+            {
+              steps.push_back(step - last_step);
+              changes.push_back(X - last_X - steps.back());
+              if (steps.size() > most_remembered)
+                {
+                  steps.pop_front();
+                  changes.pop_front();
+                }
+            }
+          last_X = X;
+          X -= step;
+          if (!steps.empty())
+            {
+              const auto      n = static_cast<Eigen::Index>(steps.size());
+              Eigen::VectorXd b(n);
+              G = DenseMatrix(G.bottomRightCorner(std::min(n - 1, G.rows()), std::min(n - 1, G.rows())));
+              G.conservativeResize(n, n);
+              for (Eigen::Index p = 0; p < n; ++p)
+                {
+                  b[p]        = inner(steps[p], step);
+                  G(p, n - 1) = G(n - 1, p) = inner(steps[p], steps.back());
+                }
+              const Eigen::VectorXd part = G.ldlt().solve(b);
+              if (part.allFinite())
+                for (Eigen::Index p = 0; p < n; ++p)
+                  X -= part[p] * changes[p];
+            }
+          last_step = std::move(step);
+          before    = norm;
         }
       return false;
     }
@@ -67,8 +119,21 @@ namespace Squeal
       return std::min(std::sqrt(sizes.colwise().sum().maxCoeff() * sizes.rowwise().sum().maxCoeff()), Z.norm());
     }
 
-    /// Whether Re κ > limit for all eigenvalues κ of T, as far as powers of the Cayley transform show.
-    bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
+    /// Whether Re κ > limit for all eigenvalues κ of T, as P (T − limit) + (T − limit)ᵀ P shows, which is positive definite, P = diag(T).
+    bool all_beyond_in_norm(const DenseMatrix &T, const double limit)
+    {
+      const Eigen::VectorXd d = T.diagonal();
+      if (!(d.minCoeff() > limit))
+        return false;
+      // ½ P⁻¹ (...) P⁻¹: friction couples a mode in proportion to the square of its frequency
+      const DenseMatrix scaled = T * d.cwiseInverse().asDiagonal();
+      DenseMatrix       S      = 0.5 * (scaled + scaled.transpose());
+      S.diagonal() -= Eigen::VectorXd(limit * d.cwiseInverse().array() + least_definite);
+      return S.llt().info() == Eigen::Success;
+    }
+
+    /// The same, as far as powers of the Cayley transform show.
+    bool all_beyond_by_powers(const DenseMatrix &T, const double limit, const double scale)
     {
       const Eigen::Index n    = T.rows();
       const DenseMatrix  unit = DenseMatrix::Identity(n, n);
@@ -83,6 +148,11 @@ namespace Squeal
           Z = Z * Z;
         }
       return false;
+    }
+
+    bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
+    {
+      return all_beyond_in_norm(T, limit) || all_beyond_by_powers(T, limit, scale);
     }
 
     /**
@@ -209,61 +279,50 @@ namespace Squeal
     }
   } // namespace
 
-  ModalCoordinates modal_coordinates(const DenseMatrix &stiffness, const DenseMatrix &mass)
-  {
-    auto [values, vectors] = symmetric_eigenpairs(stiffness, mass);
-    DenseMatrix inverse    = vectors.transpose() * mass;
-    return {std::move(values), std::move(vectors), std::move(inverse)};
-  }
-
-  std::optional<BandSubspaces> band_subspaces(const DenseMatrix      &A,
-                                              const ModalCoordinates &coordinates,
-                                              const double            largest_circular_frequency)
+  std::optional<BandSubspaces> band_subspaces(const DenseMatrix         &A,
+                                              const std::vector<double> &squares,
+                                              const double               largest_circular_frequency)
   {
     const double       limit = largest_circular_frequency * largest_circular_frequency;
-    const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(coordinates.values, limit) : 0;
+    const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(squares, limit) : 0;
     if (k == 0)
       return {};
     const Eigen::Index m     = n - k;
-    const auto         w     = as_column(coordinates.values);
-    const DenseMatrix  B     = coordinates.inverse * A * coordinates.vectors;
+    const auto         w     = as_column(squares);
     const DenseMatrix  D     = w.tail(m).replicate(1, k) - w.head(k).transpose().replicate(m, 1);
     const auto         apart = separated(
-              Blocks<DenseMatrix>{B.topLeftCorner(k, k), B.topRightCorner(k, m), B.bottomLeftCorner(m, k), B.bottomRightCorner(m, m)},
+              Blocks<DenseMatrix>{A.topLeftCorner(k, k), A.topRightCorner(k, m), A.bottomLeftCorner(m, k), A.bottomRightCorner(m, m)},
               [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D); },
               [&](const DenseMatrix &R) -> DenseMatrix { return R.cwiseQuotient(D.transpose()); },
               [&](const DenseMatrix &T) { return all_beyond(T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });
     if (!apart)
       return {};
 
-    const auto   &V = coordinates.vectors, &W = coordinates.inverse;
-    BandSubspaces result;
-    result.right = V.leftCols(k) + V.rightCols(m) * apart->X;
-    result.left  = (apart->first * W.topRows(k) + apart->Y * W.bottomRows(m)).transpose();
-    result.small = apart->small;
+    BandSubspaces result{DenseMatrix(n, k), DenseMatrix(n, k), apart->small};
+    result.right << DenseMatrix::Identity(k, k), apart->X;
+    result.left << apart->first.transpose(), apart->Y.transpose();
     return result;
   }
 
-  std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix      &A,
-                                                     const DenseMatrix      &C,
-                                                     const ModalCoordinates &coordinates,
-                                                     const double            largest_circular_frequency)
+  std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix         &A,
+                                                     const DenseMatrix         &C,
+                                                     const std::vector<double> &squares,
+                                                     const double               largest_circular_frequency)
   {
     const double       limit = largest_circular_frequency * largest_circular_frequency;
-    const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(coordinates.values, limit) : 0;
+    const Eigen::Index n = A.rows(), k = std::isfinite(limit) ? modes_of_band(squares, limit) : 0;
     if (k == 0)
       return {};
     const Eigen::Index    m     = n - k;
-    const auto            w     = as_column(coordinates.values);
+    const auto            w     = as_column(squares);
     const Eigen::VectorXd sigma = w.cwiseMax(smallest_part * smallest_part * limit).cwiseSqrt(), s_1 = sigma.head(k), s_2 = sigma.tail(m);
-    const DenseMatrix     K = coordinates.inverse * A * coordinates.vectors, D = coordinates.inverse * C * coordinates.vectors;
     const DenseMatrix     differences = s_2.replicate(1, k) - s_1.transpose().replicate(m, 1),
                       sums            = s_2.replicate(1, k) + s_1.transpose().replicate(m, 1);
     const auto apart                  = separated(
-                       Blocks<CompanionBlock>{CompanionBlock(K.topLeftCorner(k, k), D.topLeftCorner(k, k), s_1, s_1, true).dense(),
-                                              CompanionBlock(K.topRightCorner(k, m), D.topRightCorner(k, m), s_1, s_2, false),
-                                              CompanionBlock(K.bottomLeftCorner(m, k), D.bottomLeftCorner(m, k), s_2, s_1, false).dense(),
-                                              CompanionBlock(K.bottomRightCorner(m, m), D.bottomRightCorner(m, m), s_2, s_2, true)},
+                       Blocks<CompanionBlock>{CompanionBlock(A.topLeftCorner(k, k), C.topLeftCorner(k, k), s_1, s_1, true).dense(),
+                                              CompanionBlock(A.topRightCorner(k, m), C.topRightCorner(k, m), s_1, s_2, false),
+                                              CompanionBlock(A.bottomLeftCorner(m, k), C.bottomLeftCorner(m, k), s_2, s_1, false).dense(),
+                                              CompanionBlock(A.bottomRightCorner(m, m), C.bottomRightCorner(m, m), s_2, s_2, true)},
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences, sums); },
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences.transpose(), -sums.transpose()); },
                        [&](const DenseMatrix &T) { return all_beyond(-T * T, limit, std::sqrt((w[k] - limit) * (w[n - 1] - limit))); });
@@ -271,17 +330,14 @@ namespace Squeal
       return {};
 
     // From coordinates (x, λ x / σ) of the band and of the rest to [φ; λ φ]
-    const auto       &V = coordinates.vectors, &W = coordinates.inverse;
-    const DenseMatrix scaled_V = V * sigma.asDiagonal(), scaled_W = sigma.cwiseInverse().asDiagonal() * W;
-    BandSubspaces     result;
-    result.right = DenseMatrix(2 * n, 2 * k);
-    result.left  = DenseMatrix(2 * n, 2 * k);
-    result.right << V.rightCols(m) * apart->X.topRows(m), scaled_V.rightCols(m) * apart->X.bottomRows(m);
-    result.right.topLeftCorner(n, k) += V.leftCols(k);
-    result.right.bottomRightCorner(n, k) += scaled_V.leftCols(k);
-    result.left << (apart->first.leftCols(k) * W.topRows(k) + apart->Y.leftCols(m) * W.bottomRows(m)).transpose(),
-      (apart->first.rightCols(k) * scaled_W.topRows(k) + apart->Y.rightCols(m) * scaled_W.bottomRows(m)).transpose();
-    result.small = apart->small;
+    const DenseMatrix &X = apart->X, &Y = apart->Y, &first = apart->first;
+    BandSubspaces      result{DenseMatrix::Zero(2 * n, 2 * k), DenseMatrix(2 * n, 2 * k), apart->small};
+    result.right.topLeftCorner(k, k).setIdentity();
+    result.right.middleRows(k, m)             = X.topRows(m);
+    result.right.block(n, k, k, k).diagonal() = s_1;
+    result.right.bottomRows(m)                = s_2.asDiagonal() * X.bottomRows(m);
+    result.left << first.leftCols(k).transpose(), Y.leftCols(m).transpose(),
+      s_1.cwiseInverse().asDiagonal() * first.rightCols(k).transpose(), s_2.cwiseInverse().asDiagonal() * Y.rightCols(m).transpose();
     return result;
   }
 } // namespace Squeal

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace Squeal
 {
@@ -15,6 +16,8 @@ namespace Squeal
 
     /// Corrections larger than this fraction of |λ| mean that ψᵀQ'(λ)φ vanishes: the value is defective.
     constexpr double largest_correction = 1e-6;
+    /// ‖M − I‖_F that may be rounding errors of modal coordinates; the values are corrected with M as it is.
+    constexpr double unit_mass = 1e-11;
     /// Part of λ that is imaginary, below which nothing takes it for oscillating.
     constexpr double surely_real = 1e-13;
     /// λ oscillates; below, it is real.
@@ -39,6 +42,14 @@ namespace Squeal
       x *= std::conj(pivot) / (std::abs(pivot) * x.norm());
     }
 
+    /// Factors of the mass; nothing where it is the unit matrix but for rounding errors.
+    std::optional<RealLU> inverse_of_mass(const DenseMatrix &mass)
+    {
+      if ((mass - DenseMatrix::Identity(mass.rows(), mass.rows())).norm() <= unit_mass)
+        return {};
+      return regular_lu(mass, "mass matrix of a small quadratic pencil");
+    }
+
     /// One step λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
@@ -56,108 +67,138 @@ namespace Squeal
     }
   } // namespace
 
-  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix      &mass,
-                                            const DenseMatrix      *damping,
-                                            const DenseMatrix      &stiffness,
-                                            const double            largest_circular_frequency,
-                                            const RealVectors       real_vectors,
-                                            const ModalCoordinates *coordinates)
+  void normalize_columns(ComplexDenseMatrix &X)
   {
-    DenseQuadraticModes modes;
-    const int           r = mass.rows();
-    if (r == 0)
+    for (Eigen::Index j = 0; j < X.cols(); ++j)
+      normalize(X.col(j));
+  }
+
+  namespace
+  {
+    /// Modes as dense_quadratic_modes() describes them; with @p squares those of dense_modes_of_band().
+    std::optional<DenseQuadraticModes> found_modes(const DenseMatrix         &mass,
+                                                   const DenseMatrix         *damping,
+                                                   const DenseMatrix         &stiffness,
+                                                   const double               largest_circular_frequency,
+                                                   const RealVectors          real_vectors,
+                                                   const std::vector<double> *squares)
+    {
+      DenseQuadraticModes modes;
+      const int           r = mass.rows();
+      if (r == 0)
+        return modes;
+      const double stiffness_norm = stiffness.norm();
+      const double unit           = stiffness_norm > 0. ? std::sqrt(stiffness_norm / mass.norm()) : 1.;
+
+      // ------------------------------------------------- companion form in units of the scale
+      const std::optional<RealLU>  factors = inverse_of_mass(mass);
+      const bool                   linear  = damping == nullptr;
+      const int                    last    = linear ? 0 : r;
+      const DenseMatrix            A       = factors ? factors->solve(stiffness) : stiffness;
+      DenseMatrix                  companion;
+      std::optional<BandSubspaces> band;
+      const DenseMatrix            C = linear ? DenseMatrix() : factors ? factors->solve(*damping) : *damping;
+      if (squares != nullptr)
+        {
+          band = linear ? band_subspaces(A, *squares, largest_circular_frequency) :
+                          damped_band_subspaces(A, C, *squares, largest_circular_frequency);
+          if (!band)
+            return {};
+          if (!linear)
+            {
+              band->right.bottomRows(r) /= unit;
+              band->left.bottomRows(r) *= unit;
+            }
+        }
+      if (linear)
+        companion = (band ? band->small : A) / (-unit * unit);
+      else if (band)
+        companion = band->small / unit;
+      else
+        {
+          companion                        = DenseMatrix::Zero(2 * r, 2 * r);
+          companion.bottomLeftCorner(r, r) = A / (-unit * unit);
+          companion.topRightCorner(r, r).setIdentity();
+          companion.bottomRightCorner(r, r) = C / -unit;
+        }
+      const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
+      // Vectors of hardly more than what is sorted out below
+      const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
+        const Complex lambda = lambda_of(of_companion);
+        return std::abs(lambda.imag()) <= largest_circular_frequency &&
+               (real_vectors == RealVectors::wanted || std::abs(lambda.imag()) > surely_real * std::abs(lambda));
+      });
+
+      // ------------------------------------------------- values wanted, in order
+      const auto       value = [&](const int j) { return lambda_of(pairs.values[j]); };
+      std::vector<int> wanted;
+      for (int j = 0; j < companion.rows(); ++j)
+        {
+          const Complex lambda = value(j);
+          if (!oscillating_dense.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
+            {
+              modes.real_values.push_back(lambda.real());
+              if (linear)
+                modes.real_values.push_back(-lambda.real());
+              if (real_vectors == RealVectors::wanted)
+                wanted.push_back(j);
+            }
+          else if (lambda.imag() > 0. && lambda.imag() <= largest_circular_frequency)
+            wanted.push_back(j);
+        }
+      std::sort(modes.real_values.begin(), modes.real_values.end());
+      std::stable_sort(wanted.begin(), wanted.end(), [&value](const int a, const int b) {
+        const Complex x = value(a), y = value(b);
+        return x.imag() != y.imag() ? x.imag() < y.imag() : x.real() < y.real();
+      });
+
+      // ------------------------------------------------- vectors
+      const int k = static_cast<int>(wanted.size());
+      modes.right = modes.left = ComplexDenseMatrix(r, k);
+      if (k == 0)
+        return modes;
+      // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
+      std::vector<int> columns;
+      for (const int j : wanted)
+        columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
+      ComplexDenseMatrix right_parts = pairs.right(Eigen::all, columns), left_parts = pairs.left(Eigen::all, columns).conjugate();
+      if (band)
+        {
+          right_parts = multiply(band->right, right_parts);
+          left_parts  = multiply(band->left, left_parts);
+        }
+      modes.left = left_parts.bottomRows(r);
+      if (factors)
+        modes.left =
+          from_halves(sparing_zeros(halves(modes.left), [&factors](const DenseMatrix &X) { return factors->solve_transposed(X); }));
+      for (int j = 0; j < k; ++j)
+        {
+          modes.values.push_back(value(wanted[j]));
+          const bool lower   = std::abs(modes.values[j]) > unit;
+          modes.right.col(j) = right_parts.col(j).segment(lower ? last : 0, r);
+        }
+      normalize_columns(modes.right);
+      normalize_columns(modes.left);
+      correct(modes, mass, damping, stiffness);
       return modes;
-    const double stiffness_norm = stiffness.norm();
-    const double unit           = stiffness_norm > 0. ? std::sqrt(stiffness_norm / mass.norm()) : 1.;
+    }
+  } // namespace
 
-    // ------------------------------------------------- companion form in units of the scale
-    const RealLU                 factors = regular_lu(mass, "mass matrix of a small quadratic pencil");
-    const bool                   linear  = damping == nullptr;
-    const int                    last    = linear ? 0 : r;
-    const DenseMatrix            A       = factors.solve(stiffness);
-    DenseMatrix                  companion;
-    std::optional<BandSubspaces> band;
-    const DenseMatrix            C                = linear ? DenseMatrix() : factors.solve(*damping);
-    const bool                   may_be_separated = coordinates != nullptr && real_vectors == RealVectors::none;
-    if (may_be_separated && linear)
-      band = band_subspaces(A, *coordinates, largest_circular_frequency);
-    else if (may_be_separated)
-      {
-        band = damped_band_subspaces(A, C, *coordinates, largest_circular_frequency);
-        if (band)
-          {
-            band->right.bottomRows(r) /= unit;
-            band->left.bottomRows(r) *= unit;
-          }
-      }
-    if (linear)
-      companion = (band ? band->small : A) / (-unit * unit);
-    else if (band)
-      companion = band->small / unit;
-    else
-      {
-        companion                        = DenseMatrix::Zero(2 * r, 2 * r);
-        companion.bottomLeftCorner(r, r) = A / (-unit * unit);
-        companion.topRightCorner(r, r).setIdentity();
-        companion.bottomRightCorner(r, r) = C / -unit;
-      }
-    const auto lambda_of = [&](const Complex &of_companion) { return unit * (linear ? upper_root(of_companion) : of_companion); };
-    // Vectors of hardly more than what is sorted out below
-    const DenseEigenpairs pairs = eigenpairs(companion, [&](const Complex &of_companion) {
-      const Complex lambda = lambda_of(of_companion);
-      return std::abs(lambda.imag()) <= largest_circular_frequency &&
-             (real_vectors == RealVectors::wanted || std::abs(lambda.imag()) > surely_real * std::abs(lambda));
-    });
+  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
+                                            const DenseMatrix *damping,
+                                            const DenseMatrix &stiffness,
+                                            const double       largest_circular_frequency,
+                                            const RealVectors  real_vectors)
+  {
+    return *found_modes(mass, damping, stiffness, largest_circular_frequency, real_vectors, nullptr);
+  }
 
-    // ------------------------------------------------- values wanted, in order
-    const auto       value = [&](const int j) { return lambda_of(pairs.values[j]); };
-    std::vector<int> wanted;
-    for (int j = 0; j < companion.rows(); ++j)
-      {
-        const Complex lambda = value(j);
-        if (!oscillating_dense.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
-          {
-            modes.real_values.push_back(lambda.real());
-            if (linear)
-              modes.real_values.push_back(-lambda.real());
-            if (real_vectors == RealVectors::wanted)
-              wanted.push_back(j);
-          }
-        else if (lambda.imag() > 0. && lambda.imag() <= largest_circular_frequency)
-          wanted.push_back(j);
-      }
-    std::sort(modes.real_values.begin(), modes.real_values.end());
-    std::stable_sort(wanted.begin(), wanted.end(), [&value](const int a, const int b) {
-      const Complex x = value(a), y = value(b);
-      return x.imag() != y.imag() ? x.imag() < y.imag() : x.real() < y.real();
-    });
-
-    // ------------------------------------------------- vectors
-    const int k = static_cast<int>(wanted.size());
-    modes.right = modes.left = ComplexDenseMatrix(r, k);
-    if (k == 0)
-      return modes;
-    // yᴴ A = λ yᴴ, but ψᵀ without conjugate.
-    std::vector<int> columns;
-    for (const int j : wanted)
-      columns.push_back(static_cast<int>(std::lower_bound(pairs.numbers.begin(), pairs.numbers.end(), j) - pairs.numbers.begin()));
-    ComplexDenseMatrix right_parts = pairs.right(Eigen::all, columns), left_parts = pairs.left(Eigen::all, columns).conjugate();
-    if (band)
-      {
-        right_parts = multiply(band->right, right_parts);
-        left_parts  = multiply(band->left, left_parts);
-      }
-    modes.left = from_halves(
-      sparing_zeros(halves(left_parts.bottomRows(r)), [&factors](const DenseMatrix &X) { return factors.solve_transposed(X); }));
-    for (int j = 0; j < k; ++j)
-      {
-        modes.values.push_back(value(wanted[j]));
-        const bool lower   = std::abs(modes.values[j]) > unit;
-        modes.right.col(j) = right_parts.col(j).segment(lower ? last : 0, r);
-        normalize(modes.right.col(j));
-        normalize(modes.left.col(j));
-      }
-    correct(modes, mass, damping, stiffness);
-    return modes;
+  std::optional<DenseQuadraticModes> dense_modes_of_band(const DenseMatrix         &mass,
+                                                         const DenseMatrix         *damping,
+                                                         const DenseMatrix         &stiffness,
+                                                         const std::vector<double> &squares,
+                                                         const double               largest_circular_frequency)
+  {
+    return found_modes(mass, damping, stiffness, largest_circular_frequency, RealVectors::none, &squares);
   }
 } // namespace Squeal

@@ -19,9 +19,11 @@ namespace Squeal
       return psi.cwiseProduct(multiply(A, phi)).colwise().sum();
     }
 
-    /// x_jᴴ A x_j for every column, A symmetric.
+    /// x_jᴴ A x_j for every column, A symmetric; diagonal in modal coordinates.
     Eigen::VectorXd squares(const DenseMatrix &A, const ComplexDenseMatrix &X)
     {
+      if (A.isDiagonal(0.))
+        return X.cwiseAbs2().transpose() * A.diagonal();
       return X.conjugate().cwiseProduct(multiply(A, X)).real().colwise().sum();
     }
 

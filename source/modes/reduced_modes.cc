@@ -71,29 +71,39 @@ namespace Squeal
       agree(communicator, modes.real_values.data(), counts[1]);
     }
 
-    /// Every eigenvalue that dense_quadratic_modes() gives.
-    ReducedModes all_modes(const ReducedModel    &model,
-                           const ParameterValues &values,
-                           const double           largest_circular_frequency,
-                           const RealVectors      real_vectors)
+    /// The model's pencil without its modes.
+    ReducedModes without_modes(const ReducedModel &model, const ParameterValues &values)
     {
       ReducedModes modes;
       modes.values    = values;
       modes.pencil    = model.at(values);
       modes.mass      = model.mass();
       modes.stiffness = model.stiffness();
+      return modes;
+    }
 
-      // Of a few vectors, or of all frequencies, there is nothing to leave out; real eigenvalues may lie anywhere
-      const bool may_be_separated =
-        real_vectors == RealVectors::none && model.size() >= least_separated && std::isfinite(largest_circular_frequency);
+    const DenseMatrix *damping_of(const ReducedPencil &pencil)
+    {
+      return pencil.has_damping ? &pencil.damping : nullptr;
+    }
 
-      DenseQuadraticModes found =
-        dense_quadratic_modes(modes.pencil.mass, modes.pencil.has_damping ? &modes.pencil.damping : nullptr, modes.pencil.stiffness,
-                              largest_circular_frequency, real_vectors, may_be_separated ? &model.modal_coordinates() : nullptr);
+    void take(ReducedModes &modes, DenseQuadraticModes found)
+    {
       modes.lambda      = std::move(found.values);
       modes.right       = std::move(found.right);
       modes.left        = std::move(found.left);
       modes.real_values = std::move(found.real_values);
+    }
+
+    /// Every eigenvalue that dense_quadratic_modes() gives.
+    ReducedModes all_modes(const ReducedModel    &model,
+                           const ParameterValues &values,
+                           const double           largest_circular_frequency,
+                           const RealVectors      real_vectors)
+    {
+      ReducedModes         modes  = without_modes(model, values);
+      const ReducedPencil &pencil = modes.pencil;
+      take(modes, dense_quadratic_modes(pencil.mass, damping_of(pencil), pencil.stiffness, largest_circular_frequency, real_vectors));
       return modes;
     }
 
@@ -109,7 +119,44 @@ namespace Squeal
                                    const double           largest_circular_frequency,
                                    const BandEnd          end)
   {
+    const double limit = band_limit(largest_circular_frequency, end);
+    if (auto found = modal_modes_of_band(model, values, limit))
+      {
+        const DenseMatrix &V     = model.modal().vectors;
+        ReducedModes       modes = without_modes(model, values);
+        take(modes, {std::move(found->lambda), multiply(V, found->right), multiply(V, found->left), std::move(found->real_values)});
+        modes.n_zeros = found->n_zeros;
+        normalize_columns(modes.right);
+        normalize_columns(modes.left);
+        return modes;
+      }
+    return local_reduced_modes_by_qr(model, values, largest_circular_frequency, end);
+  }
+
+  ReducedModes local_reduced_modes_by_qr(const ReducedModel    &model,
+                                         const ParameterValues &values,
+                                         const double           largest_circular_frequency,
+                                         const BandEnd          end)
+  {
     ReducedModes modes = all_modes(model, values, band_limit(largest_circular_frequency, end), RealVectors::none);
+    separate_real(modes, largest_circular_frequency);
+    return modes;
+  }
+
+  std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
+                                                  const ParameterValues &values,
+                                                  const double           largest_circular_frequency)
+  {
+    // Of a few vectors, or of all frequencies, there is nothing to leave out
+    if (model.size() < least_separated || !std::isfinite(largest_circular_frequency))
+      return {};
+    const ReducedModel::Modal &modal  = model.modal();
+    ReducedModes               modes  = without_modes(modal.model, values);
+    const ReducedPencil       &pencil = modes.pencil;
+    auto found = dense_modes_of_band(pencil.mass, damping_of(pencil), pencil.stiffness, modal.squares, largest_circular_frequency);
+    if (!found)
+      return {};
+    take(modes, std::move(*found));
     separate_real(modes, largest_circular_frequency);
     return modes;
   }

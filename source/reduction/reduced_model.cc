@@ -128,10 +128,19 @@ namespace Squeal
     return *T;
   }
 
-  const ModalCoordinates &ReducedModel::modal_coordinates() const
+  const ReducedModel::Modal &ReducedModel::modal() const
   {
     if (!modes)
-      modes = Squeal::modal_coordinates(stiffness(), mass());
+      {
+        auto [squares, V] = symmetric_eigenpairs(stiffness(), mass());
+        // Orthonormal to the last digits: V (3 I − VᵀMV) / 2
+        V = 1.5 * V - 0.5 * V * (V.transpose() * mass() * V).eval();
+        Modal result{std::move(squares), V, restricted(V)};
+        // What they are but for rounding errors
+        result.model.mass_matrix      = DenseMatrix::Identity(size(), size());
+        result.model.stiffness_matrix = as_column(result.squares).asDiagonal();
+        modes                         = std::make_shared<const Modal>(std::move(result));
+      }
     return *modes;
   }
 

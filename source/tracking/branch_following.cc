@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace Squeal
 {
@@ -24,10 +25,42 @@ namespace Squeal
       return !just_divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag()) ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
-    /// Vectors of the modes at a point; within a multiple λ those nearest to the vectors of the branches before.
+    /// Right or left vectors of the modes at a point, but within a multiple λ those nearest to the vectors of the branches before.
+    class CarriedVectors
+    {
+    public:
+      explicit CarriedVectors(const ComplexDenseMatrix &own)
+        : own(&own)
+      {}
+
+      void replace(const int mode, const Eigen::VectorXcd &vector)
+      {
+        others[mode] = vector;
+      }
+
+      ComplexDenseMatrix columns(const std::vector<int> &modes) const
+      {
+        ComplexDenseMatrix result = (*own)(Eigen::all, modes);
+        for (std::size_t j = 0; j < modes.size(); ++j)
+          if (const auto other = others.find(modes[j]); other != others.end())
+            result.col(static_cast<Eigen::Index>(j)) = other->second;
+        return result;
+      }
+
+    private:
+      const ComplexDenseMatrix       *own;
+      std::map<int, Eigen::VectorXcd> others;
+    };
+
     struct Carried
     {
-      ComplexDenseMatrix   right, left;
+      explicit Carried(const ChartPoint &point)
+        : right(point.right)
+        , left(point.left)
+        , lambda(point.lambda)
+      {}
+
+      CarriedVectors       right, left;
       std::vector<Complex> lambda; ///< at the last point where it was not multiple
     };
 
@@ -71,7 +104,7 @@ namespace Squeal
         }
 
       // Vectors where they tell modes apart, else λ that would lie on a smooth curve
-      const int            r        = std::max(carried.right.rows(), modes.points[k + 1].right.rows());
+      const int            r        = std::max(modes.points[k].right.rows(), modes.points[k + 1].right.rows());
       DenseMatrix          overlaps = DenseMatrix::Zero(n, n);
       std::vector<Complex> predicted;
       double               farthest = 0.;
@@ -80,9 +113,8 @@ namespace Squeal
       for (const Complex &x : predicted)
         for (const int j : block.second)
           farthest = std::max(farthest, std::abs(x - lambda[j]));
-      const auto add_overlaps = [&](const ComplexDenseMatrix &before, const ComplexDenseMatrix &after) {
-        overlaps +=
-          0.5 * (with_rows(before(Eigen::all, block.first), r).adjoint() * with_rows(after(Eigen::all, block.second), r)).cwiseAbs2();
+      const auto add_overlaps = [&](const CarriedVectors &before, const ComplexDenseMatrix &after) {
+        overlaps += 0.5 * (with_rows(before.columns(block.first), r).adjoint() * with_rows(after(Eigen::all, block.second), r)).cwiseAbs2();
       };
       add_overlaps(carried.right, modes.points[k + 1].right);
       add_overlaps(carried.left, modes.points[k + 1].left);
@@ -96,15 +128,15 @@ namespace Squeal
       });
     }
 
-    /// Columns @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
-    void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, ComplexDenseMatrix &Y, const std::vector<int> &to)
+    /// The vectors @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
+    void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, CarriedVectors &Y, const std::vector<int> &to)
     {
       const Eigen::Index       r = std::max(vectors.rows(), X.rows());
       const ComplexDenseMatrix Q = orthonormal_basis(with_rows(vectors, r)).Q;
       const ComplexDenseMatrix P = Q * (Q.adjoint() * with_rows(X, r));
       for (std::size_t j = 0; j < to.size(); ++j)
         if (const double norm = P.col(j).norm(); norm > 0.)
-          Y.col(to[j]) = P.col(j).head(Y.rows()) / norm;
+          Y.replace(to[j], P.col(j).head(vectors.rows()) / norm);
     }
 
     /// Carries vectors from point k to the next.
@@ -116,7 +148,7 @@ namespace Squeal
         if (image[i] >= 0)
           origin[image[i]] = static_cast<int>(i);
 
-      Carried result{next.right, next.left, next.lambda};
+      Carried result(next);
       for (const std::vector<int> &all : members_of(mode_clusters(next.lambda)))
         {
           std::vector<int> from, to;
@@ -129,8 +161,8 @@ namespace Squeal
               }
           if (!to.empty())
             {
-              project(next.right(Eigen::all, all), carried.right(Eigen::all, from), result.right, to);
-              project(next.left(Eigen::all, all), carried.left(Eigen::all, from), result.left, to);
+              project(next.right(Eigen::all, all), carried.right.columns(from), result.right, to);
+              project(next.left(Eigen::all, all), carried.left.columns(from), result.left, to);
             }
         }
       carried = std::move(result);
@@ -143,7 +175,7 @@ namespace Squeal
     modes.branch_of.assign(modes.points.size(), {});
     if (modes.points.empty())
       return;
-    Carried carried{modes.points[0].right, modes.points[0].left, modes.points[0].lambda};
+    Carried carried(modes.points[0]);
     for (std::size_t j = 0; j < modes.points[0].lambda.size(); ++j)
       begin_branch(modes, 0, static_cast<int>(j));
     for (int k = 0; k + 1 < modes.n_points(); ++k)

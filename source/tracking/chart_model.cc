@@ -118,28 +118,34 @@ namespace Squeal
   {
     if (model.size() == 0)
       return;
-    model.modal_coordinates();
+    model.modal();
     residuals.prepare();
   }
 
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
   {
-    const ParameterValues values    = system.at(point.friction_coefficient, point.values);
-    const ReducedModes    modes     = local_reduced_modes(model, values, (1. + margin) * largest_circular_frequency);
-    const auto            estimates = estimate_eigenvalues(modes, residuals.products(values, modes.lambda, modes.right, modes.left));
+    const ParameterValues values = system.at(point.friction_coefficient, point.values);
+    // What follows from products of vectors is the same in modal coordinates, where most of them are diagonal
+    const double       end   = (1. + margin) * largest_circular_frequency;
+    auto               modal = modal_modes_of_band(model, values, end);
+    ReducedModes       modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
+    ComplexDenseMatrix right = modes.right, left = modes.left;
+    if (modal)
+      for (const auto &[X, X_modal] : {std::make_pair(&right, &modes.right), {&left, &modes.left}})
+        {
+          *X = multiply(model.modal().vectors, *X);
+          for (Eigen::Index j = 0; j < X->cols(); ++j)
+            {
+              const double norm = X->col(j).norm();
+              X->col(j) /= norm;
+              X_modal->col(j) /= norm;
+            }
+        }
+    const auto estimates = estimate_eigenvalues(modes, residuals.products(values, modes.lambda, right, left));
 
-    ChartPoint result{point.friction_coefficient,
-                      modes.lambda,
-                      modes.right,
-                      modes.left,
-                      estimates.energy_residuals,
-                      estimates.left_residuals,
-                      estimates.errors,
-                      estimates.uncertainties,
-                      estimates.verdicts,
-                      estimates.couplings,
-                      modes.real_values,
-                      modes.n_zeros};
+    ChartPoint result{point.friction_coefficient, modes.lambda,     std::move(right),        std::move(left),    estimates.energy_residuals,
+                      estimates.left_residuals,   estimates.errors, estimates.uncertainties, estimates.verdicts, estimates.couplings,
+                      modes.real_values,          modes.n_zeros};
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
       if (!estimates.claimed[j])
         result.errors[j] = estimates.uncertainties[j] / std::abs(modes.lambda[j]);

@@ -42,13 +42,26 @@ namespace Squeal
    * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
    * algorithm fails.
    *
-   * @param coordinates modes of a symmetric pencil near by: where no vectors of real λ are wanted, the QR algorithm then looks at the
-   *                    band only; see band_subspaces() and damped_band_subspaces()
    */
-  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix      &mass,
-                                            const DenseMatrix      *damping,
-                                            const DenseMatrix      &stiffness,
-                                            double                  largest_circular_frequency = std::numeric_limits<double>::infinity(),
-                                            RealVectors             real_vectors               = RealVectors::none,
-                                            const ModalCoordinates *coordinates                = nullptr);
+  DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
+                                            const DenseMatrix *damping,
+                                            const DenseMatrix &stiffness,
+                                            double             largest_circular_frequency = std::numeric_limits<double>::infinity(),
+                                            RealVectors        real_vectors               = RealVectors::none);
+
+  /**
+   * The same by the QR algorithm on the modes of the band alone, where these can be told from the others: band_subspaces(),
+   * damped_band_subspaces(). Nothing where they cannot; real λ of the others are none.
+   *
+   * @param mass,damping,stiffness in coordinates of the modes of a symmetric pencil near by
+   * @param squares                ω² of these modes, ascending
+   */
+  std::optional<DenseQuadraticModes> dense_modes_of_band(const DenseMatrix         &mass,
+                                                         const DenseMatrix         *damping,
+                                                         const DenseMatrix         &stiffness,
+                                                         const std::vector<double> &squares,
+                                                         double                     largest_circular_frequency);
+
+  /// ‖x‖₂ = 1, entry of largest modulus real and positive, for every column.
+  void normalize_columns(ComplexDenseMatrix &X);
 } // namespace Squeal

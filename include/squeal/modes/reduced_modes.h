@@ -3,6 +3,7 @@
 #include <squeal/reduction/reduced_model.h>
 
 #include <complex>
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -44,6 +45,17 @@ namespace Squeal
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,
                                    BandEnd                end = BandEnd::cut);
+
+  /// The same without trying to leave out what lies beyond the band.
+  ReducedModes local_reduced_modes_by_qr(const ReducedModel    &model,
+                                         const ParameterValues &values,
+                                         double                 largest_circular_frequency,
+                                         BandEnd                end = BandEnd::cut);
+
+  /// The same with vectors and matrices in the coordinates of ReducedModel::modal(), if the band can be told from the rest there.
+  std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
+                                                  const ParameterValues &values,
+                                                  double                 largest_circular_frequency);
 
   /**
    * The real eigenvalues of @p model with their vectors, zeros excluded, up to the radius of the band: static divergence and

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/contact/system_family.h>
-#include <squeal/eigen/band_subspaces.h>
+#include <squeal/linear_algebra/multivector.h>
 
 #include <map>
 #include <memory>
@@ -79,8 +79,9 @@ namespace Squeal
       return stiffness_matrix;
     }
 
-    /// Modes of (TᵀK_cT, TᵀM_cT); found once.
-    const ModalCoordinates &modal_coordinates() const;
+    /// The model in coordinates of its modes V without friction and damping, whose vectors are V times those of this one; made once.
+    struct Modal;
+    const Modal &modal() const;
 
     /// TᵀAT of a sparse term of the system, by its number.
     const DenseMatrix &projected(const std::size_t term) const
@@ -105,6 +106,13 @@ namespace Squeal
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights
     std::map<const LowRankFactor *, DenseMatrix> factors;
     DenseMatrix                                  mass_matrix, stiffness_matrix;
-    mutable std::optional<ModalCoordinates>      modes; ///< nothing as long as nobody asks
+    mutable std::shared_ptr<const Modal>         modes; ///< null as long as nobody asks
+  };
+
+  struct ReducedModel::Modal
+  {
+    std::vector<double> squares; ///< ω² of (TᵀK_cT, TᵀM_cT), ascending
+    DenseMatrix         vectors; ///< V, r × r, VᵀTᵀM_cTV = I
+    ReducedModel        model;   ///< on the basis T V
   };
 } // namespace Squeal
