@@ -22,7 +22,7 @@ namespace Squeal
     constexpr int    most_steps = 24;
     /// A step that is not shorter than this part of the one before may consist of rounding errors.
     constexpr double contraction = 0.7;
-    /// Over the first step, from where steps lead nowhere.
+    /// Length over that of the first step from which steps are given up.
     constexpr double hopeless_growth = 10.;
     /// Steps that the next one may combine.
     constexpr std::size_t most_remembered = 3;
@@ -67,7 +67,7 @@ namespace Squeal
           const double norm = step.norm();
           if (i == 0)
             first = norm;
-          // Rounding errors allow no more, or nothing comes closer
+          // Steps have stopped shrinking: rounding errors allow no more
           if (i > 0 && !(norm < contraction * before) && norm <= error_allowed)
             return true;
           if (!(norm <= hopeless_growth * first))
@@ -94,6 +94,7 @@ namespace Squeal
             {
               const auto      n = static_cast<Eigen::Index>(steps.size());
               Eigen::VectorXd b(n);
+              // Of the differences kept from before, and of the new one
               G = DenseMatrix(G.bottomRightCorner(std::min(n - 1, G.rows()), std::min(n - 1, G.rows())));
               G.conservativeResize(n, n);
               for (Eigen::Index p = 0; p < n; ++p)
@@ -119,7 +120,7 @@ namespace Squeal
       return std::min(std::sqrt(sizes.colwise().sum().maxCoeff() * sizes.rowwise().sum().maxCoeff()), Z.norm());
     }
 
-    /// Whether Re κ > limit for all eigenvalues κ of T, as P (T − limit) + (T − limit)ᵀ P shows, which is positive definite, P = diag(T).
+    /// Whether P (T − limit) + (T − limit)ᵀ P is positive definite for P = diag(T): then Re κ > limit for all eigenvalues κ of T.
     bool all_beyond_in_norm(const DenseMatrix &T, const double limit)
     {
       const Eigen::VectorXd d = T.diagonal();
@@ -132,7 +133,7 @@ namespace Squeal
       return S.llt().info() == Eigen::Success;
     }
 
-    /// The same, as far as powers of the Cayley transform show.
+    /// Whether Re κ > limit for all eigenvalues κ of T, as far as powers of the Cayley transform show.
     bool all_beyond_by_powers(const DenseMatrix &T, const double limit, const double scale)
     {
       const Eigen::Index n    = T.rows();

@@ -16,9 +16,29 @@ namespace Squeal
     return result;
   }
 
+  namespace
+  {
+    /// A X, stretch by stretch between rows of zeros.
+    DenseMatrix multiply_sparing_rows(const DenseMatrix &A, const DenseMatrix &X)
+    {
+      DenseMatrix result  = DenseMatrix::Zero(A.rows(), X.cols());
+      const auto  is_zero = [&](const Eigen::Index i) { return (X.row(i).array() == 0.).all(); };
+      for (Eigen::Index first = 0; first < X.rows();)
+        {
+          Eigen::Index last = first;
+          while (last < X.rows() && !is_zero(last))
+            ++last;
+          if (last > first)
+            result.noalias() += A.middleCols(first, last - first) * X.middleRows(first, last - first);
+          first = last + 1;
+        }
+      return result;
+    }
+  } // namespace
+
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X)
   {
-    return sparing_zeros(X, [&A](const DenseMatrix &columns) -> DenseMatrix { return A * columns; });
+    return sparing_zeros(X, [&A](const DenseMatrix &columns) { return multiply_sparing_rows(A, columns); });
   }
 
   ComplexDenseMatrix multiply(const DenseMatrix &A, const ComplexDenseMatrix &X)

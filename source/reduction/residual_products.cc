@@ -20,23 +20,6 @@ namespace Squeal
       return {result.begin(), result.end()};
     }
 
-    /// A X, without the columns of A that meet rows of zeros: terms that vanish at a point have such.
-    DenseMatrix multiply_sparing_rows(const DenseMatrix &A, const DenseMatrix &X)
-    {
-      DenseMatrix result  = DenseMatrix::Zero(A.rows(), X.cols());
-      const auto  is_zero = [&](const Eigen::Index i) { return (X.row(i).array() == 0.).all(); };
-      for (Eigen::Index first = 0; first < X.rows();)
-        {
-          Eigen::Index last = first;
-          while (last < X.rows() && !is_zero(last))
-            ++last;
-          if (last > first)
-            result.noalias() += A.middleCols(first, last - first) * X.middleRows(first, last - first);
-          first = last + 1;
-        }
-      return result;
-    }
-
     bool is_stiffness(const Term &term)
     {
       return term.matrix && term.symmetry == Symmetry::symmetric && term.power == 0;
@@ -382,8 +365,7 @@ namespace Squeal
   {
     prepare();
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
-    const DenseMatrix Gy = sparing_zeros(y, [&](const DenseMatrix &Y) { return multiply_sparing_rows(right_block, Y); }),
-                      Gz = sparing_zeros(z, [&](const DenseMatrix &Z) { return multiply_sparing_rows(left_columns, Z); });
+    const DenseMatrix Gy = multiply_sparing_zeros(right_block, y), Gz = multiply_sparing_zeros(left_columns, z);
     return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),
             hermitian_products(z, Gz.topRows(z.rows()))};
   }

@@ -112,7 +112,7 @@ namespace Squeal
       return result;
     }
 
-    /// Whether two modes lie beyond the band all along a step: what they do there is nobody's concern.
+    /// Whether two modes lie beyond the band all along a step, of which no result tells.
     bool are_beyond(const TrackedModes &modes, const int k, const int p, const int q)
     {
       const double limit = modes.options.largest_circular_frequency;

@@ -42,7 +42,7 @@ namespace Squeal
   using ShapeShares = std::map<ModeShape, double>;
 
   /**
-   * Those of real or complex modes.
+   * The shares of every shape in each of some real or complex modes.
    *
    * @param references     disc modes with contact free, pin modes with contact sliding
    * @param mass           M of the uncoupled bodies
@@ -63,7 +63,8 @@ namespace Squeal
    * sum of all participations is largest and none is given more often than there are
    * component modes of it. A participation below a tenth gives no name.
    *
-   * @param references those of the @p shares, one for each mode
+   * @param references the component modes that were given to shape_shares()
+   * @param shares     what it returned, an entry for each coupled mode
    */
   std::vector<ModeLabel> identify(const std::vector<const ComponentModes *> &references, const std::vector<ShapeShares> &shares);
 } // namespace Squeal

@@ -30,7 +30,7 @@ namespace Squeal
    *   P (T − ω² I) + (T − ω² I)ᵀ P positive definite, or
    *   Z = (T − ω² I − a I) (T − ω² I + a I)⁻¹:  ‖Z^m‖ < 1 for any m     =>   Re(−λ²) > ω² for all of T.
    *
-   * @return nothing if the band is not well apart, if the steps do not converge, or if no power is small
+   * @return nothing if the band is not well apart, if the steps do not converge, or if neither test succeeds
    */
   std::optional<BandSubspaces> band_subspaces(const DenseMatrix &A, const std::vector<double> &squares, double largest_circular_frequency);
 
@@ -40,8 +40,9 @@ namespace Squeal
    *   [ 0   I ]
    *   [ -A -C ]  [φ; λ φ] = λ [φ; λ φ],   right and left 2r × 2k, small 2k × 2k with eigenvalues λ.
    *
-   * A and C are in modal coordinates, too. Every mode of the reference is a pair of coordinates (x, λ x / ω) here, in which its block is ω J, J = [0 1; -1 0]. Steps divide what
-   * commutes with J by ω_i − ω_j and what anticommutes by ω_i + ω_j. The proof looks at −T² in the place of T.
+   * A and C are given in modal coordinates, too. Every mode of the reference is a pair of coordinates (x, λ x / ω) here, in which its
+   * block is ω J, J = [0 1; -1 0]. Steps divide what commutes with J by ω_i − ω_j and what anticommutes by ω_i + ω_j. The proof looks at
+   * −T² in the place of T.
    */
   std::optional<BandSubspaces> damped_band_subspaces(const DenseMatrix         &A,
                                                      const DenseMatrix         &C,

@@ -41,7 +41,6 @@ namespace Squeal
    * half of the left one. The values get one two-sided Rayleigh correction
    * -ψᵀQ(λ)φ / ψᵀQ'(λ)φ. Throws SolverError if M is singular or the QR
    * algorithm fails.
-   *
    */
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,
@@ -50,8 +49,8 @@ namespace Squeal
                                             RealVectors        real_vectors               = RealVectors::none);
 
   /**
-   * The same by the QR algorithm on the modes of the band alone, where these can be told from the others: band_subspaces(),
-   * damped_band_subspaces(). Nothing where they cannot; real λ of the others are none.
+   * The same, with the QR algorithm working on the modes of the band alone: band_subspaces(), damped_band_subspaces(). Nothing where
+   * the band cannot be separated from the other modes. Where it can, none of the others has a real λ.
    *
    * @param mass,damping,stiffness in coordinates of the modes of a symmetric pencil near by
    * @param squares                ω² of these modes, ascending

@@ -29,7 +29,7 @@ namespace Squeal
   /// A linear operation on the columns of X, where those of zeros cost nothing: the imaginary parts of neutral modes are such.
   DenseMatrix sparing_zeros(const DenseMatrix &X, const std::function<DenseMatrix(const DenseMatrix &)> &operation);
 
-  /// A X in this way.
+  /// A X in this way, rows of zeros spared as well: those of terms that vanish, and of a basis that has grown since.
   DenseMatrix multiply_sparing_zeros(const DenseMatrix &A, const DenseMatrix &X);
 
   /// A X of a real and a complex matrix: one real product with [Re X, Im X].

@@ -46,13 +46,13 @@ namespace Squeal
                                    double                 largest_circular_frequency,
                                    BandEnd                end = BandEnd::cut);
 
-  /// The same without trying to leave out what lies beyond the band.
+  /// The same by the QR algorithm on all modes, without separating the band first.
   ReducedModes local_reduced_modes_by_qr(const ReducedModel    &model,
                                          const ParameterValues &values,
                                          double                 largest_circular_frequency,
                                          BandEnd                end = BandEnd::cut);
 
-  /// The same with vectors and matrices in the coordinates of ReducedModel::modal(), if the band can be told from the rest there.
+  /// The same with vectors and matrices in the coordinates of ReducedModel::modal(); nothing if the band cannot be separated.
   std::optional<ReducedModes> modal_modes_of_band(const ReducedModel    &model,
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);
