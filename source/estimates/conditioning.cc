@@ -98,16 +98,6 @@ namespace Squeal
       return equilibrated_extremes(K, roots).second * inverse_max.second;
     }
 
-    /// |A|, entry by entry.
-    std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
-    {
-      return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int place, SparseMatrix::Row &row) {
-        A.get_row(place, row);
-        for (auto &entry : row)
-          entry.second = std::abs(entry.second);
-      });
-    }
-
     /// |φ|ᵀ |K| |φ| of each mode.
     std::vector<double> sums_of_moduli(const SparseMatrix &K, const ComplexModes &modes)
     {
@@ -225,10 +215,18 @@ namespace Squeal
     return std::max(0., -std::log10(std::max(largest_error(), std::numeric_limits<double>::epsilon())));
   }
 
+  ModalProducts modal_products(const CoupledSystem &system, const ComplexModes &modes)
+  {
+    if (modes.lambda.empty())
+      return {};
+    return {products_of_halves(modes, *system.stiffness), products_of_halves(modes, *system.mass)};
+  }
+
   Conditioning estimate_conditioning(const CoupledSystem  &system,
                                      const UpdatedInverse &inverse,
                                      const double          shift,
-                                     const ComplexModes   &modes)
+                                     const ComplexModes   &modes,
+                                     const ModalProducts  &products)
   {
     const SparseMatrix &M = *system.mass;
     const auto          K = shift == 0. ? system.stiffness : add(1., *system.stiffness, shift * shift, M);
@@ -238,11 +236,11 @@ namespace Squeal
     if (modes.lambda.empty())
       return result;
 
-    const DenseMatrix   stiffness = products_of_halves(modes, *system.stiffness);
+    const DenseMatrix  &stiffness = products.stiffness;
     std::vector<double> gamma     = sums_of_moduli(*system.stiffness, modes);
     for (Eigen::Index j = 0, k = stiffness.rows() / 2; j < k; ++j)
       gamma[j] /= stiffness(j, j) + stiffness(k + j, k + j);
-    std::tie(result.modes, result.span) = conditions(modes.lambda, stiffness, products_of_halves(modes, M));
+    std::tie(result.modes, result.span) = conditions(modes.lambda, stiffness, products.mass);
     result.largest_cancellation         = *std::max_element(gamma.begin(), gamma.end());
     for (std::size_t j = 0; j < modes.lambda.size(); ++j)
       {

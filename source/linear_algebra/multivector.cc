@@ -190,6 +190,15 @@ namespace Squeal
     return *this;
   }
 
+  void MultiVector::append(const MultiVector &X)
+  {
+    require(!is_view() && X.n_local_rows() == n_rows, "columns behind others");
+    own.conservativeResize(Eigen::NoChange, k + X.k);
+    own.rightCols(X.k) = X.local();
+    k += X.k;
+    values = own.data();
+  }
+
   MultiVector operator*(const double factor, MultiVector X)
   {
     X *= factor;

@@ -1,12 +1,9 @@
 #include "epetra_view.h"
-#include "lane_kernels.h"
+#include "sparse_products.h"
 #include <squeal/base/exceptions.h>
-#include <squeal/base/tasks.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-
-#include <deal.II/base/aligned_vector.h>
 
 #include <EpetraExt_MatrixMatrix.h>
 #include <Epetra_CrsMatrix.h>
@@ -15,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -32,42 +30,110 @@ namespace Squeal
                           "check that the shapes and distributions of the matrices fit together");
     }
 
+    /// The matrix of rows whose columns ascend, given by their places where a process is alone, else by their numbers.
+    std::unique_ptr<Epetra_CrsMatrix> matrix_of(const RowMap &rows, const RowMap &columns, RowArrays given)
+    {
+      const bool       is_alone = rows.n_processes() == 1;
+      std::vector<int> lengths(rows.n_local());
+      for (int i = 0; i < rows.n_local(); ++i)
+        lengths[i] = given.start[i + 1] - given.start[i];
+      // A process that is alone has all columns, and need not look for those that occur
+      const Epetra_Map &map    = rows.implementation();
+      auto              matrix = is_alone ? std::make_unique<Epetra_CrsMatrix>(Copy, map, columns.implementation(), lengths.data(), true) :
+                                            std::make_unique<Epetra_CrsMatrix>(Copy, map, lengths.data());
+      for (int i = 0; i < rows.n_local(); ++i)
+        {
+          double *const values = given.value.data() + given.start[i];
+          int *const    places = given.column.data() + given.start[i];
+          check_epetra(is_alone ? matrix->InsertMyValues(i, lengths[i], values, places) :
+                                  matrix->InsertGlobalValues(rows.number(i), lengths[i], values, places),
+                       "rows of a sparse matrix");
+        }
+      check_epetra(matrix->FillComplete(columns.implementation(), map), "rows of a sparse matrix");
+      return matrix;
+    }
+
     std::unique_ptr<Epetra_CrsMatrix> filled(const RowMap                                        &rows,
                                              const RowMap                                        &columns,
                                              const std::function<void(int, SparseMatrix::Row &)> &fill)
     {
-      auto                matrix = std::make_unique<Epetra_CrsMatrix>(Copy, rows.implementation(), 0);
-      SparseMatrix::Row   row;
-      std::vector<int>    numbers;
-      std::vector<double> values;
+      const bool        is_alone = rows.n_processes() == 1;
+      SparseMatrix::Row row;
+      RowArrays         result{{0}, {}, {}};
       for (int i = 0; i < rows.n_local(); ++i)
         {
           row.clear();
           fill(i, row);
-          std::stable_sort(row.begin(), row.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
-          numbers.clear();
-          values.clear();
+          if (is_alone)
+            for (auto &entry : row)
+              entry.first = columns.place(entry.first);
+          const auto by_column = [](const auto &a, const auto &b) { return a.first < b.first; };
+          if (!std::is_sorted(row.begin(), row.end(), by_column))
+            std::stable_sort(row.begin(), row.end(), by_column);
           for (const auto &[column, value] : row)
-            if (!numbers.empty() && numbers.back() == column)
-              values.back() += value;
+            if (static_cast<int>(result.column.size()) > result.start.back() && result.column.back() == column)
+              result.value.back() += value;
             else
               {
-                numbers.push_back(column);
-                values.push_back(value);
+                result.column.push_back(column);
+                result.value.push_back(value);
               }
-          check_epetra(matrix->InsertGlobalValues(rows.number(i), numbers.size(), values.data(), numbers.data()),
-                       "rows of a sparse matrix");
+          result.start.push_back(static_cast<int>(result.column.size()));
         }
-      check_epetra(matrix->FillComplete(columns.implementation(), rows.implementation()), "rows of a sparse matrix");
-      return matrix;
+      return matrix_of(rows, columns, std::move(result));
     }
 
-    /// A B with Epetra's product.
+    /// Entries of a matrix that is not distributed; they are copied where Epetra numbers its columns otherwise.
+    class EntriesHere
+    {
+    public:
+      EntriesHere(const SparseMatrix &A, const bool transpose)
+      {
+        const Epetra_CrsMatrix &matrix = A.implementation();
+        int                    *start, *column;
+        double                 *value;
+        if (matrix.Importer() == nullptr && matrix.ExtractCrsDataPointers(start, column, value) == 0)
+          rows = {matrix.NumMyRows(), start, column, value};
+        else
+          {
+            SparseMatrix::Row row;
+            own.start = {0};
+            for (int i = 0; i < A.n_rows(); ++i)
+              {
+                A.get_row(i, row);
+                for (const auto &[number, entry] : row)
+                  {
+                    own.column.push_back(A.columns().place(number));
+                    own.value.push_back(entry);
+                  }
+                own.start.push_back(static_cast<int>(own.column.size()));
+              }
+            rows = own.rows();
+          }
+        if (transpose)
+          {
+            own  = transposed(rows, A.n_columns());
+            rows = own.rows();
+          }
+      }
+      EntriesHere(const EntriesHere &)            = delete;
+      EntriesHere &operator=(const EntriesHere &) = delete;
+
+      SparseRows rows;
+
+    private:
+      RowArrays own;
+    };
+
+    /// op(A) op(B), of distributed matrices with Epetra's product.
     std::shared_ptr<SparseMatrix> product(const SparseMatrix &A, const bool transpose_A, const SparseMatrix &B, const bool transpose_B)
     {
       const RowMap &rows    = transpose_A ? A.columns() : A.rows();
       const RowMap &columns = transpose_B ? B.rows() : B.columns();
-      auto          C       = std::make_unique<Epetra_CrsMatrix>(Copy, rows.implementation(), 0);
+      if (rows.n_processes() == 1)
+        return std::make_shared<SparseMatrix>(
+          matrix_of(rows, columns, product(EntriesHere(A, transpose_A).rows, EntriesHere(B, transpose_B).rows, columns.n())));
+      auto C = std::make_unique<Epetra_CrsMatrix>(Copy, rows.implementation(), 0);
       check_epetra(EpetraExt::MatrixMatrix::Multiply(A.implementation(), transpose_A, B.implementation(), transpose_B, *C, false),
                    "product of two sparse matrices");
       check_epetra(C->FillComplete(columns.implementation(), rows.implementation()), "product of two sparse matrices");
@@ -98,52 +164,6 @@ namespace Squeal
     double largest_of_all(const SparseMatrix &A, const double local)
     {
       return dealii::Utilities::MPI::max(local, A.communicator());
-    }
-
-    /// Rows of a product that are a task.
-    constexpr int rows_of_task = 4096;
-
-    /// Y = A X for a few columns, whose rows are put side by side so that the entries of A are read once for all of them.
-    template <int width>
-    void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
-    {
-      const int                             n_columns = static_cast<int>(X.cols());
-      dealii::AlignedVector<LaneRow<width>> rows, image;
-      rows.resize_fast(X.rows());
-      image.resize_fast(A.n_rows);
-      to_lanes(X.data(), X.outerStride(), static_cast<int>(X.rows()), n_columns, rows.data());
-      run_tasks((A.n_rows + rows_of_task - 1) / rows_of_task, [&](const int part) {
-        const int first = part * rows_of_task, n_rows = std::min(rows_of_task, A.n_rows - first);
-        set_products({n_rows, A.start + first, A.column, A.value}, rows.data(), image.data() + first);
-        from_lanes(image.data() + first, Y.data() + first, Y.outerStride(), n_rows, n_columns);
-      });
-    }
-
-    /// The same for one column.
-    void multiply_column(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
-    {
-      run_tasks((A.n_rows + rows_of_task - 1) / rows_of_task, [&](const int part) {
-        for (int i = part * rows_of_task; i < std::min(A.n_rows, (part + 1) * rows_of_task); ++i)
-          {
-            double sum = 0.;
-            for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-              sum += A.value[k] * X(A.column[k], 0);
-            Y(i, 0) = sum;
-          }
-      });
-    }
-
-    /// Y = A X for the rows of A and those columns of it that are known here.
-    void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
-    {
-      const Eigen::Index n = X.cols();
-      Eigen::Index       width;
-      for (Eigen::Index first = 0; first < n; first += width)
-        {
-          width                    = std::min<Eigen::Index>(n - first, 16);
-          const auto multiply_some = width == 1 ? multiply_column : width <= 8 ? multiply_columns<8> : multiply_columns<16>;
-          multiply_some(A, X.middleCols(first, width), Y.middleCols(first, width));
-        }
     }
   } // namespace
 
@@ -244,7 +264,25 @@ namespace Squeal
 
   std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T)
   {
-    return multiply(T, *multiply(A, T), true, false);
+    if (T.rows().n_processes() > 1)
+      return multiply(T, *multiply(A, T), true, false);
+    const EntriesHere from_left(T, true), from_right(T, false);
+    const int         n  = T.n_columns();
+    const RowArrays   AT = product(EntriesHere(A, false).rows, from_right.rows, n);
+    return std::make_shared<SparseMatrix>(matrix_of(T.columns(), T.columns(), product(from_left.rows, AT.rows(), n)));
+  }
+
+  std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
+  {
+    auto result = std::make_unique<Epetra_CrsMatrix>(A.implementation());
+    for (int i = 0; i < result->NumMyRows(); ++i)
+      {
+        int     n;
+        double *values;
+        check_epetra(result->ExtractMyRowView(i, n, values), "a row of a sparse matrix");
+        std::transform(values, values + n, values, [](const double value) { return std::abs(value); });
+      }
+    return std::make_shared<SparseMatrix>(std::move(result));
   }
 
   std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f)
@@ -269,6 +307,14 @@ namespace Squeal
         throw SolverError("matrices of different shape or distribution", "sum of sparse matrices",
                           "this is a mistake in the program: please report it");
 
+    if (first.rows().n_processes() == 1)
+      {
+        std::deque<EntriesHere>                    entries;
+        std::vector<std::pair<double, SparseRows>> rows;
+        for (const auto &[factor, A] : summands)
+          rows.emplace_back(factor, entries.emplace_back(*A, false).rows);
+        return std::make_shared<SparseMatrix>(matrix_of(first.rows(), first.columns(), sum(rows, first.n_columns())));
+      }
     SparseMatrix::Row part;
     return std::make_shared<SparseMatrix>(first.rows(), first.columns(), [&](const int i, SparseMatrix::Row &row) {
       for (const auto &[factor, A] : summands)

@@ -94,6 +94,24 @@ TEST_P(MultiVectors, LinearCombinationsAgreeWithGramMatrices)
   EXPECT_LT(max_norm(gram(view(J, 0, 4), view(J, 4, 3)) - G), 1e-14);
 }
 
+TEST_P(MultiVectors, GrowByColumns)
+{
+  const RowMap      map = rows(33, GetParam());
+  const MultiVector A = random_vectors(map, 3, 1), B = random_vectors(map, 2, 2);
+  MultiVector       all = A;
+  all.append(B);
+  all.append(view(A, 1, 1));
+  ASSERT_EQ(all.n_columns(), 6);
+  EXPECT_EQ(max_norm(view(all, 0, 3).local() - A.local()), 0.);
+  EXPECT_EQ(max_norm(view(all, 3, 2).local() - B.local()), 0.);
+  EXPECT_EQ(max_norm(view(all, 5, 1).local() - A.local().middleCols(1, 1)), 0.);
+  if (all.n_local_rows() > 0)
+    {
+      MultiVector some = view(all, 0, 2); // which cannot grow
+      EXPECT_THROW(some.append(B), SolverError);
+    }
+}
+
 TEST_P(MultiVectors, MatrixProductsAreAdjoint)
 {
   const RowMap      map = rows(40, GetParam()), columns = rows(25, GetParam());

@@ -3,6 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <gtest/gtest.h>
@@ -82,6 +83,29 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
   EXPECT_DOUBLE_EQ(max_norm(*D), 27.);
   EXPECT_DOUBLE_EQ(symmetry_defect(*P), 1.);
   EXPECT_EQ(symmetry_defect(*A), 0.);
+}
+
+TEST_P(Sparse, ModuliAreThoseOfTheEntries)
+{
+  const auto A = rectangular(GetParam());
+  EXPECT_EQ(max_norm(to_dense(*moduli(*A)) - to_dense(*A).cwiseAbs()), 0.);
+}
+
+TEST_P(Sparse, FewEntriesMeetLongVectors)
+{
+  // Fewer entries than rows of the vectors, and more of them
+  const RowMap few = rows(5, GetParam()), many = rows(400, GetParam());
+  for (const int n_entries : {1, 100})
+    {
+      const auto        A = sparse(few, many, [n_entries](const int i) {
+        Row row;
+        for (int k = 0; k < n_entries; ++k)
+          row[(37 * k + 5 * i) % 400] += 1. + k - i;
+        return row;
+      });
+      const MultiVector X = random_vectors(many, 19);
+      EXPECT_LT(max_norm(replicate(*A * X) - to_dense(*A) * replicate(X)), 1e-12) << n_entries;
+    }
 }
 
 TEST_P(Sparse, MatrixMarketFilesReturnTheSameNumbers)

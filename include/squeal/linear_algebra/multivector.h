@@ -89,6 +89,9 @@ namespace Squeal
     MultiVector &operator-=(const MultiVector &X);
     MultiVector &operator*=(double factor);
 
+    /// Puts the columns of X behind those that are there. Large blocks grow without being copied. Views of this cease to be valid.
+    void append(const MultiVector &X);
+
     /// Columns [first, first + n), n ≥ 0, as a view; this must outlive it.
     friend MultiVector view(const MultiVector &X, int first, int n);
 

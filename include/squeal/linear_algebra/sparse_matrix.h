@@ -103,6 +103,9 @@ namespace Squeal
   /// Tᵀ A T, n_T × n_T, distributed like the columns of T.
   std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T);
 
+  /// |A|, entry by entry.
+  std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A);
+
   /// diag(f(0), f(1), ...) A, of the numbers of the rows.
   std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f);
 
