@@ -68,20 +68,23 @@ namespace Squeal
     /// Terms of a body: stiffness and mass at unit coefficient, once more as its damping.
     void add_body(BodyTerms &bodies, const Model &model, const types::material_id component, const Material &material)
     {
-      const std::string  &name = model.component_names()[component];
-      FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
-                                 update_values | CellStiffness::update_flags(model.element()));
-      CellStiffness       cell_stiffness(model.element(), material.poisson_ratio);
+      const std::string  &name      = model.component_names()[component];
       const CellPredicate belongs   = [component](const Cell &cell) { return cell->material_id() == component; };
-      const CellIntegral  stiffness = [&](const Cell &cell, FullMatrix<double> &K) {
-        values.reinit(cell);
-        check_orientation(values, name);
-        cell_stiffness.integrate(values, K);
+      const MakeIntegrals integrals = [&] {
+        const auto values = std::make_shared<FEValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
+                                                          update_values | CellStiffness::update_flags(model.element()));
+        const auto cell_stiffness    = std::make_shared<CellStiffness>(model.element(), material.poisson_ratio);
+        const CellIntegral stiffness = [values, cell_stiffness, &name](const Cell &cell, FullMatrix<double> &K) {
+          values->reinit(cell);
+          check_orientation(*values, name);
+          cell_stiffness->integrate(*values, K);
+        };
+        // The values are those of the cell whose stiffness has been integrated
+        const CellIntegral mass = [values](const Cell &, FullMatrix<double> &M) { integrate_mass(*values, M); };
+        return std::vector{stiffness, mass};
       };
-      // The values are those of the cell whose stiffness has been integrated
-      const CellIntegral mass     = [&](const Cell &, FullMatrix<double> &M) { integrate_mass(values, M); };
-      const auto         matrices = assemble_cells(model, belongs, {stiffness, mass});
-      const auto        &K = matrices[0], &M = matrices[1];
+      const auto  matrices = assemble_cells(model, belongs, integrals);
+      const auto &K = matrices[0], &M = matrices[1];
 
       const std::string young = BodyParameter::young_modulus(name), density = BodyParameter::density(name),
                         alpha = BodyParameter::rayleigh_alpha(name), beta = BodyParameter::rayleigh_beta(name);
@@ -93,8 +96,6 @@ namespace Squeal
 
     void add_mount(BodyTerms &bodies, const Model &model, const ElasticMount &mount)
     {
-      FEFaceValues<3>          values(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
-                                      update_values | update_quadrature_points | update_JxW_values);
       const types::boundary_id surface    = model.surface_id(mount.surface);
       const auto               is_mounted = [surface](const Cell &cell, const unsigned int f) {
         return cell->at_boundary(f) && cell->face(f)->boundary_id() == surface;
@@ -108,18 +109,23 @@ namespace Squeal
             std::make_tuple(axial, "axial", mount.axial)})
         if (stiffness != 0.)
           {
-            const CellIntegral integral = [&, e = direction](const Cell &cell, FullMatrix<double> &K) {
-              K = 0.;
-              for (const unsigned int f : cell->face_indices())
-                if (is_mounted(cell, f))
-                  {
-                    values.reinit(cell, f);
-                    integrate_mount(values, e, K);
-                  }
+            const MakeIntegrals integrals = [&, e = direction] {
+              const auto values =
+                std::make_shared<FEFaceValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
+                                                  update_values | update_quadrature_points | update_JxW_values);
+              return std::vector<CellIntegral>{[values, e, is_mounted](const Cell &cell, FullMatrix<double> &K) {
+                K = 0.;
+                for (const unsigned int f : cell->face_indices())
+                  if (is_mounted(cell, f))
+                    {
+                      values->reinit(cell, f);
+                      integrate_mount(*values, e, K);
+                    }
+              }};
             };
             const std::string parameter = BodyParameter::mount_stiffness(name, mount.surface);
             bodies.terms.push_back(
-              sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, {integral})[0]));
+              sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, integrals)[0]));
           }
     }
   } // namespace

@@ -32,18 +32,21 @@ namespace Squeal
 
   void add_rotation(BodyTerms &bodies, const Model &model, const double angular_velocity)
   {
-    FEValues<3>         values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
-                               update_values | update_gradients | update_quadrature_points | update_JxW_values);
-    const CellPredicate is_disc    = [](const Cell &cell) { return cell->material_id() == 0; };
-    const CellIntegral  gyroscopic = [&](const Cell &cell, FullMatrix<double> &G) {
-      values.reinit(cell);
-      integrate(values, G,
-                 [](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
+    const CellPredicate is_disc   = [](const Cell &cell) { return cell->material_id() == 0; };
+    const MakeIntegrals integrals = [&model] {
+      const auto values = std::make_shared<FEValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
+                                                        update_values | update_gradients | update_quadrature_points | update_JxW_values);
+      const CellIntegral gyroscopic = [values](const Cell &cell, FullMatrix<double> &G) {
+        values->reinit(cell);
+        integrate(*values, G,
+                  [](const double v, const double turned_v, const double u, const double turned_u) { return v * turned_u - turned_v * u; });
+      };
+      const CellIntegral convective = [values](const Cell &, FullMatrix<double> &N) {
+        integrate(*values, N, [](double, const double turned_v, double, const double turned_u) { return turned_v * turned_u; });
+      };
+      return std::vector{gyroscopic, convective};
     };
-    const CellIntegral convective = [&](const Cell &, FullMatrix<double> &N) {
-      integrate(values, N, [](double, const double turned_v, double, const double turned_u) { return turned_v * turned_u; });
-    };
-    const auto matrices = assemble_cells(model, is_disc, {gyroscopic, convective});
+    const auto matrices = assemble_cells(model, is_disc, integrals);
 
     const std::string speed = BodyParameter::angular_velocity, density = BodyParameter::density(model.component_names().front());
     bodies.values[speed] = {angular_velocity};

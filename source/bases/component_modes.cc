@@ -4,6 +4,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -32,6 +33,45 @@ namespace Squeal
     return masses;
   }
 
+  ComponentProblem component_problem(const Model             &model,
+                                     const ContactInterface  &closed,
+                                     const SecondOrderSystem &system,
+                                     const Component          component,
+                                     const ContactBoundary    boundary)
+  {
+    const auto T = component_kernel(model, closed, component, boundary);
+    return {component, boundary, T, congruence(*system.stiffness, *T), congruence(*system.mass, *T)};
+  }
+
+  ComponentModes component_modes(const Model                 &model,
+                                 const ContactInterface      &interface,
+                                 const SecondOrderSystem     &system,
+                                 const ComponentProblem      &problem,
+                                 const double                 largest_eigenvalue,
+                                 const SymmetricModesOptions &options)
+  {
+    // Multigrid has to know how the dofs of this component move
+    SymmetricModesOptions        used = options;
+    std::optional<NearNullSpace> space;
+    if (options.library == FactorizationLibrary::multigrid)
+      used.near_null_space = &space.emplace(near_null_space(model, *problem.kernel));
+    const SymmetricModes modes = symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, used);
+
+    ComponentModes result;
+    result.eigenvalues = modes.eigenvalues;
+    result.residuals   = modes.residuals;
+    if (modes.eigenvalues.empty())
+      return result;
+    result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
+
+    const auto masses = nodal_masses(model, *system.mass);
+    result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
+                                                               pin_labels(model, interface, masses, *result.vectors);
+    for (int j = 0; j < modes.n_rigid_body; ++j)
+      result.labels[j] = {ModeFamily::rigid_body};
+    return result;
+  }
+
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
                                  const ContactInterface      &closed,
@@ -41,30 +81,24 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    const auto T = component_kernel(model, closed, component, boundary);
-
-    // Multigrid has to know how the dofs of this component move
-    SymmetricModesOptions        used = options;
-    std::optional<NearNullSpace> space;
-    if (options.library == FactorizationLibrary::multigrid)
-      used.near_null_space = &space.emplace(near_null_space(model, *T));
-    const SymmetricModes modes =
-      symmetric_modes(*congruence(*system.stiffness, *T), *congruence(*system.mass, *T), largest_eigenvalue, used);
-
-    ComponentModes result;
-    result.eigenvalues = modes.eigenvalues;
-    result.residuals   = modes.residuals;
-    if (modes.eigenvalues.empty())
-      return result;
-    result.vectors = std::make_shared<MultiVector>(*T * *modes.vectors);
-
-    const auto masses = nodal_masses(model, *system.mass);
-    result.labels =
-      component == Component::disc ? disc_labels(model, masses, *result.vectors) : pin_labels(model, interface, masses, *result.vectors);
-    for (int j = 0; j < modes.n_rigid_body; ++j)
-      result.labels[j] = {ModeFamily::rigid_body};
-    return result;
+    return component_modes(model, interface, system, component_problem(model, closed, system, component, boundary), largest_eigenvalue,
+                           options);
   }
+
+  namespace
+  {
+    /// Adds the shares of the modes of a set, from their products with real and imaginary parts, divided by @p norms.
+    void add_shares(const ComponentModes      &reference,
+                    const DenseMatrix         &re,
+                    const DenseMatrix         &im,
+                    const std::vector<double> &norms,
+                    std::vector<ShapeShares>  &shares)
+    {
+      for (int j = 0; j < re.cols(); ++j)
+        for (int i = 0; i < re.rows(); ++i)
+          shares[j][reference.labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / norms[j];
+    }
+  } // namespace
 
   std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
                                         const SparseMatrix                        &mass,
@@ -75,18 +109,43 @@ namespace Squeal
     const MultiVector M_re    = mass * real_part;
     const MultiVector M_im    = imaginary_part ? mass * *imaginary_part : MultiVector(real_part.map(), n_modes);
 
-    const std::vector<double> norm_re = column_products(real_part, M_re),
-                              norm_im = imaginary_part ? column_products(*imaginary_part, M_im) : std::vector<double>(n_modes, 0.);
-
+    std::vector<double> norms = column_products(real_part, M_re);
+    if (imaginary_part)
+      {
+        const auto of_imaginary = column_products(*imaginary_part, M_im);
+        std::transform(norms.begin(), norms.end(), of_imaginary.begin(), norms.begin(), std::plus<>());
+      }
     std::vector<ShapeShares> shares(n_modes);
     for (const ComponentModes *reference : references)
       if (reference->vectors)
-        {
-          const DenseMatrix re = gram(*reference->vectors, M_re), im = gram(*reference->vectors, M_im);
-          for (int j = 0; j < n_modes; ++j)
-            for (int i = 0; i < re.rows(); ++i)
-              shares[j][reference->labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / (norm_re[j] + norm_im[j]);
-        }
+        add_shares(*reference, gram(*reference->vectors, M_re), gram(*reference->vectors, M_im), norms, shares);
+    return shares;
+  }
+
+  std::vector<DenseMatrix> products_with(const std::vector<const ComponentModes *> &references,
+                                         const SparseMatrix                        &mass,
+                                         const MultiVector                         &X)
+  {
+    const MultiVector        MX = mass * X;
+    std::vector<DenseMatrix> result;
+    for (const ComponentModes *reference : references)
+      result.push_back(reference->vectors ? gram(*reference->vectors, MX) : DenseMatrix(0, X.n_columns()));
+    return result;
+  }
+
+  std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
+                                        const std::vector<DenseMatrix>            &products,
+                                        const DenseMatrix                         &mass,
+                                        const DenseMatrix                         &coordinates)
+  {
+    const Eigen::Index    k       = coordinates.cols() / 2;
+    const Eigen::VectorXd squares = coordinates.cwiseProduct(mass * coordinates).colwise().sum(), sums = squares.head(k) + squares.tail(k);
+    std::vector<ShapeShares> shares(k);
+    for (std::size_t i = 0; i < references.size(); ++i)
+      {
+        const DenseMatrix of_modes = products[i] * coordinates;
+        add_shares(*references[i], of_modes.leftCols(k), of_modes.rightCols(k), {sums.begin(), sums.end()}, shares);
+      }
     return shares;
   }
 

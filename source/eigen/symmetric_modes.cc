@@ -6,7 +6,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
-#include <squeal/linear_algebra/factorization_beside.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -50,7 +49,7 @@ namespace Squeal
         : K(K)
         , M(M)
         , options(options)
-        , early(factor_of_stiffness())
+        , early(options.factor.valid() ? options.factor : factor_of_stiffness(K, options))
         , counted(options.counting == ModeCounting::inertia || K.n_rows() <= largest_dense_system)
         , count(options.count ? *options.count :
                 counted       ? count_below(K, M, limit, options.what) :
@@ -134,8 +133,9 @@ namespace Squeal
         if (options.shift == 0.)
           try
             {
-              factorization =
-                early.valid() ? early.get().factor : factorize_positive_definite(K, options.library, options.what, options.near_null_space);
+              if (early.valid())
+                return *early.get().factor;
+              factorization = factorize_positive_definite(K, options.library, options.what, options.near_null_space);
               return *factorization;
             }
           catch (const SolverError &)
@@ -146,16 +146,6 @@ namespace Squeal
         const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
         factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what, options.near_null_space);
         return *factorization;
-      }
-
-      /// The factor of K, if it will be needed, while modes are counted.
-      std::future<FactorBeside> factor_of_stiffness() const
-      {
-        if (options.inverse != nullptr || options.shift != 0. || options.solver == RealSolver::lobpcg || K.n_rows() <= largest_dense_system)
-          return {};
-        return factorize_beside(
-          K.rows(), [this] { return std::shared_ptr<const SparseMatrix>(std::shared_ptr<const SparseMatrix>(), &K); }, options.library,
-          options.what, options.near_null_space);
       }
 
       /// A space that contains approximations of all wanted modes.
@@ -365,14 +355,14 @@ namespace Squeal
         return !elastic.exceeded_by(value / count.limit);
       }
 
-      const SparseMatrix            &K, &M;
-      const SymmetricModesOptions    options;
-      std::future<FactorBeside>      early;
-      const bool                     counted;
-      ModeCount                      count;
-      bool                           lifted = false;
-      std::unique_ptr<Factorization> factorization;
-      std::unique_ptr<Multigrid>     multigrid;
+      const SparseMatrix              &K, &M;
+      const SymmetricModesOptions      options;
+      std::shared_future<FactorBeside> early; ///< while modes are counted
+      const bool                       counted;
+      ModeCount                        count;
+      bool                             lifted = false;
+      std::unique_ptr<Factorization>   factorization;
+      std::unique_ptr<Multigrid>       multigrid;
     };
     /// The modes of all uncoupled parts in one order.
     SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
@@ -414,6 +404,16 @@ namespace Squeal
       return all;
     }
   } // namespace
+
+  std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options)
+  {
+    if (options.inverse != nullptr || options.shift != 0. || options.solver == RealSolver::lobpcg || K.n_rows() <= largest_dense_system)
+      return {};
+    return factorize_beside(
+             K.rows(), [&K] { return std::shared_ptr<const SparseMatrix>(std::shared_ptr<const SparseMatrix>(), &K); }, options.library,
+             options.what, options.near_null_space)
+      .share();
+  }
 
   SymmetricModes symmetric_modes(const SparseMatrix          &K,
                                  const SparseMatrix          &M,

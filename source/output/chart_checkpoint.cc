@@ -1,4 +1,3 @@
-#include <squeal/base/checksum.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
@@ -10,6 +9,8 @@
 #include <deal.II/base/utilities.h>
 
 #include <boost/serialization/string.hpp>
+
+#include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -28,7 +29,7 @@ namespace Squeal
   {
     /// First words of every archive; the number after them is the version of its format.
     const std::string title             = "squeal sweep";
-    constexpr int     version_of_format = 4;
+    constexpr int     version_of_format = 5;
 
     constexpr const char *csv_header =
       "line [-],mu [-],frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-]\n";
@@ -38,6 +39,13 @@ namespace Squeal
     {
       std::uint64_t size = 0, checksum = 0;
     };
+
+    /// CRC-32, fast beside what it takes to write; @p before continues that of what comes before.
+    std::uint64_t checksum(const std::string_view bytes, const std::uint64_t before = 0)
+    {
+      // zlib takes a null pointer for a question about the initial value
+      return bytes.empty() ? before : crc32_z(before, reinterpret_cast<const unsigned char *>(bytes.data()), bytes.size());
+    }
 
     std::string_view as_text(const std::vector<char> &record)
     {

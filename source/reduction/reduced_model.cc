@@ -28,7 +28,13 @@ namespace Squeal
   void ReducedModel::extend(MultiVector given)
   {
     const int old = size();
-    T             = std::make_shared<MultiVector>(old > 0 ? join({&basis(), &given}) : std::move(given));
+    modes.reset(); // which refer to the basis
+    if (old == 0)
+      T = std::make_shared<MultiVector>(std::move(given));
+    else if (T.use_count() == 1)
+      T->append(given);
+    else
+      T = std::make_shared<MultiVector>(join({&basis(), &given}));
     // Where they are now
     const MultiVector vectors = view(*T, old, T->n_columns() - old);
 

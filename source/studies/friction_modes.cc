@@ -1,7 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/estimates/conditioning.h>
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/krylov_modes.h>
@@ -161,10 +160,14 @@ namespace Squeal
     return counts + rest;
   }
 
-  void record_conditioning(const FrictionlessModes &frictionless, const ComplexModes &modes, const double tolerance, Run &run)
+  void record_conditioning(const FrictionlessModes &frictionless,
+                           const ComplexModes      &modes,
+                           const ModalProducts     &products,
+                           const double             tolerance,
+                           Run                     &run)
   {
     const Conditioning conditioning =
-      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, modes);
+      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, modes, products);
     const double kappa = std::accumulate(conditioning.modes.begin(), conditioning.modes.end(), 1.,
                                          [](const double a, const double b) { return std::max(a, b); });
     run.measure("condition number of the stiffness [-]", conditioning.stiffness);

@@ -113,6 +113,18 @@ namespace Squeal
     return result;
   }
 
+  std::vector<DenseMatrix> FrictionlessModes::reference_products(const MultiVector &vectors) const
+  {
+    std::vector<DenseMatrix> result(references().size());
+    for_column_blocks(vectors.n_columns(), [&](const int first, const int n) {
+      const auto some =
+        products_with(references(), *linearisation.scene->system.mass, *linearisation.coupled.kernel * view(vectors, first, n));
+      for (std::size_t i = 0; i < some.size(); ++i)
+        result[i] = append_columns(result[i], some[i]);
+    });
+    return result;
+  }
+
   std::vector<ModeLabel> FrictionlessModes::identify(const MultiVector &real_part, const MultiVector *imaginary_part) const
   {
     return Squeal::identify(references(), shape_shares(real_part, imaginary_part));
@@ -163,25 +175,28 @@ namespace Squeal
 
     // -------------------------------------------------------- component modes
     check_speed(coupled, parameters);
+    const double disc_shift   = stabilizing_shift(*scene.model, scene.system, omega_max);
+    auto         disc_options = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
+    disc_options.n_expected   = static_cast<int>(scene.expected_modes / 2.);
+    const auto disc     = component_problem(*scene.model, linearisation.interface, scene.system, Component::disc, ContactBoundary::free);
+    disc_options.factor = factor_of_stiffness(*disc.stiffness, disc_options);
     const std::optional<ModeCount> count = number_of_modes(coupled, (1. + margin) * omega_max, run);
 
-    const double disc_shift = stabilizing_shift(*scene.model, scene.system, omega_max);
-    const auto   components = [&](const Component component, const ContactBoundary boundary, const char *name, const double band) {
-      run.progress.update(name);
-      SymmetricModesOptions options = real_modes_options(parameters.solvers, name, component == Component::disc ? disc_shift : 0.);
+    const auto components = [&](const ComponentProblem &problem, const SymmetricModesOptions &options, const double band) {
+      run.progress.update(options.what);
+      return component_modes(*scene.model, scene.interface, scene.system, problem, band * band * limit, options);
+    };
+    const auto pins = [&](const ContactBoundary boundary, const char *name, const double band) {
+      SymmetricModesOptions options = real_modes_options(parameters.solvers, name, 0.);
       // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
-      options.by_parts = component == Component::pins;
-      if (component == Component::disc)
-        options.n_expected = static_cast<int>(scene.expected_modes / 2.);
-      else
-        factorize_parts(options);
-      return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary, band * band * limit,
-                               options);
+      options.by_parts = true;
+      factorize_parts(options);
+      return components(component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary), options, band);
     };
     run.progress.begin("Component modes");
-    result.disc         = components(Component::disc, ContactBoundary::free, "modes of the disc", label_band);
-    result.pins_free    = components(Component::pins, ContactBoundary::free, "modes of the free pins", 1.);
-    result.pins_sliding = components(Component::pins, ContactBoundary::sliding, "modes of the sliding pins", label_band);
+    result.pins_free    = pins(ContactBoundary::free, "modes of the free pins", 1.);
+    result.pins_sliding = pins(ContactBoundary::sliding, "modes of the sliding pins", label_band);
+    result.disc         = components(disc, disc_options, label_band);
     const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
                n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
     run.count("disc modes", n_disc);

@@ -166,7 +166,7 @@ namespace Squeal
     const Linearisation               &linearisation = frictionless.linearisation;
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
     const SolverParameters            &solvers       = parameters.solvers;
-    record_conditioning(frictionless, friction.modes,
+    record_conditioning(frictionless, friction.modes, modal_products(frictionless.linearisation.coupled, friction.modes),
                         solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());

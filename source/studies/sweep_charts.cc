@@ -53,15 +53,15 @@ namespace Squeal
         sets.push_back({model.plan.point(line, grid[i], model.regime.closed), &chart.points[i], {modes.begin(), modes.end()}});
       if (sets.empty())
         return;
-      if (const auto earlier = store.basis(); !earlier.empty())
-        model.reduced->extend(earlier.front());
+      if (auto earlier = store.basis(); !earlier.empty())
+        model.reduced->extend(std::move(earlier.front()));
       else
         {
-          const auto vectors = model.reduced->new_vectors(sets);
+          auto vectors = model.reduced->new_vectors(sets);
           if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
             return;
           store.keep(*vectors);
-          model.reduced->extend(*vectors);
+          model.reduced->extend(*std::move(vectors));
         }
       for (const ChartModel::ModesAt &set : sets)
         model.known.erase({line, set.point.friction_coefficient});

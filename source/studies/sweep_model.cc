@@ -93,15 +93,35 @@ namespace Squeal
     return {reduced->reduced().times_basis(X.real()), reduced->reduced().times_basis(X.imag())};
   }
 
-  std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
+  std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
   {
+    const ReducedModel &model = reduced->reduced();
+    if (!model.is_restricted())
+      {
+        // The basis only grows once modes are named
+        const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
+        if (n_known < model.size())
+          {
+            const auto added = frictionless.reference_products(view(model.basis(), n_known, model.size() - n_known));
+            reference_products.resize(added.size());
+            for (std::size_t i = 0; i < added.size(); ++i)
+              reference_products[i] = append_columns(reference_products[i], added[i]);
+          }
+        return Squeal::shape_shares(frictionless.references(), reference_products, model.mass(),
+                                    halves(with_rows(point.right(Eigen::all, modes), model.size())));
+      }
     std::vector<ShapeShares> shares;
     for_column_blocks(static_cast<int>(modes.size()), [&](const int first, const int n) {
       const auto [re, im] = shapes(point, {modes.begin() + first, modes.begin() + first + n});
       const auto some     = frictionless.shape_shares(re, &im);
       shares.insert(shares.end(), some.begin(), some.end());
     });
-    return identify(frictionless.references(), shares);
+    return shares;
+  }
+
+  std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    return identify(frictionless.references(), shape_shares(point, modes));
   }
 
   Linearisation SweepModel::linearisation_at(const double friction_coefficient) const
@@ -140,8 +160,8 @@ namespace Squeal
       return result;
     }
 
-    /// The modes of a point in the band, at full order.
-    ComplexModes modes_in_band(const SweepModel &model, const ChartPoint &point)
+    /// The modes of a point in the band, at full order, and their products by the reduced model.
+    std::pair<ComplexModes, ModalProducts> modes_in_band(const SweepModel &model, const ChartPoint &point)
     {
       ComplexModes     result;
       std::vector<int> numbers;
@@ -156,7 +176,10 @@ namespace Squeal
       auto [re, im]         = model.shapes(point, numbers);
       result.real_part      = std::make_shared<MultiVector>(std::move(re));
       result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
-      return result;
+
+      const ReducedModel &reduced = model.reduced->reduced();
+      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::all, numbers), reduced.size()));
+      return {result, {X.transpose() * reduced.stiffness() * X, X.transpose() * reduced.mass() * X}};
     }
   } // namespace
 
@@ -180,7 +203,10 @@ namespace Squeal
     // Of the last value: friction makes eigenvalues ill-conditioned. The basis leaves errors up to the tolerance, and rounding may add to them
     const auto last = std::find_if(sweep.points.rbegin(), sweep.points.rend(), [](const auto &point) { return point.has_value(); });
     if (last != sweep.points.rend())
-      record_conditioning(model.frictionless, modes_in_band(model, **last), 2. * options.tolerance, run);
+      {
+        const auto [modes, products] = modes_in_band(model, **last);
+        record_conditioning(model.frictionless, modes, products, 2. * options.tolerance, run);
+      }
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
                              ": ", sweep.why_stopped,

@@ -128,15 +128,15 @@ namespace Squeal
       });
     }
 
-    /// The vectors @p to of Y become the parts of the columns of X in the span of @p vectors, normalised.
-    void project(const ComplexDenseMatrix &vectors, const ComplexDenseMatrix &X, CarriedVectors &Y, const std::vector<int> &to)
+    /// The vectors @p to of Y become the parts of the columns of X in the span of the orthonormal columns of Q, normalised.
+    void project(const ComplexDenseMatrix &Q, const ComplexDenseMatrix &X, CarriedVectors &Y, const std::vector<int> &to)
     {
-      const Eigen::Index       r = std::max(vectors.rows(), X.rows());
-      const ComplexDenseMatrix Q = orthonormal_basis(with_rows(vectors, r)).Q;
-      const ComplexDenseMatrix P = Q * (Q.adjoint() * with_rows(X, r));
+      // Vectors of a smaller basis have zeros beyond it
+      const Eigen::Index       r = std::min(Q.rows(), X.rows());
+      const ComplexDenseMatrix P = Q * (Q.topRows(r).adjoint() * X.topRows(r));
       for (std::size_t j = 0; j < to.size(); ++j)
         if (const double norm = P.col(j).norm(); norm > 0.)
-          Y.replace(to[j], P.col(j).head(vectors.rows()) / norm);
+          Y.replace(to[j], P.col(j) / norm);
     }
 
     /// Carries vectors from point k to the next.
@@ -149,11 +149,11 @@ namespace Squeal
           origin[image[i]] = static_cast<int>(i);
 
       Carried result(next);
-      for (const std::vector<int> &all : members_of(mode_clusters(next.lambda)))
+      for (const MultipleModes &multiple : modes.multiple[k + 1])
         {
           std::vector<int> from, to;
-          for (const int j : all)
-            if (all.size() > 1 && origin[j] >= 0)
+          for (const int j : multiple.modes)
+            if (origin[j] >= 0)
               {
                 from.push_back(origin[j]);
                 to.push_back(j);
@@ -161,13 +161,25 @@ namespace Squeal
               }
           if (!to.empty())
             {
-              project(next.right(Eigen::all, all), carried.right.columns(from), result.right, to);
-              project(next.left(Eigen::all, all), carried.left.columns(from), result.left, to);
+              project(multiple.right, carried.right.columns(from), result.right, to);
+              project(multiple.left, carried.left.columns(from), result.left, to);
             }
         }
       carried = std::move(result);
     }
   } // namespace
+
+  std::vector<MultipleModes> multiple_modes(const ChartPoint &point)
+  {
+    std::vector<MultipleModes> result;
+    for (std::vector<int> &modes : members_of(mode_clusters(point.lambda)))
+      if (modes.size() > 1)
+        {
+          const ComplexDenseMatrix right = point.right(Eigen::all, modes), left = point.left(Eigen::all, modes);
+          result.push_back({std::move(modes), orthonormal_basis(right).Q, orthonormal_basis(left).Q});
+        }
+    return result;
+  }
 
   void follow_branches(TrackedModes &modes)
   {

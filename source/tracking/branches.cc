@@ -23,6 +23,8 @@ namespace Squeal
       if (found.size() != values.size())
         throw SolverError(std::to_string(found.size()) + " sets of modes instead of " + std::to_string(values.size()),
                           "modes over the friction coefficient", "this is a mistake in the program: please report it");
+      std::vector<std::vector<MultipleModes>> multiple(found.size());
+      run_tasks(static_cast<int>(found.size()), [&](const int i) { multiple[i] = multiple_modes(found[i]); });
       for (std::size_t i = 0; i < values.size(); ++i)
         {
           found[i].friction_coefficient = values[i];
@@ -30,6 +32,7 @@ namespace Squeal
                                                            [](const ChartPoint &p, const double value) { return p.friction_coefficient < value; }) -
                         modes.points.begin();
           modes.points.insert(modes.points.begin() + k, std::move(found[i]));
+          modes.multiple.insert(modes.multiple.begin() + k, std::move(multiple[i]));
           modes.is_refinement.insert(modes.is_refinement.begin() + k, refines);
           if (k > 0 && k + 1 < modes.n_points())
             {
@@ -76,7 +79,7 @@ namespace Squeal
         throw Error("the " + std::string(name) + " is " + std::to_string(quantity), "modes over the friction coefficient",
                     "give a positive value");
 
-    TrackedModes tracked{options, {}, {}, {}, {}, {}};
+    TrackedModes tracked{options, {}, {}, {}, {}, {}, {}};
     insert(tracked, evaluate, grid, false);
     for (;;)
       {

@@ -1,3 +1,4 @@
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/chart_model.h>
@@ -118,8 +119,7 @@ namespace Squeal
   {
     if (model.size() == 0)
       return;
-    model.modal();
-    residuals.prepare();
+    run_tasks(2, [this](const int part) { part == 0 ? residuals.prepare() : static_cast<void>(model.modal()); });
   }
 
   ChartPoint ChartModel::evaluate(const OperatingPoint &point) const
@@ -262,9 +262,9 @@ namespace Squeal
     return Squeal::new_vectors(system, model, directions);
   }
 
-  void ChartModel::extend(const MultiVector &vectors)
+  void ChartModel::extend(MultiVector vectors)
   {
-    model.extend(vectors);
+    model.extend(std::move(vectors));
     residuals.extend(model);
   }
 
@@ -308,10 +308,10 @@ namespace Squeal
     return join({real_modes, &largest});
   }
 
-  void ChartModel::restart(const MultiVector &vectors)
+  void ChartModel::restart(MultiVector vectors)
   {
     model = ReducedModel(system);
     residuals.clear();
-    extend(vectors);
+    extend(std::move(vectors));
   }
 } // namespace Squeal

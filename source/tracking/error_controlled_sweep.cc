@@ -6,7 +6,9 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <atomic>
 #include <deque>
+#include <mutex>
 
 namespace Squeal
 {
@@ -49,14 +51,14 @@ namespace Squeal
                      const int             maximum_basis,
                      ChartStore           *store)
     {
-      const auto vectors = model.new_vectors({{point, &chart, model.inaccurate_modes(chart, tolerance)}});
+      auto vectors = model.new_vectors({{point, &chart, model.inaccurate_modes(chart, tolerance)}});
       if (!vectors)
         return "rounding errors leave no new direction";
       if (model.size() + vectors->n_columns() > maximum_basis)
         return text("the basis would exceed ", maximum_basis, " vectors");
-      model.extend(*vectors);
       if (store != nullptr)
         store->keep(*vectors);
+      model.extend(*std::move(vectors));
       return "";
     }
 
@@ -123,11 +125,72 @@ namespace Squeal
       for (ChartPoint &chart : charts)
         for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
           *vectors = with_rows(*vectors, model.size());
-      const MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
+      MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
       if (store != nullptr)
         store->keep(smaller);
-      model.restart(smaller);
+      model.restart(std::move(smaller));
       return n_growths;
+    }
+    using Each = std::function<void(int, const ChartPoint &)>;
+
+    /// Threads take the next point each; one of them hands over what is found, in its order, while the others go on.
+    std::vector<ChartPoint> evaluate_here(const ChartModel &model, const std::vector<OperatingPoint> &points, const Each &each)
+    {
+      const int               n_points = static_cast<int>(points.size());
+      std::vector<ChartPoint> result(n_points);
+      std::vector<bool>       is_found(n_points, false);
+      std::mutex              handing_over;
+      std::atomic<int>        next          = 0;
+      std::atomic<bool>       has_failed    = false;
+      int                     n_handed_over = 0;
+      run_tasks(n_points, [&](int) {
+        if (has_failed)
+          return;
+        try
+          {
+            const int i = next++;
+            result[i]   = model.evaluate(points[i]);
+            const std::lock_guard<std::mutex> lock(handing_over);
+            is_found[i] = true;
+            for (; n_handed_over < n_points && is_found[n_handed_over]; ++n_handed_over)
+              if (each)
+                each(n_handed_over, result[n_handed_over]);
+          }
+        catch (...)
+          {
+            has_failed = true;
+            throw;
+          }
+      });
+      return result;
+    }
+
+    /// Threads of all processes evaluate some points each, which are handed over, in their order, before the next ones.
+    std::vector<ChartPoint> evaluate_in_rounds(const ChartModel                  &model,
+                                               const std::vector<OperatingPoint> &points,
+                                               const MPI_Comm                     communicator,
+                                               const Each                        &each)
+    {
+      const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
+      const int n_points = static_cast<int>(points.size());
+      // Some for each thread, so that none waits long for the last of them
+      constexpr int           points_of_thread = 4;
+      const int               n_rounds         = points_of_thread * n_at_once(communicator) / n;
+      std::vector<ChartPoint> result;
+      for (int first = 0; first < n_points; first += n * n_rounds)
+        {
+          const int               n_here = std::min(n * n_rounds, n_points - first);
+          std::vector<ChartPoint> mine(n_here > me ? (n_here - me + n - 1) / n : 0);
+          run_tasks(static_cast<int>(mine.size()), [&](const int i) { mine[i] = model.evaluate(points[first + i * n + me]); });
+          for (int i = 0; i < n_here; ++i)
+            {
+              const int owner = i % n;
+              result.push_back(dealii::Utilities::MPI::broadcast(communicator, owner == me ? mine[i / n] : ChartPoint(), owner));
+              if (each)
+                each(first + i, result.back());
+            }
+        }
+      return result;
     }
   } // namespace
 
@@ -136,28 +199,9 @@ namespace Squeal
                                    const MPI_Comm                                      communicator,
                                    const std::function<void(int, const ChartPoint &)> &each)
   {
-    const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
-    const int n_points = static_cast<int>(points.size());
-    // Some for each thread, so that none waits long for the last of them
-    constexpr int points_of_thread = 4;
-    const int     n_rounds         = points_of_thread * n_at_once(communicator) / n;
+    const int n = dealii::Utilities::MPI::n_mpi_processes(communicator);
     model.prepare();
-    std::vector<ChartPoint> result;
-    for (int first = 0; first < n_points; first += n * n_rounds)
-      {
-        const int               n_here = std::min(n * n_rounds, n_points - first);
-        std::vector<ChartPoint> mine(n_here > me ? (n_here - me + n - 1) / n : 0);
-        run_tasks(static_cast<int>(mine.size()), [&](const int i) { mine[i] = model.evaluate(points[first + i * n + me]); });
-        for (int i = 0; i < n_here; ++i)
-          {
-            const int         owner = i % n;
-            const ChartPoint &known = owner == me ? mine[i / n] : ChartPoint();
-            result.push_back(n == 1 ? known : dealii::Utilities::MPI::broadcast(communicator, known, owner));
-            if (each)
-              each(first + i, result.back());
-          }
-      }
-    return result;
+    return n == 1 ? evaluate_here(model, points, each) : evaluate_in_rounds(model, points, communicator, each);
   }
 
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
@@ -183,9 +227,9 @@ namespace Squeal
     if (basis.empty())
       result.n_growths = train(model, points, training, options, store, communicator, report);
     else
-      model.restart(basis.front());
+      model.restart(std::move(basis.front()));
     for (std::size_t b = 1; b < basis.size(); ++b)
-      model.extend(basis[b]);
+      model.extend(std::move(basis[b]));
     if (store != nullptr)
       for (std::size_t i = 0; i < points.size(); ++i)
         result.points[i] = store->find(points[i]);

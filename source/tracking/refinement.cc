@@ -1,5 +1,7 @@
 #include "tracked_modes.h"
 
+#include <squeal/base/tasks.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -188,6 +190,11 @@ namespace Squeal
       if (x.size() < 3)
         return std::nullopt;
 
+      // Lagrange's polynomial: coefficients of its products
+      for (std::size_t a = 0; a < x.size(); ++a)
+        for (std::size_t b = 0; b < x.size(); ++b)
+          if (a != b)
+            f[a] /= x[a] - x[b];
       double                peak = remaining * ends;
       std::optional<double> result;
       constexpr int         n_samples = 16;
@@ -200,7 +207,7 @@ namespace Squeal
               double term = f[a];
               for (std::size_t b = 0; b < x.size(); ++b)
                 if (a != b)
-                  term *= (t - x[b]) / (x[a] - x[b]);
+                  term *= t - x[b];
               sum += term;
             }
           if (sum > peak)
@@ -292,20 +299,24 @@ namespace Squeal
           if (predicted.empty())
             wanted.push_back(proposal(modes, search));
         }
-    for (int k = 0; k + 1 < modes.n_points(); ++k)
-      if (modes.width(k) > modes.options.smallest_step)
+    // Steps are looked at several at a time, and what they ask for is put together in their order
+    std::vector<std::vector<double>> suspicions(std::max(0, modes.n_points() - 1));
+    run_tasks(static_cast<int>(suspicions.size()), [&](const int k) {
+      ChartInterval &step = modes.intervals[k];
+      if (modes.width(k) <= modes.options.smallest_step)
+        return;
+      if (!step.links->resolved)
+        suspicions[k] = {0.5 * (modes.mu(k) + modes.mu(k + 1))};
+      else if (Surroundings here = surroundings(modes, k); !(step.quiet == here))
         {
-          if (!modes.intervals[k].links->resolved)
-            wanted.push_back(0.5 * (modes.mu(k) + modes.mu(k + 1)));
-          else if (Surroundings here = surroundings(modes, k); !(modes.intervals[k].quiet == here))
-            {
-              const std::size_t before = wanted.size();
-              for (const auto &suspicions : {interactions(modes, k), approaches(modes, k)})
-                wanted.insert(wanted.end(), suspicions.begin(), suspicions.end());
-              if (wanted.size() == before)
-                modes.intervals[k].quiet = std::move(here);
-            }
+          for (const auto &found : {interactions(modes, k), approaches(modes, k)})
+            suspicions[k].insert(suspicions[k].end(), found.begin(), found.end());
+          if (suspicions[k].empty())
+            step.quiet = std::move(here);
         }
+    });
+    for (const std::vector<double> &values : suspicions)
+      wanted.insert(wanted.end(), values.begin(), values.end());
     std::sort(wanted.begin(), wanted.end());
 
     // Two searches may want nearly the same

@@ -30,16 +30,27 @@ namespace Squeal
     std::optional<Surroundings> quiet  = {}; ///< those in which nothing seemed to happen in it
   };
 
+  /// Modes of a multiple λ, with orthonormal bases of the spans of their right and left vectors.
+  struct MultipleModes
+  {
+    std::vector<int>   modes;
+    ComplexDenseMatrix right, left;
+  };
+
+  /// Of each multiple λ of a point.
+  std::vector<MultipleModes> multiple_modes(const ChartPoint &point);
+
   /// Modes over the friction coefficient: the points evaluated so far, and the mode of each branch at each of them.
   struct TrackedModes
   {
-    const ChartOptions           &options;
-    std::vector<ChartPoint>       points; ///< ascending
-    std::vector<bool>             is_refinement;
-    std::vector<ChartInterval>    intervals;
-    std::vector<Branch>           branches;
-    std::vector<std::vector<int>> branch_of; ///< branch of each mode of each point
-    int                           n_refinements = 0;
+    const ChartOptions                     &options;
+    std::vector<ChartPoint>                 points;   ///< ascending
+    std::vector<std::vector<MultipleModes>> multiple; ///< of each point
+    std::vector<bool>                       is_refinement;
+    std::vector<ChartInterval>              intervals;
+    std::vector<Branch>                     branches;
+    std::vector<std::vector<int>>           branch_of; ///< branch of each mode of each point
+    int                                     n_refinements = 0;
 
     int n_points() const
     {

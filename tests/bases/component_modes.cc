@@ -5,6 +5,7 @@
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <gtest/gtest.h>
 
@@ -335,6 +336,25 @@ TEST(Identify, SharesOfMixturesAndPhases)
   EXPECT_NEAR(found[0].participation, 1., 1e-10);
   EXPECT_EQ(found[1], labels[single]);
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
+}
+
+TEST(Identify, CoordinatesInABasisGiveTheSameShares)
+{
+  const References                          r;
+  const std::vector<const ComponentModes *> references = {&r.disc, &r.pins};
+  const MultiVector                         X = join({r.disc.vectors.get(), r.pins.vectors.get()}), random = random_vectors(X.map(), 3);
+  const MultiVector                         basis = join({&X, &random}); // neither orthonormal nor in the span of the references
+  DenseMatrix                               Y(basis.n_columns(), 8);
+  for (Eigen::Index i = 0; i < Y.size(); ++i)
+    Y.data()[i] = std::sin(1. + 0.7 * i);
+  const MultiVector re = basis * DenseMatrix(Y.leftCols(4)), im = basis * DenseMatrix(Y.rightCols(4));
+  const auto        expected = shape_shares(references, *r.s.system.mass, re, &im);
+  const auto        found =
+    shape_shares(references, products_with(references, *r.s.system.mass, basis), weighted_gram(basis, *r.s.system.mass), Y);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t j = 0; j < expected.size(); ++j)
+    for (const auto &[shape, share] : expected[j])
+      EXPECT_NEAR(found[j].at(shape), share, 1e-12);
 }
 
 TEST(Identify, ModesUnlikeAllAreUnnamed)

@@ -20,7 +20,7 @@ namespace
     Progress         progress;
     solvers.complex_tolerance = 1e-13;
     ComplexModes modes        = krylov_modes(system, inverse, 0., mu, band, system.map().n(), solvers, progress);
-    return {modes, estimate_conditioning(system, inverse, 0., modes)};
+    return {modes, estimate_conditioning(system, inverse, 0., modes, modal_products(system, modes))};
   }
 
   CoupledSystem without_contact(std::shared_ptr<const SparseMatrix> M,

@@ -284,11 +284,11 @@ TEST_F(ChartCheckpoints, KeepPartsApart)
 
 TEST_F(ChartCheckpoints, ShowWhatIsFound)
 {
-  const std::uintmax_t title = std::string("squeal sweep 4\n").size() + key.size() + 1;
+  const std::uintmax_t title = std::string("squeal sweep 5\n").size() + key.size() + 1;
   const auto           ends  = keep_some();
   alone([&] {
     EXPECT_EQ(content(fs::path(folder) / "points.csv"), header + csv_of(0, 0.1) + csv_of(1, 1. / 3.) + csv_of(0, 0.2));
-    EXPECT_EQ(content(archive).substr(0, title), "squeal sweep 4\n" + key + '\0');
+    EXPECT_EQ(content(archive).substr(0, title), "squeal sweep 5\n" + key + '\0');
     EXPECT_EQ(ends.front(), title);
     // As if the run had been killed while it wrote
     std::ofstream(fs::path(folder) / "points.csv", std::ios::app) << "0,0.3,1";
@@ -331,7 +331,7 @@ TEST_F(ChartCheckpoints, ContinueTheirOwnSweepOnly)
     stream.seekp(std::string("squeal sweep ").size());
     stream.put('9');
   });
-  EXPECT_NE(refusal([&] { checkpoint(); }).find("`squeal sweep 9` there, `squeal sweep 4` here"), std::string::npos);
+  EXPECT_NE(refusal([&] { checkpoint(); }).find("`squeal sweep 9` there, `squeal sweep 5` here"), std::string::npos);
 }
 
 TEST_F(ChartCheckpoints, LieNowhereBeforeAnythingIsFound)

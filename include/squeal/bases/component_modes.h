@@ -18,6 +18,21 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
+  /// The eigenproblem of a component with contact free or sliding.
+  struct ComponentProblem
+  {
+    Component                           component;
+    ContactBoundary                     boundary;
+    std::shared_ptr<const SparseMatrix> kernel;          ///< T, n_free × n: the coordinates of the component
+    std::shared_ptr<const SparseMatrix> stiffness, mass; ///< TᵀKT, TᵀMT
+  };
+
+  ComponentProblem component_problem(const Model             &model,
+                                     const ContactInterface  &closed,
+                                     const SecondOrderSystem &system,
+                                     Component                component,
+                                     ContactBoundary          boundary);
+
   /// Masses lumped to the nodes (row sums) [kg] whose rows this process has; zero of the others, and of clamped ones.
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
@@ -38,6 +53,14 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
+  /// The same for a problem that is at hand.
+  ComponentModes component_modes(const Model                 &model,
+                                 const ContactInterface      &interface,
+                                 const SecondOrderSystem     &system,
+                                 const ComponentProblem      &problem,
+                                 double                       largest_eigenvalue,
+                                 const SymmetricModesOptions &options);
+
   /// Part of each shape of component modes in a mode: |v_iᵀ M φ|² / φᴴ M φ, summed over the v_i of the shape [-].
   using ShapeShares = std::map<ModeShape, double>;
 
@@ -53,6 +76,23 @@ namespace Squeal
                                         const SparseMatrix                        &mass,
                                         const MultiVector                         &real_part,
                                         const MultiVector                         *imaginary_part);
+
+  /// VᵀMX of the component modes V of each of the @p references, with vectors X, n_free × r.
+  std::vector<DenseMatrix> products_with(const std::vector<const ComponentModes *> &references,
+                                         const SparseMatrix                        &mass,
+                                         const MultiVector                         &X);
+
+  /**
+   * The same for modes Xy of a reduced model, from their coordinates y.
+   *
+   * @param products       products_with() its basis X
+   * @param mass           XᵀMX
+   * @param coordinates    [Re y, Im y], r × 2k
+   */
+  std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
+                                        const std::vector<DenseMatrix>            &products,
+                                        const DenseMatrix                         &mass,
+                                        const DenseMatrix                         &coordinates);
 
   /**
    * Identities of real or complex coupled modes by their M-inner products with

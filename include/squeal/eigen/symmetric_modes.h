@@ -2,7 +2,7 @@
 
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
-#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/factorization_beside.h>
 #include <squeal/linear_algebra/multigrid.h>
 #include <squeal/linear_algebra/multivector.h>
 
@@ -40,6 +40,9 @@ namespace Squeal
 
     /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
     const LinearOperator *inverse = nullptr;
+
+    /// The factor of K that factor_of_stiffness() has begun to make with the same options; not valid: it is made here.
+    std::shared_future<FactorBeside> factor;
 
     /// The count of the modes below the limit where the caller has it already, by count_below(); without by_parts.
     std::optional<ModeCount> count;
@@ -110,6 +113,9 @@ namespace Squeal
                                  const SparseMatrix          &M,
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
+
+  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none.
+  std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options);
 
   /**
    * Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ by the

@@ -46,6 +46,18 @@ namespace Squeal
     double digits() const;
   };
 
-  /// Some 15 solves with one vector and products with the modes.
-  Conditioning estimate_conditioning(const CoupledSystem &system, const UpdatedInverse &inverse, double shift, const ComplexModes &modes);
+  /// [Re Φ, Im Φ]ᵀ A [Re Φ, Im Φ] of modes Φ and the frictionless A = K_c, M_c.
+  struct ModalProducts
+  {
+    DenseMatrix stiffness, mass;
+  };
+
+  ModalProducts modal_products(const CoupledSystem &system, const ComplexModes &modes);
+
+  /// Some 15 solves with one vector. @p products are those of modal_products(), or what a reduced model has of them.
+  Conditioning estimate_conditioning(const CoupledSystem  &system,
+                                     const UpdatedInverse &inverse,
+                                     double                shift,
+                                     const ComplexModes   &modes,
+                                     const ModalProducts  &products);
 } // namespace Squeal

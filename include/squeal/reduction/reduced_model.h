@@ -100,7 +100,7 @@ namespace Squeal
     void find_norms();
 
     const CoupledSystem                         *system;
-    mutable std::shared_ptr<const MultiVector>   T;      ///< null as long as nobody asks for that of a restricted model:
+    mutable std::shared_ptr<MultiVector>         T;      ///< null as long as nobody asks for that of a restricted model:
     std::shared_ptr<const MultiVector>           parent; ///< TZ of these
     DenseMatrix                                  Z;
     std::vector<DenseMatrix>                     matrices; ///< TᵀAT of each term; empty for those with weights

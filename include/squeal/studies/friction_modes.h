@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/estimates/conditioning.h>
 #include <squeal/modes/complex_modes.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/frictionless_modes.h>
@@ -34,8 +35,14 @@ namespace Squeal
   /**
    * Keeps condition numbers and the digits that the eigenvalues of @p modes keep (estimates/conditioning.h) in the run record, and warns
    * where they are fewer than @p tolerance asks for, the relative error of eigenvalues that the parameters allow.
+   *
+   * @param products of the modes with K_c and M_c
    */
-  void record_conditioning(const FrictionlessModes &frictionless, const ComplexModes &modes, double tolerance, Run &run);
+  void record_conditioning(const FrictionlessModes &frictionless,
+                           const ComplexModes      &modes,
+                           const ModalProducts     &products,
+                           double                   tolerance,
+                           Run                     &run);
 
   /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,

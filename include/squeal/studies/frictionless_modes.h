@@ -31,6 +31,9 @@ namespace Squeal
     /// What coupled modes have of them; @p imaginary_part may be null.
     std::vector<ShapeShares> shape_shares(const MultiVector &real_part, const MultiVector *imaginary_part) const;
 
+    /// Products of the references with vectors of the coupled system, n_coupled × r, for shape_shares() of reduced models.
+    std::vector<DenseMatrix> reference_products(const MultiVector &vectors) const;
+
     /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
     std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
   };

@@ -52,6 +52,12 @@ namespace Squeal
     FrictionlessModes                            frictionless;
     std::unique_ptr<ChartModel>                  reduced;
     std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
+
+  private:
+    /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
+    std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    mutable std::vector<DenseMatrix> reference_products; ///< with the basis as it was when modes were last named
   };
 
   /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.

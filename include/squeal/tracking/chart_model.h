@@ -96,7 +96,7 @@ namespace Squeal
     std::optional<MultiVector> new_vectors(const std::vector<ModesAt> &modes) const;
 
     /// Extends the basis. All processes must call.
-    void extend(const MultiVector &vectors);
+    void extend(MultiVector vectors);
 
     /**
      * Principal axes in the K_c-norm of what modes of the @p charts, right and left, of unit strain energy, have outside of the
@@ -114,7 +114,7 @@ namespace Squeal
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
     /// Begins anew with another basis. All processes must call.
-    void restart(const MultiVector &vectors);
+    void restart(MultiVector vectors);
 
   private:
     /// New vectors from the residuals of modes of a member of a family, at full order.
