@@ -223,6 +223,10 @@ namespace Squeal
       /// Looks at the Ritz values.
       void assess()
       {
+        worst_before     = state.worst;
+        dimension_before = dimension_seen;
+        dimension_seen   = krylov.dimension();
+
         ritz     = krylov.ritz_pairs();
         state    = convergence(transformation, ritz, tolerance, exhausted);
         n_wanted = std::max(n_wanted, state.n_inside);
@@ -234,10 +238,7 @@ namespace Squeal
       /// Size at which to look next; restarts if it does not fit.
       int next_size()
       {
-        const int b         = std::max(krylov.block_size(), 1);
-        const int n_missing = state.n_inside - state.n_converged;
-        // Between one and a half and two and a half vectors for each missing value is what it takes in the end.
-        int n_more = std::max(3 * b, 3 * n_missing / 2);
+        int n_more = n_until_next_look();
         if (krylov.dimension() + n_more > largest_basis())
           {
             // Half of the room beyond the wanted vectors keeps what is on its way.
@@ -248,6 +249,20 @@ namespace Squeal
             n_more = std::max(n_more, (largest_basis() - krylov.dimension()) / 2);
           }
         return krylov.dimension() + n_more;
+      }
+
+      /**
+       * Vectors until the next look. All values converge within a few steps, each of which costs more than a look. The worst one tells
+       * how many it needs if it goes on to fall as since the last look; three quarters of these, for it falls faster in the end.
+       */
+      int n_until_next_look() const
+      {
+        const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size(), 1);
+        const int n_new = dimension_seen - dimension_before;
+        if (n_new <= 0 || !(state.worst < worst_before))
+          return std::max(2 * least, n_missing / 4);
+        const double needed = n_new * std::log(state.worst / tolerance) / std::log(worst_before / state.worst);
+        return static_cast<int>(std::clamp<double>(0.75 * needed, least, std::max(2 * least, 3 * n_missing / 2)));
       }
 
       /**
@@ -317,7 +332,9 @@ namespace Squeal
         return krylov.inject(fresh_vectors(n_directions));
       }
 
-      int n_injections = 0;
+      int    n_injections   = 0;
+      int    dimension_seen = 0, dimension_before = 0; ///< at the last look and the one before
+      double worst_before = 0.;
     };
   } // namespace
 
