@@ -209,7 +209,7 @@ namespace Squeal
         while (krylov.dimension() < n_basis && !exhausted)
           {
             if (krylov.dimension() == 0)
-              inject(options.block_size);
+              krylov.inject(first_block());
             if (krylov.block_size() == 0)
               {
                 exhausted = inject(options.block_size) == 0;
@@ -316,6 +316,20 @@ namespace Squeal
       int                          n_restarts = 0, n_basis_largest = 0;
 
     private:
+      /// Sums of the close vectors, if any, and of all others so much that the block has a component of every mode.
+      MultiVector first_block()
+      {
+        constexpr double share_of_others = 1e-3;
+        MultiVector      block           = fresh_vectors(options.block_size);
+        if (options.close_vectors == nullptr)
+          return block;
+        const MultiVector         sums      = *options.close_vectors * gram(*options.close_vectors, block);
+        const std::vector<double> all_norms = column_norms(block), norms = column_norms(sums);
+        for (int j = 0; j < block.n_columns(); ++j)
+          block.col(j) = share_of_others / all_norms[j] * block.col(j) + sums.col(j) / norms[j];
+        return block;
+      }
+
       CompactKrylov::Operator shift_invert() const
       {
         return [this](const MultiVector &states, MultiVector &image) { transformation.apply(states, image); };

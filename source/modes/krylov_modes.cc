@@ -71,7 +71,8 @@ namespace Squeal
                             const double            largest_circular_frequency,
                             const int               n_expected,
                             const SolverParameters &parameters,
-                            Progress               &progress)
+                            Progress               &progress,
+                            const MultiVector      *real_modes)
   {
     const ParameterValues values = system.at(mu);
     std::vector<Term>     sparse, others;
@@ -95,6 +96,7 @@ namespace Squeal
     options.largest_circular_frequency = largest_circular_frequency;
     options.largest_damping            = largest_rate_of_band;
     options.expected                   = n_expected;
+    options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;
     options.stiffness_norm             = norm_bound(sparse, values, 0);
     options.damping_norm               = norm_bound(sparse, values, 1);

@@ -77,7 +77,7 @@ namespace Squeal
     ComplexModes modes;
     if (parameters.solvers.complex_solver == ComplexSolver::krylov)
       modes = krylov_modes(coupled, *frictionless.inverse, frictionless.shift, mu, omega_max, real.eigenvalues.size(), parameters.solvers,
-                           run.progress);
+                           run.progress, real.vectors.get());
     else
       {
         ResidualIterationOptions iteration;

@@ -156,7 +156,7 @@ namespace Squeal
           run.progress.update(text("mu = ", value));
           modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
                                                          plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
-                                                         run.progress));
+                                                         run.progress, frictionless.real.vectors.get()));
           for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
             parts.push_back(part.get());
         }

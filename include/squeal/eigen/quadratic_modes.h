@@ -37,6 +37,9 @@ namespace Squeal
 
     int block_size = 8; ///< vectors per block solve
 
+    /// Vectors close to the wanted ones, e.g. modes without friction and damping: the process starts from sums of them. Null: none.
+    const MultiVector *close_vectors = nullptr;
+
     /// Random vectors that look for missing values in the end, e.g. clusters with more members than the block; 0: none.
     int n_fresh_directions = 4;
 

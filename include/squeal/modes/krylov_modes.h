@@ -12,6 +12,7 @@ namespace Squeal
    *
    * @param inverse    factor and attachment modes of the frictionless system at @p shift
    * @param n_expected real modes in the band, which tells how many to look for
+   * @param real_modes these, from which the process then starts; null: none
    *
    * Where the stiffness with friction is almost singular without a shift, a factor with a shift is made for this μ.
    *
@@ -24,5 +25,6 @@ namespace Squeal
                             double                  largest_circular_frequency,
                             int                     n_expected,
                             const SolverParameters &parameters,
-                            Progress               &progress);
+                            Progress               &progress,
+                            const MultiVector      *real_modes = nullptr);
 } // namespace Squeal
