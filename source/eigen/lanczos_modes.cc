@@ -203,7 +203,7 @@ namespace Squeal
         n_found = std::min(n_converged(ritz, request.tolerance), request.n_wanted);
         if (process.block_size() == 0 || process.dimension() >= largest)
           break;
-        size = std::min(largest, process.dimension() + std::max(width, (request.n_wanted - n_found) / 2));
+        size = std::min(largest, process.dimension() + std::max(width, (request.n_wanted - n_found) / 4));
       }
     if (n_found == 0)
       return {};
