@@ -98,9 +98,11 @@ namespace Squeal
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;
-    options.stiffness_norm             = norm_bound(sparse, values, 0);
-    options.damping_norm               = norm_bound(sparse, values, 1);
-    options.report                     = [&](const std::string &state) { progress.update(state); };
+    // Without damping the modes of equal frequency that all pins have stay a cluster, which a narrower block finds only in part at a time
+    options.block_size     = pencil.damping ? 8 : 12;
+    options.stiffness_norm = norm_bound(sparse, values, 0);
+    options.damping_norm   = norm_bound(sparse, values, 1);
+    options.report         = [&](const std::string &state) { progress.update(state); };
 
     ComplexModes modes;
     try
