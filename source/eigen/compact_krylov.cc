@@ -19,6 +19,9 @@ namespace Squeal
     /// Unit vectors of which projecting them again leaves less than this were rounding errors.
     constexpr double meaningless = 1e-3;
 
+    /// Columns of which the others leave more than this share are far from dependent.
+    constexpr double independent = 1e-2;
+
     /// Parts of stacked coordinates, each of r rows, side by side.
     DenseMatrix parts_of(const DenseMatrix &states, const int degree)
     {
@@ -105,6 +108,19 @@ namespace Squeal
       return result;
     }
 
+    /// Smallest pivot of R Πᵀ by pivoted_qr() / norm of its column.
+    double smallest_share(const DenseMatrix &R)
+    {
+      double result = 1.;
+      for (Eigen::Index k = 0; k < R.rows(); ++k)
+        {
+          Eigen::Index pivot;
+          const double largest = R.row(k).cwiseAbs().maxCoeff(&pivot);
+          result               = std::min(result, largest / R.col(pivot).norm());
+        }
+      return result;
+    }
+
     /// The same for a small matrix, by Householder reflections (X is replaced by Q, n × k).
     DenseMatrix pivoted_qr(DenseMatrix &X, const double smallest)
     {
@@ -165,27 +181,33 @@ namespace Squeal
 
   DenseMatrix CompactKrylov::absorb(MultiVector &X, const std::vector<double> &magnitudes)
   {
-    DenseMatrix coefficients = DenseMatrix::Zero(r, X.n_columns()), R = DenseMatrix::Identity(X.n_columns(), X.n_columns());
-    const auto  project = [&](MultiVector &Q) {
-      if (r == 0)
-        return 0.;
-      const DenseMatrix removed = gram(basis(), Q);
-      multiply_add(-1., basis(), removed, 1., Q);
-      coefficients += removed * R;
-      return max_norm(removed);
-    };
-
-    // Revealing the rank and normalising before the second round makes "twice
-    // is enough" hold for each direction, however little the first one left.
+    DenseMatrix coefficients = DenseMatrix::Zero(r, X.n_columns());
+    if (r > 0)
+      {
+        // The second round removes what rounding errors left of the first
+        const DenseMatrix most = gram(basis(), X), rest = subtract_then_gram(basis(), most, X);
+        multiply_add(-1., basis(), rest, 1., X);
+        coefficients = most + rest;
+      }
     std::vector<double> smallest = magnitudes;
     std::for_each(smallest.begin(), smallest.end(), [](double &x) { x *= negligible; });
-    project(X);
-    R = pivoted_qr(X, smallest);
-    for (int round = 0; round < 2 && R.rows() > 0; ++round)
+    DenseMatrix R = pivoted_qr(X, smallest);
+
+    // Where the columns were almost dependent, normalising what was left of them magnified its rounding errors: once more
+    double share = smallest_share(R);
+    agree(map.communicator(), &share, 1);
+    for (int round = 0; round < 2 && R.rows() > 0 && share < independent; ++round)
       {
         MultiVector Q       = view(X, 0, R.rows());
-        double      removed = project(Q);
-        agree(map.communicator(), &removed, 1);
+        double      removed = 0.;
+        if (r > 0)
+          {
+            const DenseMatrix rest = gram(basis(), Q);
+            multiply_add(-1., basis(), rest, 1., Q);
+            coefficients += rest * R;
+            removed = max_norm(rest);
+            agree(map.communicator(), &removed, 1);
+          }
         R = pivoted_qr(Q, std::vector<double>(R.rows(), meaningless)) * R;
         if (removed < 1e-8)
           break;

@@ -83,6 +83,25 @@ namespace Squeal
       return result;
     }
 
+    /// Y += X S for up to @p width columns of Y; returns Xᵀ Y of the sum.
+    template <int width>
+    DenseMatrix add_few_columns_then_products(const ConstColumns &X, const DenseMatrix &S, Eigen::Ref<DenseMatrix> Y)
+    {
+      const int                             n = static_cast<int>(Y.cols());
+      dealii::AlignedVector<LaneRow<width>> factors(S.rows()), sums(X.cols()), rows(rows_in_cache);
+      to_lanes(S.data(), S.outerStride(), static_cast<int>(S.rows()), n, factors.data());
+      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
+        const TallBlock block = block_of(X, first, n_rows);
+        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
+        add_combinations(block, factors.data(), rows.data());
+        add_products(block, rows.data(), sums.data());
+        from_lanes(rows.data(), Y.data() + first, Y.outerStride(), n_rows, n);
+      });
+      DenseMatrix result(X.cols(), n);
+      from_lanes(sums.data(), result.data(), result.outerStride(), static_cast<int>(X.cols()), n);
+      return result;
+    }
+
     /// Vectors beside which others are few or many: BLAS copies the many for each product, which is worth it for more than some.
     constexpr int most_few = 16, least_many = 16;
 
@@ -256,22 +275,46 @@ namespace Squeal
     });
   }
 
+  namespace
+  {
+    /// Sum of what @p f returns for the first row and the number of rows of every part of the rows of X, of all processes.
+    DenseMatrix sum_over_parts(const MultiVector &X, const std::function<DenseMatrix(int first, int n)> &f)
+    {
+      std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
+      for_parts(X.n_local_rows(), [&](const int part, const int first, const int n) { sums[part] = f(first, n); });
+      DenseMatrix result = std::move(sums.front());
+      for (std::size_t part = 1; part < sums.size(); ++part)
+        result += sums[part];
+      if (X.map().n_processes() > 1)
+        {
+          sum_over_processes(X.communicator(), result.data(), result.size());
+          agree(X.communicator(), result);
+        }
+      return result;
+    }
+  } // namespace
+
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y)
   {
     require(X.n_local_rows() == Y.n_local_rows(), "inner products");
-    const auto               x = X.local(), y = Y.local();
-    std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
-    for_parts(X.n_local_rows(),
-              [&](const int part, const int first, const int n) { sums[part] = products(x.middleRows(first, n), y.middleRows(first, n)); });
-    DenseMatrix result = std::move(sums.front());
-    for (std::size_t part = 1; part < sums.size(); ++part)
-      result += sums[part];
-    if (X.map().n_processes() > 1)
+    const auto x = X.local(), y = Y.local();
+    return sum_over_parts(X, [&](const int first, const int n) { return products(x.middleRows(first, n), y.middleRows(first, n)); });
+  }
+
+  DenseMatrix subtract_then_gram(const MultiVector &X, const DenseMatrix &S, MultiVector &Y)
+  {
+    if (!few_meet_many(Y.n_columns(), X.n_columns()))
       {
-        sum_over_processes(X.communicator(), result.data(), result.size());
-        agree(X.communicator(), result);
+        multiply_add(-1., X, S, 1., Y);
+        return gram(X, Y);
       }
-    return result;
+    require(X.n_local_rows() == Y.n_local_rows() && X.n_columns() == S.rows() && Y.n_columns() == S.cols(), "difference of vectors");
+    const auto        x             = X.local();
+    auto              y             = Y.local();
+    const DenseMatrix factors       = -S;
+    const auto        add_then_gram = Y.n_columns() <= 8 ? add_few_columns_then_products<8> : add_few_columns_then_products<16>;
+    return sum_over_parts(
+      X, [&](const int first, const int n) { return add_then_gram(x.middleRows(first, n), factors, y.middleRows(first, n)); });
   }
 
   RealPairs agreed(const MPI_Comm communicator, RealPairs pairs)
