@@ -1,21 +1,35 @@
 #include <squeal/base/decision.h>
 
 #include <algorithm>
-#include <mutex>
+#include <functional>
 
 namespace Squeal
 {
   namespace
   {
     /// All decisions of the program; a function's own, so that it exists before the first of them is made.
-    std::vector<DecisionRecord *> &registry()
+    std::vector<Decision *> &registry()
     {
-      static std::vector<DecisionRecord *> all;
+      static std::vector<Decision *> all;
       return all;
     }
 
-    /// Of what decisions keep: several threads decide.
-    std::mutex records_in_use;
+    /// Of this thread, other than that of most others.
+    std::size_t number_of_thread()
+    {
+      static std::atomic<std::size_t> n_threads = 0;
+      thread_local const std::size_t  number    = n_threads++;
+      return number;
+    }
+
+    /// @p kept becomes @p value if that is nearer().
+    template <typename Nearer>
+    void keep_nearest(std::atomic<double> &kept, const double value, const Nearer &nearer)
+    {
+      double known = kept.load(std::memory_order_relaxed);
+      while (nearer(value, known) && !kept.compare_exchange_weak(known, value, std::memory_order_relaxed))
+        ;
+    }
   } // namespace
 
   void merge(std::vector<DecisionRecord> &whole, const std::vector<DecisionRecord> &part)
@@ -45,48 +59,68 @@ namespace Squeal
   }
 
   Decision::Decision(const char *quantity, const double threshold)
-    : record{quantity, threshold}
+    : quantity(quantity)
+    , limit(threshold)
   {
-    registry().push_back(&record);
+    registry().push_back(this);
   }
 
   Decision::~Decision()
   {
     auto &all = registry();
-    all.erase(std::remove(all.begin(), all.end(), &record), all.end());
+    all.erase(std::remove(all.begin(), all.end(), this), all.end());
   }
 
   bool Decision::exceeded_by(const double value) const
   {
-    const bool                        exceeds = value > record.threshold;
-    const std::lock_guard<std::mutex> lock(records_in_use);
+    const bool exceeds = value > limit;
+    Asked     &mine    = asked[number_of_thread() % asked.size()];
     if (exceeds)
-      {
-        record.above = std::min(record.above, value);
-        ++record.n_above;
-      }
+      keep_nearest(mine.above, value, std::less<>());
     else
-      {
-        record.below = std::max(record.below, value);
-        ++record.n_below;
-      }
+      keep_nearest(mine.below, value, std::greater<>());
+    (exceeds ? mine.n_above : mine.n_below).fetch_add(1, std::memory_order_relaxed);
     return exceeds;
+  }
+
+  DecisionRecord Decision::record() const
+  {
+    DecisionRecord result{quantity, limit};
+    for (const Asked &some : asked)
+      {
+        result.below = std::max(result.below, some.below.load());
+        result.above = std::min(result.above, some.above.load());
+        result.n_below += some.n_below;
+        result.n_above += some.n_above;
+      }
+    return result;
+  }
+
+  void Decision::clear()
+  {
+    const DecisionRecord none;
+    for (Asked &some : asked)
+      {
+        some.below   = none.below;
+        some.above   = none.above;
+        some.n_below = some.n_above = 0;
+      }
   }
 
   std::vector<DecisionRecord> Decision::records()
   {
     std::vector<DecisionRecord> result;
-    for (const DecisionRecord *record : registry())
-      if (record->n_below + record->n_above > 0)
-        result.push_back(*record);
+    for (const Decision *decision : registry())
+      if (DecisionRecord record = decision->record(); record.n_below + record.n_above > 0)
+        result.push_back(std::move(record));
     std::sort(result.begin(), result.end(), [](const auto &x, const auto &y) { return x.quantity < y.quantity; });
     return result;
   }
 
   void Decision::forget()
   {
-    for (DecisionRecord *record : registry())
-      *record = {record->quantity, record->threshold};
+    for (Decision *decision : registry())
+      decision->clear();
   }
 
   std::vector<DecisionRecord> Decision::take()

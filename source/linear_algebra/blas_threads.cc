@@ -5,34 +5,51 @@
 
 namespace Squeal
 {
+  namespace
+  {
+    /// A function of a library that may or may not be loaded; null if it is not. The reference BLAS, which Debian may install, lacks some.
+    template <typename Function>
+    Function *loaded(const char *name)
+    {
+      return reinterpret_cast<Function *>(dlsym(RTLD_DEFAULT, name));
+    }
+  } // namespace
+
   int blas_threads()
   {
-    const auto getter = reinterpret_cast<int (*)()>(dlsym(RTLD_DEFAULT, "openblas_get_num_threads"));
+    const auto getter = loaded<int()>("openblas_get_num_threads");
     return getter != nullptr ? getter() : 0;
   }
 
   int set_blas_threads(const int n_threads)
   {
-    // Looked up at run time: the reference BLAS, which Debian may install instead, has no such functions.
-    const auto setter = reinterpret_cast<void (*)(int)>(dlsym(RTLD_DEFAULT, "openblas_set_num_threads"));
-    if (setter != nullptr)
+    if (const auto setter = loaded<void(int)>("openblas_set_num_threads"); setter != nullptr)
       setter(n_threads);
     return blas_threads();
   }
 
-  BlasThreadsOfLarge::BlasThreadsOfLarge(const int n_rows)
-    : before(0)
+  ThreadsOfFactorization::ThreadsOfFactorization(const int n_rows)
   {
-    const int wanted = static_cast<int>(n_task_threads()), now = blas_threads();
-    if (n_rows < rows_of_large_matrices || wanted <= now)
-      return;
-    before = now;
-    set_blas_threads(wanted);
+    if (n_rows >= rows_of_large_matrices)
+      {
+        const int wanted = static_cast<int>(n_task_threads()), now = blas_threads();
+        if (wanted <= now)
+          return;
+        blas_before = now;
+        set_blas_threads(wanted);
+      }
+    else if (const auto levels = loaded<int()>("omp_get_max_active_levels"); levels != nullptr)
+      {
+        levels_before = levels();
+        loaded<void(int)>("omp_set_max_active_levels")(0);
+      }
   }
 
-  BlasThreadsOfLarge::~BlasThreadsOfLarge()
+  ThreadsOfFactorization::~ThreadsOfFactorization()
   {
-    if (before > 0)
-      set_blas_threads(before);
+    if (blas_before > 0)
+      set_blas_threads(blas_before);
+    if (levels_before >= 0)
+      loaded<void(int)>("omp_set_max_active_levels")(levels_before);
   }
 } // namespace Squeal

@@ -119,7 +119,7 @@ namespace Squeal
         S.sorted        = 1;
         S.packed        = 1;
 
-        const BlasThreadsOfLarge threads(static_cast<int>(n));
+        const ThreadsOfFactorization threads(static_cast<int>(n));
         {
           const std::lock_guard<std::mutex> lock(ordering());
           L = cholmod_analyze(&S, &common);

@@ -157,7 +157,7 @@ namespace Squeal
         // Pivoting may need more memory than the analysis foresaw: allow for more and try again.
         for (int attempt = 0; attempt < 6; ++attempt)
           {
-            const BlasThreadsOfLarge threads(id.n);
+            const ThreadsOfFactorization threads(id.n);
             run(2);
             const bool too_little_workspace = id.infog[0] == -8 || id.infog[0] == -9;
             if (!too_little_workspace)

@@ -153,11 +153,11 @@ TEST(BlasThreads, AreSet)
   // All threads of tasks for large matrices, as long as they are factorised
   set_task_threads(2);
   {
-    const BlasThreadsOfLarge small(1000);
+    const ThreadsOfFactorization small(1000);
     EXPECT_EQ(blas_threads(), reported);
   }
   {
-    const BlasThreadsOfLarge large(1000000);
+    const ThreadsOfFactorization large(1000000);
     EXPECT_EQ(blas_threads(), 2 * reported);
   }
   EXPECT_EQ(blas_threads(), reported);

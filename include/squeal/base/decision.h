@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -62,7 +64,7 @@ namespace Squeal
 
     double threshold() const
     {
-      return record.threshold;
+      return limit;
     }
 
     /// Every decision that has been asked, ascending by name.
@@ -75,6 +77,18 @@ namespace Squeal
     static std::vector<DecisionRecord> take();
 
   private:
-    mutable DecisionRecord record;
+    /// What some of the threads asked; on a cache line of its own, so that threads do not wait for each other.
+    struct alignas(64) Asked
+    {
+      std::atomic<double> below = 0., above = std::numeric_limits<double>::infinity();
+      std::atomic<long>   n_below = 0, n_above = 0;
+    };
+
+    DecisionRecord record() const;
+    void           clear();
+
+    const char                   *quantity;
+    double                        limit;
+    mutable std::array<Asked, 16> asked;
   };
 } // namespace Squeal

@@ -17,16 +17,21 @@ namespace Squeal
   /// Rows of a matrix from which on the fronts of its factors are large enough for several threads.
   constexpr int rows_of_large_matrices = 100000;
 
-  /// As long as it lives, the BLAS library has the threads of tasks where a matrix that is factorised has so many rows that they pay.
-  class BlasThreadsOfLarge
+  /**
+   * As long as it lives, the BLAS library has the threads of tasks where a matrix that is factorised has so many rows that they pay. Else
+   * parallel regions of OpenMP that begin on this thread have this thread alone: CHOLMOD has four for every front otherwise, whatever
+   * OMP_NUM_THREADS says, which wait for each other longer than they work.
+   */
+  class ThreadsOfFactorization
   {
   public:
-    explicit BlasThreadsOfLarge(int n_rows);
-    ~BlasThreadsOfLarge();
-    BlasThreadsOfLarge(const BlasThreadsOfLarge &)            = delete;
-    BlasThreadsOfLarge &operator=(const BlasThreadsOfLarge &) = delete;
+    explicit ThreadsOfFactorization(int n_rows);
+    ~ThreadsOfFactorization();
+    ThreadsOfFactorization(const ThreadsOfFactorization &)            = delete;
+    ThreadsOfFactorization &operator=(const ThreadsOfFactorization &) = delete;
 
   private:
-    int before; ///< 0: nothing was changed
+    int blas_before   = 0;  ///< 0: nothing was changed
+    int levels_before = -1; ///< of parallel regions; -1: nothing was changed
   };
 } // namespace Squeal
