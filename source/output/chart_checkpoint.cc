@@ -41,7 +41,7 @@ namespace Squeal
     };
 
     /// CRC-32, fast beside what it takes to write; @p before continues that of what comes before.
-    std::uint64_t checksum(const std::string_view bytes, const std::uint64_t before = 0)
+    std::uint64_t record_checksum(const std::string_view bytes, const std::uint64_t before = 0)
     {
       // zlib takes a null pointer for a question about the initial value
       return bytes.empty() ? before : crc32_z(before, reinterpret_cast<const unsigned char *>(bytes.data()), bytes.size());
@@ -251,7 +251,7 @@ namespace Squeal
         std::vector<char> packed(stream ? head.size : 0);
         if (!stream.read(packed.data(), static_cast<std::streamsize>(packed.size())))
           throw fs::filesystem_error("read", archive, std::make_error_code(std::errc::io_error));
-        if (checksum(as_text(packed)) != head.checksum)
+        if (record_checksum(as_text(packed)) != head.checksum)
           continue;
         std::uint64_t size_of_packed;
         std::memcpy(&size_of_packed, packed.data(), sizeof(size_of_packed));
@@ -287,7 +287,7 @@ namespace Squeal
     const std::string_view  entries{reinterpret_cast<const char *>(block), record.rows * record.columns * sizeof(double)};
     const std::uint64_t     size_of_packed = packed.size();
     const Head              head{sizeof(size_of_packed) + packed.size() + entries.size(),
-                    checksum(entries, checksum(as_text(packed), checksum(bytes_of(size_of_packed))))};
+                    record_checksum(entries, record_checksum(as_text(packed), record_checksum(bytes_of(size_of_packed))))};
     fs::resize_file(archive, end); // what an attempt that failed has left
     // The disk may take longer for a point than the model: a loss of power costs what the last second has found
     const auto   now     = std::chrono::steady_clock::now();

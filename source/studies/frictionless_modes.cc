@@ -153,6 +153,55 @@ namespace Squeal
         options.solver = RealSolver::anasazi;
       options.counting = ModeCounting::inertia;
     }
+
+    /**
+     * Counts the coupled modes up to @p end_of_count [rad/s], and finds the component modes. The factor of the disc may be made beside the
+     * count and the modes of the pins.
+     */
+    std::optional<ModeCount> count_and_find_components(FrictionlessModes &result, const double end_of_count, Run &run)
+    {
+      const Linearisation &linearisation = result.linearisation;
+      const CoupledSystem &coupled       = linearisation.coupled;
+      const Scene         &scene         = *linearisation.scene;
+      const Parameters    &parameters    = run.parameters;
+      const double         omega_max     = circular_frequency(parameters.discretization.maximum_frequency);
+      const double         limit         = omega_max * omega_max;
+      check_speed(coupled, parameters);
+
+      // Outlives the factor that another thread makes of it
+      std::optional disc = component_problem(*scene.model, linearisation.interface, scene.system, Component::disc, ContactBoundary::free);
+      const double  disc_shift             = stabilizing_shift(*scene.model, scene.system, omega_max);
+      auto          disc_options           = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
+      disc_options.n_expected              = static_cast<int>(scene.expected_modes / 2.);
+      disc_options.factor                  = factor_of_stiffness(*disc->stiffness, disc_options);
+      const std::optional<ModeCount> count = number_of_modes(coupled, end_of_count, run);
+
+      const auto components = [&](const ComponentProblem &problem, const SymmetricModesOptions &options, const double band) {
+        run.progress.update(options.what);
+        return component_modes(*scene.model, scene.interface, scene.system, problem, band * band * limit, options);
+      };
+      const auto pins = [&](const ContactBoundary boundary, const char *name, const double band) {
+        SymmetricModesOptions options = real_modes_options(parameters.solvers, name, 0.);
+        // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
+        options.by_parts = true;
+        factorize_parts(options);
+        return components(component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary), options, band);
+      };
+      run.progress.begin("Component modes");
+      result.pins_free    = pins(ContactBoundary::free, "modes of the free pins", 1.);
+      result.pins_sliding = pins(ContactBoundary::sliding, "modes of the sliding pins", label_band);
+      result.disc         = components(*disc, disc_options, label_band);
+      disc_options.factor = {};
+      disc.reset();
+      const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
+                 n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
+      run.count("disc modes", n_disc);
+      run.count("free pin modes", n_free);
+      run.count("sliding pin modes", n_sliding);
+      run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
+                               parameters.discretization.maximum_frequency, " Hz"));
+      return count;
+    }
   } // namespace
 
   FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
@@ -173,37 +222,7 @@ namespace Squeal
     result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
                                                       FactorTime::beside);
 
-    // -------------------------------------------------------- component modes
-    check_speed(coupled, parameters);
-    const double disc_shift   = stabilizing_shift(*scene.model, scene.system, omega_max);
-    auto         disc_options = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
-    disc_options.n_expected   = static_cast<int>(scene.expected_modes / 2.);
-    const auto disc     = component_problem(*scene.model, linearisation.interface, scene.system, Component::disc, ContactBoundary::free);
-    disc_options.factor = factor_of_stiffness(*disc.stiffness, disc_options);
-    const std::optional<ModeCount> count = number_of_modes(coupled, (1. + margin) * omega_max, run);
-
-    const auto components = [&](const ComponentProblem &problem, const SymmetricModesOptions &options, const double band) {
-      run.progress.update(options.what);
-      return component_modes(*scene.model, scene.interface, scene.system, problem, band * band * limit, options);
-    };
-    const auto pins = [&](const ContactBoundary boundary, const char *name, const double band) {
-      SymmetricModesOptions options = real_modes_options(parameters.solvers, name, 0.);
-      // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
-      options.by_parts = true;
-      factorize_parts(options);
-      return components(component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary), options, band);
-    };
-    run.progress.begin("Component modes");
-    result.pins_free    = pins(ContactBoundary::free, "modes of the free pins", 1.);
-    result.pins_sliding = pins(ContactBoundary::sliding, "modes of the sliding pins", label_band);
-    result.disc         = components(disc, disc_options, label_band);
-    const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
-               n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
-    run.count("disc modes", n_disc);
-    run.count("free pin modes", n_free);
-    run.count("sliding pin modes", n_sliding);
-    run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
-                             parameters.discretization.maximum_frequency, " Hz"));
+    const std::optional<ModeCount> count = count_and_find_components(result, (1. + margin) * omega_max, run);
 
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");

@@ -114,7 +114,8 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
 
-  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none.
+  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none,
+  /// or where multigrid takes its place and does not know yet how K moves.
   std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options);
 
   /**
