@@ -11,8 +11,8 @@ using namespace Squeal;
 
 TEST(Decision, KeepsTheNearestValueOnEitherSide)
 {
-  const Decision decision("part / whole", 1e-8);
-  const auto     record = [] {
+  static const Decision decision("part / whole", 1e-8); // static, as in the program: GCC's address sanitizer does not align the stack
+  const auto            record = [] {
     const auto all = Decision::records();
     const auto it  = std::find_if(all.begin(), all.end(), [](const DecisionRecord &r) { return r.quantity == "part / whole"; });
     return it == all.end() ? DecisionRecord{} : *it;
@@ -74,7 +74,7 @@ TEST(Decision, RecordsOfPartsAreMerged)
 
 TEST(Decision, WhatIsTakenIsForgotten)
 {
-  const Decision decision("thing / other", 1e-8);
+  static const Decision decision("thing / other", 1e-8);
   EXPECT_FALSE(decision.exceeded_by(1e-16));
   const auto taken = Decision::take();
   EXPECT_EQ(std::count_if(taken.begin(), taken.end(), [](const DecisionRecord &r) { return r.quantity == "thing / other"; }), 1);
