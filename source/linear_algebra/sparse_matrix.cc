@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -30,32 +29,24 @@ namespace Squeal
                           "check that the shapes and distributions of the matrices fit together");
     }
 
-    /// The matrix of rows whose columns ascend, given by their places where a process is alone, else by their numbers.
-    std::unique_ptr<Epetra_CrsMatrix> matrix_of(const RowMap &rows, const RowMap &columns, RowArrays given)
+    /// Rows whose columns ascend, given by their numbers, as a matrix of several processes.
+    std::unique_ptr<Epetra_CrsMatrix> distributed(const RowMap &rows, const RowMap &columns, const RowArrays &given)
     {
-      const bool       is_alone = rows.n_processes() == 1;
       std::vector<int> lengths(rows.n_local());
       for (int i = 0; i < rows.n_local(); ++i)
         lengths[i] = given.start[i + 1] - given.start[i];
-      // A process that is alone has all columns, and need not look for those that occur
       const Epetra_Map &map    = rows.implementation();
-      auto              matrix = is_alone ? std::make_unique<Epetra_CrsMatrix>(Copy, map, columns.implementation(), lengths.data(), true) :
-                                            std::make_unique<Epetra_CrsMatrix>(Copy, map, lengths.data());
+      auto              matrix = std::make_unique<Epetra_CrsMatrix>(Copy, map, lengths.data());
       for (int i = 0; i < rows.n_local(); ++i)
-        {
-          double *const values = given.value.data() + given.start[i];
-          int *const    places = given.column.data() + given.start[i];
-          check_epetra(is_alone ? matrix->InsertMyValues(i, lengths[i], values, places) :
-                                  matrix->InsertGlobalValues(rows.number(i), lengths[i], values, places),
-                       "rows of a sparse matrix");
-        }
+        check_epetra(
+          matrix->InsertGlobalValues(rows.number(i), lengths[i], given.value.data() + given.start[i], given.column.data() + given.start[i]),
+          "rows of a sparse matrix");
       check_epetra(matrix->FillComplete(columns.implementation(), map), "rows of a sparse matrix");
       return matrix;
     }
 
-    std::unique_ptr<Epetra_CrsMatrix> filled(const RowMap                                        &rows,
-                                             const RowMap                                        &columns,
-                                             const std::function<void(int, SparseMatrix::Row &)> &fill)
+    /// Rows whose columns ascend, given by their places where a process is alone, else by their numbers.
+    RowArrays filled(const RowMap &rows, const RowMap &columns, const std::function<void(int, SparseMatrix::Row &)> &fill)
     {
       const bool        is_alone = rows.n_processes() == 1;
       SparseMatrix::Row row;
@@ -80,49 +71,21 @@ namespace Squeal
               }
           result.start.push_back(static_cast<int>(result.column.size()));
         }
-      return matrix_of(rows, columns, std::move(result));
+      return result;
     }
 
-    /// Entries of a matrix that is not distributed; they are copied where Epetra numbers its columns otherwise.
-    class EntriesHere
+    /// Entries of a matrix of one process, or of its transpose.
+    struct EntriesHere
     {
-    public:
       EntriesHere(const SparseMatrix &A, const bool transpose)
-      {
-        const Epetra_CrsMatrix &matrix = A.implementation();
-        int                    *start, *column;
-        double                 *value;
-        if (matrix.Importer() == nullptr && matrix.ExtractCrsDataPointers(start, column, value) == 0)
-          rows = {matrix.NumMyRows(), start, column, value};
-        else
-          {
-            SparseMatrix::Row row;
-            own.start = {0};
-            for (int i = 0; i < A.n_rows(); ++i)
-              {
-                A.get_row(i, row);
-                for (const auto &[number, entry] : row)
-                  {
-                    own.column.push_back(A.columns().place(number));
-                    own.value.push_back(entry);
-                  }
-                own.start.push_back(static_cast<int>(own.column.size()));
-              }
-            rows = own.rows();
-          }
-        if (transpose)
-          {
-            own  = transposed(rows, A.n_columns());
-            rows = own.rows();
-          }
-      }
+        : of_transpose(transpose ? transposed(A.entries()->rows(), A.n_columns()) : RowArrays())
+        , rows(transpose ? of_transpose.rows() : A.entries()->rows())
+      {}
       EntriesHere(const EntriesHere &)            = delete;
       EntriesHere &operator=(const EntriesHere &) = delete;
 
-      SparseRows rows;
-
-    private:
-      RowArrays own;
+      const RowArrays  of_transpose;
+      const SparseRows rows;
     };
 
     /// op(A) op(B), of distributed matrices with Epetra's product.
@@ -130,14 +93,27 @@ namespace Squeal
     {
       const RowMap &rows    = transpose_A ? A.columns() : A.rows();
       const RowMap &columns = transpose_B ? B.rows() : B.columns();
-      if (rows.n_processes() == 1)
-        return std::make_shared<SparseMatrix>(
-          matrix_of(rows, columns, product(EntriesHere(A, transpose_A).rows, EntriesHere(B, transpose_B).rows, columns.n())));
+      if (A.entries() != nullptr)
+        return std::make_shared<SparseMatrix>(rows, columns,
+                                              product(EntriesHere(A, transpose_A).rows, EntriesHere(B, transpose_B).rows, columns.n()));
       auto C = std::make_unique<Epetra_CrsMatrix>(Copy, rows.implementation(), 0);
       check_epetra(EpetraExt::MatrixMatrix::Multiply(A.implementation(), transpose_A, B.implementation(), transpose_B, *C, false),
                    "product of two sparse matrices");
       check_epetra(C->FillComplete(columns.implementation(), rows.implementation()), "product of two sparse matrices");
       return std::make_shared<SparseMatrix>(std::move(C));
+    }
+
+    /// All rows of a matrix of several processes on process 0.
+    std::shared_ptr<SparseMatrix> on_root(const SparseMatrix &A)
+    {
+      std::vector<int> all_rows(A.rows().rank() == 0 ? A.n_rows() : 0);
+      std::iota(all_rows.begin(), all_rows.end(), 0);
+      const Epetra_CrsMatrix &given  = A.implementation();
+      const RowMap            target = RowMap::of(all_rows, A.communicator());
+      auto                    result = std::make_unique<Epetra_CrsMatrix>(Copy, target.implementation(), 0);
+      check_epetra(result->Import(given, Epetra_Import(target.implementation(), given.RowMap()), Insert), "gathering of a matrix");
+      check_epetra(result->FillComplete(given.DomainMap(), target.implementation()), "gathering of a matrix");
+      return std::make_shared<SparseMatrix>(std::move(result));
     }
 
     /// Number of the first local row when the rows of all processes are numbered without gaps.
@@ -168,8 +144,14 @@ namespace Squeal
   } // namespace
 
   SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill)
-    : SparseMatrix(filled(rows, columns, fill))
-  {}
+    : row_map(rows)
+    , column_map(columns)
+  {
+    if (rows.n_processes() == 1)
+      arrays = std::make_unique<const RowArrays>(filled(rows, columns, fill));
+    else
+      matrix = distributed(rows, columns, filled(rows, columns, fill));
+  }
 
   SparseMatrix::SparseMatrix(std::unique_ptr<Epetra_CrsMatrix> given)
     : matrix(std::move(given))
@@ -181,6 +163,12 @@ namespace Squeal
                         "this is a mistake in the program: please report it");
   }
 
+  SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, RowArrays entries)
+    : arrays(std::make_unique<const RowArrays>(std::move(entries)))
+    , row_map(rows)
+    , column_map(columns)
+  {}
+
   SparseMatrix::~SparseMatrix() = default;
 
   const Epetra_CrsMatrix &SparseMatrix::implementation() const
@@ -188,18 +176,29 @@ namespace Squeal
     return *matrix;
   }
 
+  const RowArrays *SparseMatrix::entries() const
+  {
+    return arrays.get();
+  }
+
   long long SparseMatrix::n_entries() const
   {
-    return matrix->NumGlobalNonzeros64();
+    return arrays ? static_cast<long long>(arrays->column.size()) : matrix->NumGlobalNonzeros64();
   }
 
   void SparseMatrix::get_row(const int place, Row &row) const
   {
+    row.clear();
+    if (arrays)
+      {
+        for (int k = arrays->start[place]; k < arrays->start[place + 1]; ++k)
+          row.emplace_back(column_map.number(arrays->column[k]), arrays->value[k]);
+        return;
+      }
     int     n;
     double *values;
     int    *columns;
     check_epetra(matrix->ExtractMyRowView(place, n, values, columns), "a row of a sparse matrix");
-    row.clear();
     for (int k = 0; k < n; ++k)
       row.emplace_back(matrix->GCID(columns[k]), values[k]);
   }
@@ -212,6 +211,15 @@ namespace Squeal
                         "this is a mistake in the program: please report it");
     if (X.n_columns() == 0)
       return;
+    if (arrays)
+      {
+        if (transposed)
+          multiply_transpose(arrays->rows(), X.local(), Y.local());
+        else
+          multiply_rows(arrays->rows(), X.local(), Y.local());
+        return;
+      }
+
     const char *operation = "product of a sparse matrix and vectors";
     int        *start, *columns;
     double     *values;
@@ -264,16 +272,23 @@ namespace Squeal
 
   std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T)
   {
-    if (T.rows().n_processes() > 1)
+    if (T.entries() == nullptr)
       return multiply(T, *multiply(A, T), true, false);
     const EntriesHere from_left(T, true), from_right(T, false);
     const int         n  = T.n_columns();
     const RowArrays   AT = product(EntriesHere(A, false).rows, from_right.rows, n);
-    return std::make_shared<SparseMatrix>(matrix_of(T.columns(), T.columns(), product(from_left.rows, AT.rows(), n)));
+    return std::make_shared<SparseMatrix>(T.columns(), T.columns(), product(from_left.rows, AT.rows(), n));
   }
 
   std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
   {
+    if (A.entries() != nullptr)
+      {
+        RowArrays result = *A.entries();
+        for (double &value : result.value)
+          value = std::abs(value);
+        return std::make_shared<SparseMatrix>(A.rows(), A.columns(), std::move(result));
+      }
     auto result = std::make_unique<Epetra_CrsMatrix>(A.implementation());
     for (int i = 0; i < result->NumMyRows(); ++i)
       {
@@ -307,13 +322,12 @@ namespace Squeal
         throw SolverError("matrices of different shape or distribution", "sum of sparse matrices",
                           "this is a mistake in the program: please report it");
 
-    if (first.rows().n_processes() == 1)
+    if (first.entries() != nullptr)
       {
-        std::deque<EntriesHere>                    entries;
         std::vector<std::pair<double, SparseRows>> rows;
         for (const auto &[factor, A] : summands)
-          rows.emplace_back(factor, entries.emplace_back(*A, false).rows);
-        return std::make_shared<SparseMatrix>(matrix_of(first.rows(), first.columns(), sum(rows, first.n_columns())));
+          rows.emplace_back(factor, A->entries()->rows());
+        return std::make_shared<SparseMatrix>(first.rows(), first.columns(), sum(rows, first.n_columns()));
       }
     SparseMatrix::Row part;
     return std::make_shared<SparseMatrix>(first.rows(), first.columns(), [&](const int i, SparseMatrix::Row &row) {
@@ -368,40 +382,45 @@ namespace Squeal
     const bool is_writer = A.rows().rank() == 0;
     const bool symmetric = symmetry == MatrixMarketSymmetry::symmetric;
 
-    // Global numbers are what the file shows: bring all rows to process 0.
-    const Epetra_CrsMatrix &local = A.implementation();
-    std::vector<int>        all_rows(is_writer ? A.n_rows() : 0);
-    std::iota(all_rows.begin(), all_rows.end(), 0);
-    const RowMap target   = RowMap::of(all_rows, A.communicator());
-    auto         gathered = std::make_unique<Epetra_CrsMatrix>(Copy, target.implementation(), 0);
-    check_epetra(gathered->Import(local, Epetra_Import(target.implementation(), local.RowMap()), Insert), "gathering of a matrix");
-    check_epetra(gathered->FillComplete(local.DomainMap(), target.implementation()), "gathering of a matrix");
-    const SparseMatrix whole(std::move(gathered));
+    // Global numbers are what the file shows
+    const auto          gathered = A.entries() != nullptr ? nullptr : on_root(A);
+    const SparseMatrix &whole    = gathered ? *gathered : A;
     if (!is_writer)
       return "";
 
     std::ostringstream entries;
     entries.precision(std::numeric_limits<double>::max_digits10);
-    long long n_entries = 0;
-    for_rows(whole, [&](const int i, SparseMatrix::Row &row) {
-      std::sort(row.begin(), row.end());
-      for (const auto &[j, entry] : row)
-        if (!symmetric || j <= i)
-          {
-            entries << i + 1 << ' ' << j + 1 << ' ' << entry << '\n';
-            ++n_entries;
-          }
-    });
+    long long         n_entries = 0;
+    SparseMatrix::Row row;
+    for (int i = 0; i < whole.n_rows(); ++i)
+      {
+        whole.get_row(whole.rows().place(i), row);
+        std::sort(row.begin(), row.end());
+        for (const auto &[j, entry] : row)
+          if (!symmetric || j <= i)
+            {
+              entries << i + 1 << ' ' << j + 1 << ' ' << entry << '\n';
+              ++n_entries;
+            }
+      }
     return text("%%MatrixMarket matrix coordinate real ", symmetric ? "symmetric" : "general", "\n", A.n_rows(), " ", A.n_columns(), " ",
                 n_entries, "\n") +
            entries.str();
   }
 
   LocalRows::LocalRows(const SparseMatrix &A)
-    : first_row(first_number(A.rows()))
+    : first_row(A.entries() != nullptr ? 0 : first_number(A.rows()))
     , n_rows(A.n_rows())
     , n_columns(A.n_columns())
   {
+    if (const RowArrays *entries = A.entries())
+      {
+        start  = entries->start;
+        column = entries->column;
+        value  = entries->value;
+        return;
+      }
+
     // Number the columns without gaps and look the numbers up for all columns stored here.
     const Epetra_CrsMatrix &matrix = A.implementation();
     Epetra_IntVector        own(matrix.DomainMap()), here(matrix.ColMap());

@@ -159,4 +159,15 @@ namespace Squeal
         multiply_some(A, X.middleCols(first, width), Y.middleCols(first, width));
       }
   }
+
+  void multiply_transpose(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
+  {
+    run_tasks(static_cast<int>(X.cols()), [&](const int j) {
+      auto y = Y.col(j);
+      y.setZero();
+      for (int i = 0; i < A.n_rows; ++i)
+        for (int k = A.start[i]; k < A.start[i + 1]; ++k)
+          y(A.column[k]) += A.value[k] * X(i, j);
+    });
+  }
 } // namespace Squeal

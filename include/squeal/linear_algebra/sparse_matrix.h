@@ -12,7 +12,9 @@ class Epetra_CrsMatrix;
 
 namespace Squeal
 {
-  /// A sparse matrix: distributed by rows, constant once it is there.
+  struct RowArrays;
+
+  /// A sparse matrix: distributed by rows, constant once it is there. Of one process it is arrays of rows, of several a matrix of Epetra.
   class SparseMatrix : public LinearOperator
   {
   public:
@@ -26,9 +28,17 @@ namespace Squeal
      */
     SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill);
 
-    /// For linear_algebra/ alone; throws SolverError if rows and results are distributed differently.
+    /// For linear_algebra/ alone: of several processes; throws SolverError if rows and results are distributed differently.
     explicit SparseMatrix(std::unique_ptr<Epetra_CrsMatrix> matrix);
+
+    /// For linear_algebra/ alone: of one process, columns by their places and ascending in each row.
+    SparseMatrix(const RowMap &rows, const RowMap &columns, RowArrays entries);
+
+    /// For linear_algebra/ alone: where several processes share the matrix.
     const Epetra_CrsMatrix &implementation() const;
+
+    /// For linear_algebra/ alone: where one process has the matrix; else null.
+    const RowArrays *entries() const;
 
     ~SparseMatrix() override;
     SparseMatrix(const SparseMatrix &)            = delete;
@@ -84,8 +94,9 @@ namespace Squeal
   private:
     void multiply(bool transposed, const MultiVector &X, MultiVector &Y) const;
 
-    std::unique_ptr<Epetra_CrsMatrix> matrix;
-    RowMap                            row_map, column_map;
+    std::unique_ptr<const Epetra_CrsMatrix> matrix; ///< of several processes
+    std::unique_ptr<const RowArrays>        arrays; ///< of one process
+    RowMap                                  row_map, column_map;
   };
 
   /// A X.
