@@ -1,3 +1,4 @@
+#include "elimination_order.h"
 #include "libraries.h"
 #include "supernodal_solve.h"
 
@@ -27,10 +28,8 @@ namespace Squeal
         common.supernodal                 = CHOLMOD_SUPERNODAL;
         common.final_ll                   = 1;
         common.quick_return_if_not_posdef = 1;
-        // Both orderings are computed and the one with less fill is taken.
-        common.nmethods           = 2;
-        common.method[0].ordering = CHOLMOD_AMD;
-        common.method[1].ordering = CHOLMOD_METIS;
+        common.nmethods                   = 1;
+        common.method[0].ordering         = CHOLMOD_GIVEN;
         try
           {
             factorize(A);
@@ -119,11 +118,9 @@ namespace Squeal
         S.sorted        = 1;
         S.packed        = 1;
 
+        std::vector<int>             order = elimination_order(A, what);
         const ThreadsOfFactorization threads(static_cast<int>(n));
-        {
-          const std::lock_guard<std::mutex> lock(ordering());
-          L = cholmod_analyze(&S, &common);
-        }
+        L = cholmod_analyze_p(&S, order.data(), nullptr, 0, &common);
         if (L == nullptr)
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the analysis", what);
         const int success = cholmod_factorize(&S, L, &common);
