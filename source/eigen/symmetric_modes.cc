@@ -4,6 +4,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <sstream>
 
@@ -55,6 +57,18 @@ namespace Squeal
                 counted       ? count_below(K, M, limit, options.what) :
                                 ModeCount{0, limit})
       {}
+
+      /// Whether all modes, not those of the band alone, are found, by a dense eigenvalue problem.
+      bool is_dense() const
+      {
+        return counted && count.n_modes > 0 && (K.n_rows() <= largest_dense_system || 4 * count.n_modes + 50 > K.n_rows());
+      }
+
+      /// The dense eigenvalue problem of a process that is alone, ahead of modes(); others may be solved on other threads meanwhile.
+      void solve_densely()
+      {
+        dense_pairs = symmetric_eigenpairs(to_dense(K), to_dense(M));
+      }
 
       SymmetricModes modes()
       {
@@ -151,8 +165,7 @@ namespace Squeal
       /// A space that contains approximations of all wanted modes.
       RitzPairs find_all()
       {
-        const int n = K.n_rows();
-        if (n <= largest_dense_system || 4 * count.n_modes + 50 > n)
+        if (is_dense())
           return dense();
 
         RitzPairs pairs;
@@ -191,7 +204,9 @@ namespace Squeal
 
       RitzPairs dense()
       {
-        const RealPairs all    = agreed(K.communicator(), symmetric_eigenpairs(to_dense(K), to_dense(M)));
+        if (!dense_pairs)
+          solve_densely();
+        const RealPairs all    = agreed(K.communicator(), std::move(*dense_pairs));
         const int       n_kept = std::min<int>(std::max(1, count.n_modes), all.values.size());
         MultiVector     vectors(K.columns(), n_kept, false);
         // Rows of an uncoupled part have numbers that are not those in its dense matrix
@@ -363,17 +378,29 @@ namespace Squeal
       bool                             lifted = false;
       std::unique_ptr<Factorization>   factorization;
       std::unique_ptr<Multigrid>       multigrid;
+      std::optional<RealPairs>         dense_pairs;
     };
+
     /// The modes of all uncoupled parts in one order.
     SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
     {
-      const std::vector<RowMap>   maps = uncoupled_parts(K);
+      std::vector<std::shared_ptr<const SparseMatrix>> matrices;
+      std::deque<Solver>                               solvers;
+      for (const RowMap &map : uncoupled_parts(K))
+        {
+          const auto part_K = matrices.emplace_back(part(K, map)), part_M = matrices.emplace_back(part(M, map));
+          solvers.emplace_back(*part_K, *part_M, limit, options);
+        }
+      if (K.rows().n_processes() == 1)
+        run_tasks(static_cast<int>(solvers.size()), [&](const int p) {
+          if (solvers[p].is_dense())
+            solvers[p].solve_densely();
+        });
       std::vector<SymmetricModes> parts;
       SymmetricModes              all;
-      for (const RowMap &map : maps)
+      for (Solver &solver : solvers)
         {
-          const auto part_K = part(K, map), part_M = part(M, map);
-          parts.push_back(Solver(*part_K, *part_M, limit, options).modes());
+          parts.push_back(solver.modes());
           all.n_rigid_body += parts.back().n_rigid_body;
           all.n_counted += parts.back().n_counted;
         }

@@ -20,19 +20,26 @@ namespace Squeal
                                              const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
                                              const FactorizationLibrary                                  library,
                                              const std::string                                          &what,
-                                             const NearNullSpace                                        *near_null_space)
+                                             const NearNullSpace                                        *near_null_space,
+                                             const std::function<void(const Factorization &)>           &then)
   {
     // MUMPS communicates even on one process
     const bool is_alone =
       rows.n_processes() == 1 && (library == FactorizationLibrary::automatic || library == FactorizationLibrary::cholmod);
     const bool is_beside = is_alone && n_task_threads() > 1 && rows.n() < rows_of_large_matrices;
     if (!is_beside)
-      return std::async(std::launch::deferred,
-                        [=] { return FactorBeside{factorize_positive_definite(*matrix(), library, what, near_null_space)}; });
+      return std::async(std::launch::deferred, [=] {
+        FactorBeside result{factorize_positive_definite(*matrix(), library, what, near_null_space)};
+        if (then)
+          then(*result.factor);
+        return result;
+      });
     // To make the matrix may take communication
-    return std::async(std::launch::async, [A = matrix(), library, what] {
+    return std::async(std::launch::async, [A = matrix(), library, what, then] {
       const double before = thread_seconds();
       FactorBeside result{factorize_positive_definite(*A, library, what)};
+      if (then)
+        then(*result.factor);
       result.cpu_seconds = thread_seconds() - before;
       return result;
     });

@@ -188,6 +188,9 @@ namespace Squeal
         return components(component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary), options, band);
       };
       run.progress.begin("Component modes");
+      // Counted before the pins are solved, while other threads are still at work on the factors
+      if (disc_options.counting == ModeCounting::inertia)
+        disc_options.count = count_below(*disc->stiffness, *disc->mass, label_band * label_band * limit, disc_options.what);
       result.pins_free    = pins(ContactBoundary::free, "modes of the free pins", 1.);
       result.pins_sliding = pins(ContactBoundary::sliding, "modes of the sliding pins", label_band);
       result.disc         = components(*disc, disc_options, label_band);
@@ -215,8 +218,10 @@ namespace Squeal
     result.linearisation = linearisation;
     result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
-    // A factor that may be made beside them is begun before the component modes
-    const AttachmentModes attachment = !may_keep_attachment_modes(coupled) ? AttachmentModes::not_kept : AttachmentModes::when_needed;
+    // A factor that may be made beside them, and what is solved for with it, is begun before the component modes
+    const AttachmentModes attachment = !may_keep_attachment_modes(coupled)                     ? AttachmentModes::not_kept :
+                                       parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed :
+                                                                                                 AttachmentModes::at_once;
     if (parameters.solvers.uses_multigrid())
       result.linearisation.coupled.near_null_space = std::make_shared<NearNullSpace>(near_null_space(*scene.model, *coupled.kernel));
     result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
@@ -227,8 +232,6 @@ namespace Squeal
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
-    if (attachment == AttachmentModes::when_needed && !parameters.solves_by(ComplexSolver::residual_iteration))
-      result.inverse->attachment_modes();
     result.factorisation = run.progress.finish(
       text(factor_summary(result.inverse->frictionless()), result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
     // Steps before it have what another thread did

@@ -14,7 +14,7 @@ namespace Squeal
   /// When the n_c columns of X are solved for, which takes longer than the factor, and whether they are kept, a dense n × n_c matrix.
   enum class AttachmentModes
   {
-    at_once,
+    at_once,     ///< with the factor
     when_needed, ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
     not_kept     ///< each product with X is another solve with the factor
   };
@@ -45,7 +45,7 @@ namespace Squeal
   class UpdatedInverse : public LinearOperator
   {
   public:
-    /// Factorises S; throws SolverError if S is not positive definite.
+    /// Factorises S, or begins to; throws SolverError if S is not positive definite, here or where the factor is first needed.
     UpdatedInverse(const CoupledSystem &system,
                    double               shift,
                    FactorizationLibrary library,
@@ -82,14 +82,17 @@ namespace Squeal
     }
 
   private:
+    /// X with the factor of S, perhaps on another thread.
+    void find_attachment_modes(const Factorization &of) const;
+
     const AttachmentModes                  attachment;
-    mutable std::future<FactorBeside>      later;
-    mutable std::unique_ptr<Factorization> factor;
-    mutable double                         seconds_beside = 0.;
     const RowMap                           rows;
     std::shared_ptr<const LowRankFactor>   A;
     std::shared_ptr<const SparseMatrix>    V;
-    mutable std::unique_ptr<MultiVector>   X;  ///< once it has been needed
+    mutable std::unique_ptr<MultiVector>   X;     ///< once it has been needed; where it comes with the factor, not before frictionless()
+    mutable std::future<FactorBeside>      later; ///< waits when it goes, before what the other thread uses
+    mutable std::unique_ptr<Factorization> factor;
+    mutable double                         seconds_beside = 0.;
     std::optional<DenseMatrix>             VX; ///< the same, n_c × n_c, on every process
     double                                 friction_coefficient = 0.;
     std::optional<RealLU>                  correction;

@@ -21,10 +21,12 @@ namespace Squeal
    *
    * @param rows   of the matrix
    * @param matrix gives it when its factorisation begins, and is not called later
+   * @param then   what is done with the factor on the thread that made it, and may not communicate; seen by whoever asked for the factor
    */
   std::future<FactorBeside> factorize_beside(const RowMap                                               &rows,
                                              const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
                                              FactorizationLibrary                                        library,
                                              const std::string                                          &what,
-                                             const NearNullSpace                                        *near_null_space = nullptr);
+                                             const NearNullSpace                                        *near_null_space = nullptr,
+                                             const std::function<void(const Factorization &)>           &then            = nullptr);
 } // namespace Squeal
