@@ -121,14 +121,24 @@ namespace Squeal
       matrix.reinit(pattern);
     integrate_and_add(cells, make_integrals, model.dof_handler().get_fe().n_dofs_per_cell(), matrices);
 
-    std::vector<std::shared_ptr<const SparseMatrix>> result;
-    for (const dealii::SparseMatrix<double> &matrix : matrices)
-      result.push_back(std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) {
+    std::vector<std::shared_ptr<const SparseMatrix>> result(matrices.size());
+    const auto                                       convert = [&](const int k) {
+      result[k] = std::make_shared<SparseMatrix>(map, map, [&matrix = matrices[k]](const int i, SparseMatrix::Row &row) {
         // Left out: directions that a mass does not couple, and the diagonal that deal.II adds in rows of other bodies
         for (auto entry = matrix.begin(i); entry != matrix.end(i); ++entry)
           if (entry->value() != 0.)
             row.emplace_back(entry->column(), entry->value());
-      }));
+        // deal.II has the diagonal first
+        if (!row.empty())
+          std::rotate(row.begin(), row.begin() + 1, std::upper_bound(row.begin() + 1, row.end(), row.front()));
+      });
+    };
+    const int n = static_cast<int>(matrices.size());
+    if (map.n_processes() == 1)
+      run_tasks(n, convert);
+    else
+      for (int k = 0; k < n; ++k)
+        convert(k); // together with other processes
     return result;
   }
 } // namespace Squeal

@@ -2,6 +2,7 @@
 #include <squeal/output/table.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <ostream>
@@ -13,28 +14,29 @@ namespace Squeal
   {
     constexpr int significant_digits = 12;
 
-    /// A cell as text; @p format says how a stream shows numbers.
-    template <typename Format>
-    std::string text_of(const Cell &cell, const Format &format)
+    /// A cell as text; @p shown says how numbers are shown.
+    template <typename Shown>
+    std::string text_of(const Cell &cell, const Shown &shown)
     {
-      std::ostringstream text;
       if (const auto *word = std::get_if<std::string>(&cell))
         return *word;
       if (const auto *count = std::get_if<long>(&cell))
-        text << *count;
-      else if (const auto *number = std::get_if<double>(&cell))
-        {
-          format(text);
-          text << *number;
-        }
+        return std::to_string(*count);
+      const auto *number = std::get_if<double>(&cell);
+      if (number == nullptr)
+        return "";
       // A minus before zeros says nothing
-      const std::string shown = text.str();
-      return !shown.empty() && shown[0] == '-' && shown.find_first_not_of("-0.") == std::string::npos ? shown.substr(1) : shown;
+      const std::string text = shown(*number);
+      return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
     }
 
     std::string csv_text(const Cell &cell)
     {
-      const std::string text = text_of(cell, [](std::ostream &stream) { stream << std::setprecision(significant_digits); });
+      const std::string text = text_of(cell, [](const double number) {
+        char       digits[significant_digits + 8]; // sign, point, exponent
+        const auto end = std::to_chars(digits, digits + sizeof(digits), number, std::chars_format::general, significant_digits);
+        return std::string(digits, end.ptr);
+      });
       // Quotes only where the comma or a quote would end the cell
       if (text.find_first_of(",\"\n") == std::string::npos)
         return text;
@@ -70,8 +72,10 @@ namespace Squeal
     std::vector<std::vector<std::string>> texts;
     for (std::size_t c = 0; c < heads.size(); ++c)
       {
-        const auto format = [&](std::ostream &text) {
-          text << (heads[c].scientific ? std::scientific : std::fixed) << std::setprecision(heads[c].digits);
+        const auto format = [&](const double number) {
+          std::ostringstream text;
+          text << (heads[c].scientific ? std::scientific : std::fixed) << std::setprecision(heads[c].digits) << number;
+          return text.str();
         };
         std::vector<std::string> column = {heads[c].name};
         for (const Cell &cell : cells[c])

@@ -170,29 +170,33 @@ namespace Squeal
 
       // Outlives the factor that another thread makes of it
       std::optional disc = component_problem(*scene.model, linearisation.interface, scene.system, Component::disc, ContactBoundary::free);
-      const double  disc_shift             = stabilizing_shift(*scene.model, scene.system, omega_max);
-      auto          disc_options           = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
-      disc_options.n_expected              = static_cast<int>(scene.expected_modes / 2.);
-      disc_options.factor                  = factor_of_stiffness(*disc->stiffness, disc_options);
+      const double  disc_shift   = stabilizing_shift(*scene.model, scene.system, omega_max);
+      auto          disc_options = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
+      disc_options.n_expected    = static_cast<int>(scene.expected_modes / 2.);
+      disc_options.factor        = factor_of_stiffness(*disc->stiffness, disc_options);
+      const auto pin_problem     = [&](const ContactBoundary boundary) {
+        return component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary);
+      };
+      const ComponentProblem         free_pins = pin_problem(ContactBoundary::free), sliding_pins = pin_problem(ContactBoundary::sliding);
       const std::optional<ModeCount> count = number_of_modes(coupled, end_of_count, run);
 
       const auto components = [&](const ComponentProblem &problem, const SymmetricModesOptions &options, const double band) {
         run.progress.update(options.what);
         return component_modes(*scene.model, scene.interface, scene.system, problem, band * band * limit, options);
       };
-      const auto pins = [&](const ContactBoundary boundary, const char *name, const double band) {
+      const auto pins = [&](const ComponentProblem &problem, const char *name, const double band) {
         SymmetricModesOptions options = real_modes_options(parameters.solvers, name, 0.);
         // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
         options.by_parts = true;
         factorize_parts(options);
-        return components(component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary), options, band);
+        return components(problem, options, band);
       };
       run.progress.begin("Component modes");
       // Counted before the pins are solved, while other threads are still at work on the factors
       if (disc_options.counting == ModeCounting::inertia)
         disc_options.count = count_below(*disc->stiffness, *disc->mass, label_band * label_band * limit, disc_options.what);
-      result.pins_free    = pins(ContactBoundary::free, "modes of the free pins", 1.);
-      result.pins_sliding = pins(ContactBoundary::sliding, "modes of the sliding pins", label_band);
+      result.pins_free    = pins(free_pins, "modes of the free pins", 1.);
+      result.pins_sliding = pins(sliding_pins, "modes of the sliding pins", label_band);
       result.disc         = components(*disc, disc_options, label_band);
       disc_options.factor = {};
       disc.reset();
