@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <deque>
-#include <memory>
+#include <exception>
+#include <future>
 #include <mutex>
 #include <string_view>
 #include <suitesparse/cholmod.h>
@@ -93,18 +94,54 @@ namespace Squeal
       return result;
     }
 
-    struct KnownOrder
-    {
-      Fingerprint      pattern;
-      std::vector<int> order;
-    };
+    using Order = std::vector<int>;
 
-    /// The last orders, newest first; under the lock of METIS, so that of threads that want one order the first makes it.
-    std::deque<KnownOrder> &known_orders()
+    /// The last orders, newest first. Of threads that want the same one, the first makes it and the others wait, but not for other orders.
+    class KnownOrders
     {
-      static std::deque<KnownOrder> all;
-      return all;
-    }
+    public:
+      /// The order of a pattern; @p make makes it unless it is there, or on its way.
+      template <typename Make>
+      Order find(const Fingerprint &pattern, const Make &make)
+      {
+        std::promise<Order>       promise;
+        std::shared_future<Order> order;
+        bool                      is_new = false;
+        {
+          const std::lock_guard<std::mutex> lock(mutex);
+          const auto known = std::find_if(all.begin(), all.end(), [&](const Known &k) { return k.pattern == pattern; });
+          is_new           = known == all.end();
+          order            = is_new ? promise.get_future().share() : known->order;
+          if (is_new)
+            all.push_front({pattern, order});
+          if (all.size() > n_kept)
+            all.pop_back();
+        }
+        if (is_new)
+          try
+            {
+              promise.set_value(make());
+            }
+          catch (...)
+            {
+              // Another attempt may find more memory
+              promise.set_exception(std::current_exception());
+              const std::lock_guard<std::mutex> lock(mutex);
+              all.erase(std::remove_if(all.begin(), all.end(), [&](const Known &k) { return k.pattern == pattern; }), all.end());
+            }
+        return order.get();
+      }
+
+    private:
+      struct Known
+      {
+        Fingerprint               pattern;
+        std::shared_future<Order> order;
+      };
+
+      std::mutex        mutex;
+      std::deque<Known> all;
+    };
   } // namespace
 
   std::vector<int> elimination_order(const SparseMatrix &A, const std::string &what)
@@ -113,15 +150,10 @@ namespace Squeal
     if (A.n_rows() < rows_for_dissection)
       return order_of(pattern, 1, what);
 
-    const Fingerprint                 fingerprint(pattern);
-    const std::lock_guard<std::mutex> lock(ordering());
-    auto                             &all   = known_orders();
-    const auto                        known = std::find_if(all.begin(), all.end(), [&](const auto &k) { return k.pattern == fingerprint; });
-    if (known != all.end())
-      return known->order;
-    all.push_front({fingerprint, order_of(pattern, 2, what)});
-    if (all.size() > n_kept)
-      all.pop_back();
-    return all.front().order;
+    static KnownOrders known;
+    return known.find(Fingerprint(pattern), [&] {
+      const std::lock_guard<std::mutex> lock(ordering());
+      return order_of(pattern, 2, what);
+    });
   }
 } // namespace Squeal
