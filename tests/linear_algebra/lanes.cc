@@ -158,7 +158,12 @@ TEST(FactorizationBeside, GivesTheSameFactorOrError)
                      A->rows(), [&] { return A; }, FactorizationLibrary::automatic, "test matrix");
       auto hopeless = factorize_beside(
         A->rows(), [&] { return indefinite; }, FactorizationLibrary::automatic, "test matrix");
+      const Factorization *seen = nullptr;
+      auto                 used = factorize_beside(
+                        A->rows(), [&] { return A; }, FactorizationLibrary::automatic, "test matrix", nullptr,
+                        [&](const Factorization &factor) { seen = &factor; });
       const FactorBeside made = later.get();
+      EXPECT_EQ(used.get().factor.get(), seen);
       made.factor->apply(B, Y);
       EXPECT_GE(made.cpu_seconds, 0.);
       EXPECT_LT(difference(replicate(Y), replicate(X)), 1e-13);
