@@ -1,3 +1,4 @@
+#include "cholmod_triangle.h"
 #include "elimination_order.h"
 #include "libraries.h"
 #include "supernodal_solve.h"
@@ -8,7 +9,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <suitesparse/cholmod.h>
 
 namespace Squeal
 {
@@ -104,22 +104,9 @@ namespace Squeal
         if (!std::all_of(triangle.diagonal.begin(), triangle.diagonal.end(), [](const double d) { return d > 0.; }))
           throw_not_positive_definite("CHOLMOD", what);
 
-        const std::size_t n = triangle.diagonal.size();
-        cholmod_sparse    S = {};
-        S.nrow = S.ncol = n;
-        S.nzmax         = triangle.row.size();
-        S.p             = triangle.start.data();
-        S.i             = triangle.row.data();
-        S.x             = triangle.value.data();
-        S.stype         = -1;
-        S.itype         = CHOLMOD_INT;
-        S.xtype         = CHOLMOD_REAL;
-        S.dtype         = CHOLMOD_DOUBLE;
-        S.sorted        = 1;
-        S.packed        = 1;
-
+        cholmod_sparse               S     = lower_triangle(triangle.start, triangle.row, triangle.value.data());
         std::vector<int>             order = elimination_order(A, what);
-        const ThreadsOfFactorization threads(static_cast<int>(n));
+        const ThreadsOfFactorization threads(A.n_rows());
         L = cholmod_analyze_p(&S, order.data(), nullptr, 0, &common);
         if (L == nullptr)
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the analysis", what);

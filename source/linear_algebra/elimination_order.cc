@@ -1,3 +1,4 @@
+#include "cholmod_triangle.h"
 #include "elimination_order.h"
 #include "libraries.h"
 #include "sparse_products.h"
@@ -8,7 +9,6 @@
 #include <future>
 #include <mutex>
 #include <string_view>
-#include <suitesparse/cholmod.h>
 
 namespace Squeal
 {
@@ -70,18 +70,7 @@ namespace Squeal
       common.method[0].ordering = CHOLMOD_AMD;
       common.method[1].ordering = CHOLMOD_METIS;
 
-      cholmod_sparse S = {};
-      S.nrow = S.ncol = pattern.start.size() - 1;
-      S.nzmax         = pattern.row.size();
-      S.p             = pattern.start.data();
-      S.i             = pattern.row.data();
-      S.stype         = -1;
-      S.itype         = CHOLMOD_INT;
-      S.xtype         = CHOLMOD_PATTERN;
-      S.dtype         = CHOLMOD_DOUBLE;
-      S.sorted        = 1;
-      S.packed        = 1;
-
+      cholmod_sparse   S = lower_triangle(pattern.start, pattern.row, nullptr);
       cholmod_factor  *L = cholmod_analyze(&S, &common);
       std::vector<int> result;
       if (L != nullptr)
