@@ -43,6 +43,64 @@ namespace Squeal
     return {component, boundary, T, congruence(*system.stiffness, *T), congruence(*system.mass, *T)};
   }
 
+  namespace
+  {
+    /// The options with the motions of the component in @p space, which multigrid has to know.
+    SymmetricModesOptions with_motions(SymmetricModesOptions         options,
+                                       const Model                  &model,
+                                       const ComponentProblem       &problem,
+                                       std::optional<NearNullSpace> &space)
+    {
+      if (options.library == FactorizationLibrary::multigrid)
+        options.near_null_space = &space.emplace(near_null_space(model, *problem.kernel));
+      return options;
+    }
+
+    ComponentModes labelled(const Model             &model,
+                            const ContactInterface  &interface,
+                            const SecondOrderSystem &system,
+                            const ComponentProblem  &problem,
+                            const SymmetricModes    &modes)
+    {
+      ComponentModes result;
+      result.eigenvalues = modes.eigenvalues;
+      result.residuals   = modes.residuals;
+      if (modes.eigenvalues.empty())
+        return result;
+      result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
+
+      const auto masses = nodal_masses(model, *system.mass);
+      result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
+                                                                 pin_labels(model, interface, masses, *result.vectors);
+      for (int j = 0; j < modes.n_rigid_body; ++j)
+        result.labels[j] = {ModeFamily::rigid_body};
+      return result;
+    }
+  } // namespace
+
+  std::future<ComponentModes> component_modes_beside(const Model                                   &model,
+                                                     const ContactInterface                        &interface,
+                                                     const SecondOrderSystem                       &system,
+                                                     const std::shared_ptr<const ComponentProblem> &problem,
+                                                     const double                                   largest_eigenvalue,
+                                                     const SymmetricModesOptions                   &options)
+  {
+    // Members go in reverse: what another thread uses goes when that has ended
+    struct Pending
+    {
+      std::shared_ptr<const ComponentProblem> problem;
+      std::optional<NearNullSpace>            space;
+      std::future<SymmetricModes>             modes;
+    };
+    const auto pending = std::make_shared<Pending>();
+    pending->problem   = problem;
+    pending->modes     = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue,
+                                                with_motions(options, model, *problem, pending->space));
+    return std::async(std::launch::deferred, [&model, &interface, &system, pending] {
+      return labelled(model, interface, system, *pending->problem, pending->modes.get());
+    });
+  }
+
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
                                  const SecondOrderSystem     &system,
@@ -50,26 +108,10 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    // Multigrid has to know how the dofs of this component move
-    SymmetricModesOptions        used = options;
     std::optional<NearNullSpace> space;
-    if (options.library == FactorizationLibrary::multigrid)
-      used.near_null_space = &space.emplace(near_null_space(model, *problem.kernel));
-    const SymmetricModes modes = symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, used);
-
-    ComponentModes result;
-    result.eigenvalues = modes.eigenvalues;
-    result.residuals   = modes.residuals;
-    if (modes.eigenvalues.empty())
-      return result;
-    result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
-
-    const auto masses = nodal_masses(model, *system.mass);
-    result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
-                                                               pin_labels(model, interface, masses, *result.vectors);
-    for (int j = 0; j < modes.n_rigid_body; ++j)
-      result.labels[j] = {ModeFamily::rigid_body};
-    return result;
+    const SymmetricModes         modes =
+      symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, with_motions(options, model, problem, space));
+    return labelled(model, interface, system, problem, modes);
   }
 
   ComponentModes component_modes(const Model                 &model,

@@ -136,7 +136,7 @@ namespace Squeal
 
       double largest(const Eigen::VectorXd &values) const
       {
-        return dealii::Utilities::MPI::max(values.size() > 0 ? values.maxCoeff() : -std::numeric_limits<double>::infinity(), communicator);
+        return largest_of_processes(communicator, values.size() > 0 ? values.maxCoeff() : -std::numeric_limits<double>::infinity());
       }
     };
 

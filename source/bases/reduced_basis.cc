@@ -1,6 +1,7 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/replicate.h>
 
@@ -81,7 +82,7 @@ namespace Squeal
 
     double largest_entry(const MultiVector &X)
     {
-      return dealii::Utilities::MPI::max(max_norm(X.local()), X.communicator());
+      return largest_of_processes(X.communicator(), max_norm(X.local()));
     }
 
     /// T_r0 T_cr in coupled coordinates; the columns of T_r0 get scaled.

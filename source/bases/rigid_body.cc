@@ -63,7 +63,7 @@ namespace Squeal
   ContactMotions contact_motions(const SparseMatrix &normal, const MultiVector &motions)
   {
     const DenseMatrix    D    = replicate(normal * motions);
-    const double         size = dealii::Utilities::MPI::max(max_norm(motions.local()), motions.communicator()) * std::sqrt(D.rows());
+    const double         size = largest_of_processes(motions.communicator(), max_norm(motions.local())) * std::sqrt(D.rows());
     const SingularValues axes = singular_values(D); // descending
     const auto [values, V]    = agreed(motions.communicator(), {axes.values, axes.right});
     const int k               = motions.n_columns();

@@ -54,13 +54,7 @@ namespace Squeal
 
   const Factorization &UpdatedInverse::frictionless() const
   {
-    if (!factor)
-      {
-        FactorBeside made = later.get();
-        factor            = std::move(made.factor);
-        seconds_beside    = made.cpu_seconds;
-      }
-    return *factor;
+    return *later.get().factor;
   }
 
   void UpdatedInverse::find_attachment_modes(const Factorization &of) const

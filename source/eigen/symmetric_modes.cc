@@ -1,412 +1,22 @@
-#include "preconditioned_modes.h"
-#include "shift_invert.h"
+#include "symmetric_solver.h"
 
-#include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
-#include <squeal/linear_algebra/mass_orthonormal.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/linear_algebra/blas_threads.h>
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
-#include <limits>
-#include <sstream>
 
 namespace Squeal
 {
   namespace
   {
-    /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
-    constexpr double rigid_body_threshold = zero_frequency * zero_frequency;
-    const Decision   elastic("eigenvalue of the symmetric problem / largest wanted one", rigid_body_threshold);
-
-    /// Starts that may find nothing new, the last of them with the other solver.
-    constexpr int most_fruitless_starts = 4;
-
-    /// Systems up to this size are solved densely.
-    constexpr int largest_dense_system = 300;
-
-    /// Rayleigh-Ritz approximations in a space, ascending.
-    struct RitzPairs
+    /// The modes of all uncoupled parts in one order, as vectors of the rows of all of them.
+    SymmetricModes merged(const std::vector<SymmetricModes> &parts, const RowMap &rows)
     {
-      std::vector<double>        values;
-      std::optional<MultiVector> vectors;
-    };
-
-    RitzPairs rayleigh_ritz(const SparseMatrix &K, const SparseMatrix &M, const MultiVector &V)
-    {
-      const RealPairs reduced = agreed(V.communicator(), symmetric_eigenpairs(gram(V, K * V), gram(V, M * V)));
-      return {reduced.values, V * reduced.vectors};
-    }
-
-    /// Solution of one problem, step by step.
-    class Solver
-    {
-    public:
-      Solver(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
-        : K(K)
-        , M(M)
-        , options(options)
-        , early(options.factor.valid() ? options.factor : factor_of_stiffness(K, options))
-        , counted(options.counting == ModeCounting::inertia || K.n_rows() <= largest_dense_system)
-        , count(options.count ? *options.count :
-                counted       ? count_below(K, M, limit, options.what) :
-                                ModeCount{0, limit})
-      {}
-
-      /// Whether all modes, not those of the band alone, are found, by a dense eigenvalue problem.
-      bool is_dense() const
-      {
-        return counted && count.n_modes > 0 && (K.n_rows() <= largest_dense_system || 4 * count.n_modes + 50 > K.n_rows());
-      }
-
-      /// The dense eigenvalue problem of a process that is alone, ahead of modes(); others may be solved on other threads meanwhile.
-      void solve_densely()
-      {
-        dense_pairs = symmetric_eigenpairs(to_dense(K), to_dense(M));
-      }
-
-      SymmetricModes modes()
-      {
-        SymmetricModes modes;
-        if (!counted)
-          return uncounted();
-        if (count.n_modes > 0)
-          {
-            RitzPairs       pairs  = find_all();
-            const Residuals result = refine(pairs);
-            modes                  = accept(pairs, result);
-          }
-        modes.n_counted = count.n_modes;
-        return modes;
-      }
-
-    private:
-      /// Whatever LOBPCG finds in the band; the last search, orthogonal to it, finds nothing more.
-      SymmetricModes uncounted()
-      {
-        RitzPairs pairs;
-        int       n_wanted = std::max(8, options.n_expected);
-        for (unsigned int attempt = 0;; ++attempt)
-          {
-            const std::optional<MultiVector> fresh = lobpcg(n_wanted, attempt, pairs.vectors);
-            if (!fresh)
-              throw SolverError("LOBPCG found nothing in its search number " + std::to_string(attempt + 1), options.what,
-                                "choose Anasazi or ARPACK as solver of the real modes");
-            const int n_before = static_cast<int>(pairs.values.size());
-            if (merge(*fresh, pairs) == n_before)
-              break;
-            // Once a search went beyond the band, a few vectors look for missing modes.
-            const int n_now = static_cast<int>(pairs.values.size());
-            n_wanted        = n_now - n_before < fresh->n_columns() ? 4 : std::max(8, options.n_expected - n_now);
-          }
-        SymmetricModes modes;
-        count.n_modes = static_cast<int>(pairs.values.size());
-        if (count.n_modes > 0)
-          {
-            const Residuals result = refine(pairs);
-            modes                  = accept(pairs, result);
-          }
-        modes.n_counted = not_counted;
-        return modes;
-      }
-
-      std::optional<MultiVector> lobpcg(const int n_wanted, const unsigned int attempt, const std::optional<MultiVector> &deflated)
-      {
-        return lobpcg_vectors(
-          K, M, preconditioner(), deflated ? &*deflated : nullptr,
-          {std::min(n_wanted, K.n_rows() / 8), 0.3 * options.tolerance, count.limit, options.seed + 7919 * attempt, options.what});
-      }
-
-      /// An approximation of (K + s M)⁻¹ for LOBPCG.
-      const LinearOperator &preconditioner()
-      {
-        if (options.preconditioner != nullptr)
-          return *options.preconditioner;
-        if (!multigrid)
-          {
-            if (options.near_null_space == nullptr)
-              throw SolverError("LOBPCG was asked for where no near null space is known", options.what,
-                                "choose Anasazi or ARPACK as solver of the real modes");
-            multigrid =
-              std::make_unique<Multigrid>(options.shift > 0. ? *add(1., K, options.shift, M) : K, *options.near_null_space, options.what);
-          }
-        return *multigrid;
-      }
-
-      const LinearOperator &inverse()
-      {
-        if (options.inverse != nullptr)
-          return *options.inverse;
-        if (factorization)
-          return *factorization;
-        if (options.shift == 0.)
-          try
-            {
-              if (early.valid())
-                return *early.get().factor;
-              factorization = factorize_positive_definite(K, options.library, options.what, options.near_null_space);
-              return *factorization;
-            }
-          catch (const SolverError &)
-            {
-              // The body can move rigidly, so it seems: a shift helps. If the
-              // reason was another one, the next attempt says so.
-            }
-        const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
-        factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what, options.near_null_space);
-        return *factorization;
-      }
-
-      /// A space that contains approximations of all wanted modes.
-      RitzPairs find_all()
-      {
-        if (is_dense())
-          return dense();
-
-        RitzPairs pairs;
-        int       n_found = 0, n_fruitless = 0;
-        // Members of multiple eigenvalues may be missing at first; every start
-        // finds at least one more, in general all.
-        for (unsigned int attempt = 0; n_found < count.n_modes; ++attempt)
-          {
-            const std::optional<MultiVector> fresh = krylov(count.n_modes - n_found, attempt, n_fruitless, pairs.vectors);
-            if (const int n_all = fresh ? merge(*fresh, pairs) : 0; n_all > n_found)
-              {
-                n_found = n_all;
-                continue;
-              }
-            if (lift_limit() || ++n_fruitless < most_fruitless_starts)
-              continue;
-            fail_incomplete(n_found);
-          }
-        return pairs;
-      }
-
-      /// Puts fresh vectors to the pairs where modes in the band come with them; how many are in the band then.
-      int merge(const MultiVector &fresh, RitzPairs &pairs) const
-      {
-        const MultiVector space = pairs.vectors ? join({&*pairs.vectors, &fresh}) : fresh;
-        RitzPairs         all   = rayleigh_ritz(K, M, space);
-        const int         n_all = std::upper_bound(all.values.begin(), all.values.end(), count.limit) - all.values.begin();
-        if (n_all > static_cast<int>(pairs.values.size()))
-          {
-            // Vectors above the limit must not be deflated: they may be far from modes.
-            pairs.values.assign(all.values.begin(), all.values.begin() + n_all);
-            pairs.vectors.emplace(view(*all.vectors, 0, n_all));
-          }
-        return n_all;
-      }
-
-      RitzPairs dense()
-      {
-        if (!dense_pairs)
-          solve_densely();
-        const RealPairs all    = agreed(K.communicator(), std::move(*dense_pairs));
-        const int       n_kept = std::min<int>(std::max(1, count.n_modes), all.values.size());
-        MultiVector     vectors(K.columns(), n_kept, false);
-        // Rows of an uncoupled part have numbers that are not those in its dense matrix
-        const int first_row = LocalRows(K).first_row;
-        vectors.local()     = all.vectors.block(first_row, 0, vectors.n_local_rows(), n_kept);
-        return {{all.values.begin(), all.values.begin() + n_kept}, vectors};
-      }
-
-      std::optional<MultiVector> krylov(const int                         n_wanted,
-                                        const unsigned int                attempt,
-                                        const int                         n_fruitless,
-                                        const std::optional<MultiVector> &deflated)
-      {
-        if (options.solver == RealSolver::lobpcg)
-          return lobpcg(n_wanted, attempt, deflated);
-        const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
-        KrylovRequest     request;
-        request.n_wanted   = n_wanted;
-        request.tolerance  = 0.1 * options.tolerance;
-        request.block_size = options.block_size > 0 ? options.block_size : 8;
-        request.seed       = options.seed + 7919 * attempt;
-        request.attempt    = n_fruitless;
-        request.what       = options.what;
-        // Where the chosen solver finds no more, another one may
-        const RealSolver other = options.solver == RealSolver::anasazi ? RealSolver::arpack : RealSolver::anasazi;
-        switch (n_fruitless < most_fruitless_starts - 1 ? options.solver : other)
-          {
-            case RealSolver::lanczos:
-              return lanczos_vectors(A, request);
-            case RealSolver::anasazi:
-              return anasazi_vectors(A, request);
-            case RealSolver::lobpcg: // above
-            case RealSolver::arpack:
-              break;
-          }
-        return arpack_vectors(A, request);
-      }
-
-      /**
-       * Where a mode lies on the limit to rounding, count and search may see it
-       * on different sides: counts again a little higher. Whether it did.
-       */
-      bool lift_limit()
-      {
-        if (lifted)
-          return false;
-        lifted                = true;
-        const ModeCount below = count_below(K, M, count.limit * (1. - 1e-8), options.what);
-        const ModeCount above = count_below(K, M, count.limit * (1. + 1e-8), options.what);
-        if (below.n_modes == above.n_modes)
-          return false;
-        count = above;
-        return true;
-      }
-
-      /// Residuals of Ritz pairs, and how they compare with what is accepted.
-      struct Residuals
-      {
-        std::vector<double> values;      ///< as SymmetricModes defines them
-        double              excess = 0.; ///< largest ratio of a residual to what is accepted
-        int                 worst  = 0;  ///< the mode where it occurs
-      };
-
-      Residuals residuals(const RitzPairs &pairs) const
-      {
-        const int         n_modes = pairs.values.size();
-        const MultiVector KV = K * *pairs.vectors, MV = M * *pairs.vectors;
-        MultiVector       R(KV);
-        for (int j = 0; j < n_modes; ++j)
-          if (!is_rigid(pairs.values[j]))
-            R.col(j) -= pairs.values[j] * MV.col(j);
-
-        const std::vector<double> norm_R = column_norms(R), norm_KV = column_norms(KV), norm_MV = column_norms(MV),
-                                  norm_V = column_norms(*pairs.vectors);
-        const double norm_K              = row_sum_norm(K);
-
-        Residuals residuals;
-        for (int j = 0; j < n_modes; ++j)
-          {
-            // Where a soft mount holds the body, ω² = 0 leaves the residual ω² / limit
-            const bool   rigid    = is_rigid(pairs.values[j]);
-            const double scale    = rigid ? count.limit * norm_MV[j] : norm_KV[j];
-            const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
-            residuals.values.push_back(norm_R[j] / scale);
-            const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? rigid_body_threshold : 0.});
-            // Written so that NaN is the worst.
-            if (!(excess <= residuals.excess))
-              {
-                residuals.excess = excess;
-                residuals.worst  = j;
-              }
-          }
-        return residuals;
-      }
-
-      /// Inverse iteration, block-wise, until the residuals are accepted; without an inverse, steps along preconditioned residuals.
-      Residuals refine(RitzPairs &pairs)
-      {
-        Residuals result = residuals(pairs);
-        for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
-          {
-            const int   n = pairs.vectors->n_columns();
-            MultiVector W(pairs.vectors->map(), n);
-            if (options.solver == RealSolver::lobpcg)
-              {
-                MultiVector R = K * *pairs.vectors - M * *pairs.vectors * DenseMatrix(as_column(pairs.values).asDiagonal());
-                preconditioner().apply(R, W);
-                W = join({&*pairs.vectors, &W});
-              }
-            else
-              ShiftInvert(inverse(), M, nullptr).apply(*pairs.vectors, W);
-            RitzPairs refined = rayleigh_ritz(K, M, orthonormalize(M, nullptr, W, 1e-12));
-            pairs.values.assign(refined.values.begin(), refined.values.begin() + n);
-            pairs.vectors.emplace(view(*refined.vectors, 0, n));
-            result = residuals(pairs);
-          }
-        return result;
-      }
-
-      SymmetricModes accept(const RitzPairs &pairs, const Residuals &result) const
-      {
-        const auto fail = [&](const std::string &message) {
-          throw SolverError(message, options.what, "choose the other solver of the real modes, or a larger tolerance");
-        };
-        if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
-          fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
-        if (pairs.values.front() < -rigid_body_threshold * count.limit)
-          fail("the stiffness is not positive semidefinite: there is an eigenvalue of " + std::to_string(pairs.values.front()) +
-               " rad²/s²");
-        if (!(result.excess <= 1.))
-          {
-            std::ostringstream message;
-            message << "mode " << result.worst + 1 << " of " << count.n_modes << " has a relative residual of "
-                    << result.values[result.worst] << ", " << result.excess << " times what is accepted";
-            fail(message.str());
-          }
-
-        SymmetricModes modes;
-        modes.residuals   = result.values;
-        modes.eigenvalues = pairs.values;
-        for (double &value : modes.eigenvalues)
-          if (is_rigid(value))
-            {
-              value = 0.;
-              ++modes.n_rigid_body;
-            }
-        modes.vectors = std::make_shared<MultiVector>(*pairs.vectors);
-        return modes;
-      }
-
-      [[noreturn]] void fail_incomplete(const int n_found) const
-      {
-        throw SolverError(std::to_string(n_found) + " modes were found but " + std::to_string(count.n_modes) + " exist below " +
-                            std::to_string(std::sqrt(count.limit) / (2. * M_PI)) + " Hz",
-                          options.what,
-                          "choose the other solver of the real modes, or move the end of the band away from a cluster of modes");
-      }
-
-      bool is_rigid(const double value) const
-      {
-        return !elastic.exceeded_by(value / count.limit);
-      }
-
-      const SparseMatrix              &K, &M;
-      const SymmetricModesOptions      options;
-      std::shared_future<FactorBeside> early; ///< while modes are counted
-      const bool                       counted;
-      ModeCount                        count;
-      bool                             lifted = false;
-      std::unique_ptr<Factorization>   factorization;
-      std::unique_ptr<Multigrid>       multigrid;
-      std::optional<RealPairs>         dense_pairs;
-    };
-
-    /// The modes of all uncoupled parts in one order.
-    SymmetricModes modes_by_parts(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
-    {
-      std::vector<std::shared_ptr<const SparseMatrix>> matrices;
-      std::deque<Solver>                               solvers;
-      for (const RowMap &map : uncoupled_parts(K))
-        {
-          const auto part_K = matrices.emplace_back(part(K, map)), part_M = matrices.emplace_back(part(M, map));
-          solvers.emplace_back(*part_K, *part_M, limit, options);
-        }
-      if (K.rows().n_processes() == 1)
-        run_tasks(static_cast<int>(solvers.size()), [&](const int p) {
-          if (solvers[p].is_dense())
-            solvers[p].solve_densely();
-        });
-      std::vector<SymmetricModes> parts;
-      SymmetricModes              all;
-      for (Solver &solver : solvers)
-        {
-          parts.push_back(solver.modes());
-          all.n_rigid_body += parts.back().n_rigid_body;
-          all.n_counted += parts.back().n_counted;
-        }
-      if (all.n_counted == 0)
-        return all;
-
+      SymmetricModes all;
       struct Place
       {
         std::size_t part;
@@ -414,12 +24,18 @@ namespace Squeal
       };
       std::vector<Place> order;
       for (std::size_t p = 0; p < parts.size(); ++p)
-        for (std::size_t j = 0; j < parts[p].eigenvalues.size(); ++j)
-          order.push_back({p, static_cast<int>(j)});
+        {
+          all.n_rigid_body += parts[p].n_rigid_body;
+          all.n_counted += parts[p].n_counted;
+          for (std::size_t j = 0; j < parts[p].eigenvalues.size(); ++j)
+            order.push_back({p, static_cast<int>(j)});
+        }
+      if (order.empty())
+        return all;
       std::stable_sort(order.begin(), order.end(), [&](const Place &a, const Place &b) {
         return parts[a.part].eigenvalues[a.mode] < parts[b.part].eigenvalues[b.mode];
       });
-      all.vectors = std::make_shared<MultiVector>(K.columns(), static_cast<int>(order.size()));
+      all.vectors = std::make_shared<MultiVector>(rows, static_cast<int>(order.size()));
       for (std::size_t column = 0; column < order.size(); ++column)
         {
           const SymmetricModes &modes = parts[order[column].part];
@@ -430,7 +46,96 @@ namespace Squeal
         }
       return all;
     }
+
+    /// A problem or its uncoupled parts, counted.
+    class CountedProblem
+    {
+    public:
+      CountedProblem(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
+        : by_parts(options.by_parts)
+        , rows(K.columns())
+      {
+        if (!(limit > 0.))
+          throw SolverError("modes were asked for up to " + std::to_string(limit) + " rad²/s²", options.what,
+                            "give a positive end of the band");
+        if (!by_parts)
+          {
+            solvers.emplace_back(K, M, limit, options);
+            return;
+          }
+        for (const RowMap &map : uncoupled_parts(K))
+          {
+            const auto part_K = matrices.emplace_back(part(K, map)), part_M = matrices.emplace_back(part(M, map));
+            solvers.emplace_back(*part_K, *part_M, limit, options);
+          }
+      }
+
+      SymmetricModes modes()
+      {
+        solve_dense_parts();
+        std::vector<SymmetricModes> parts;
+        for (SymmetricSolver &solver : solvers)
+          parts.push_back(solver.modes());
+        return result(parts);
+      }
+
+      /// Whether modes_alone() is worth an attempt.
+      bool may_be_alone() const
+      {
+        return std::all_of(solvers.begin(), solvers.end(), [](const SymmetricSolver &solver) { return solver.may_be_alone(); });
+      }
+
+      /// The same without any call of MPI; nothing, rarely, where it would take one: modes() may still be asked for.
+      std::optional<SymmetricModes> modes_alone()
+      {
+        solve_dense_parts();
+        std::vector<SymmetricModes> parts;
+        for (SymmetricSolver &solver : solvers)
+          {
+            std::optional<SymmetricModes> modes = solver.modes_alone();
+            if (!modes)
+              return {};
+            parts.push_back(std::move(*modes));
+          }
+        return result(parts);
+      }
+
+    private:
+      void solve_dense_parts()
+      {
+        if (by_parts && rows.n_processes() == 1)
+          run_tasks(static_cast<int>(solvers.size()), [&](const int p) {
+            if (solvers[p].is_dense())
+              solvers[p].solve_densely();
+          });
+      }
+
+      SymmetricModes result(const std::vector<SymmetricModes> &parts) const
+      {
+        return by_parts ? merged(parts, rows) : parts.front();
+      }
+
+      const bool                                       by_parts;
+      const RowMap                                     rows;
+      std::vector<std::shared_ptr<const SparseMatrix>> matrices; ///< of the parts
+      std::deque<SymmetricSolver>                      solvers;  ///< one for each part
+    };
   } // namespace
+
+  std::future<SymmetricModes> symmetric_modes_beside(const SparseMatrix          &K,
+                                                     const SparseMatrix          &M,
+                                                     const double                 largest_eigenvalue,
+                                                     const SymmetricModesOptions &options)
+  {
+    const auto                                        problem = std::make_shared<CountedProblem>(K, M, largest_eigenvalue, options);
+    std::shared_future<std::optional<SymmetricModes>> beside;
+    if (n_task_threads() > 1 && K.n_rows() < rows_of_large_matrices && problem->may_be_alone())
+      beside = std::async(std::launch::async, [problem] { return problem->modes_alone(); }).share();
+    return std::async(std::launch::deferred, [problem, beside] {
+      std::optional<SymmetricModes> found = beside.valid() ? beside.get() : std::nullopt;
+      return found ? std::move(*found) : problem->modes();
+    });
+  }
 
   std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options)
   {
@@ -449,9 +154,6 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    if (!(largest_eigenvalue > 0.))
-      throw SolverError("modes were asked for up to " + std::to_string(largest_eigenvalue) + " rad²/s²", options.what,
-                        "give a positive end of the band");
-    return options.by_parts ? modes_by_parts(K, M, largest_eigenvalue, options) : Solver(K, M, largest_eigenvalue, options).modes();
+    return CountedProblem(K, M, largest_eigenvalue, options).modes();
   }
 } // namespace Squeal

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <iterator>
 #include <limits>
 #include <string>
@@ -81,8 +82,8 @@ namespace Squeal
       const double   resolved     = 1e-10;
       const MPI_Comm communicator = X.communicator();
 
-      std::vector<MultiVector> kept;
-      const auto               project = [&](MultiVector &Y) {
+      std::deque<MultiVector> kept; // none is copied when the next one comes
+      const auto              project = [&](MultiVector &Y) {
         if (Q != nullptr)
           project_out(M, *Q, Y);
         for (const MultiVector &W : kept)
@@ -176,7 +177,9 @@ namespace Squeal
         return {};
       if (kept.size() == 1)
         return std::move(kept.front());
-      return join_all(kept);
+      std::vector<const MultiVector *> parts;
+      std::transform(kept.begin(), kept.end(), std::back_inserter(parts), [](const MultiVector &W) { return &W; });
+      return join(parts);
     }
   } // namespace
 

@@ -117,6 +117,19 @@ namespace Squeal
       return X.transpose() * Y;
     }
 
+    /// Columns that are copied together.
+    constexpr int columns_of_copy = 8;
+
+    /// Y = X. Several threads copy much: to write to new memory takes longer than to read.
+    void copy(const ConstColumns &X, Eigen::Ref<DenseMatrix> Y)
+    {
+      const int n = static_cast<int>(X.cols());
+      run_tasks((n + columns_of_copy - 1) / columns_of_copy, [&](const int part) {
+        const int first = part * columns_of_copy, width = std::min(columns_of_copy, n - first);
+        Y.middleCols(first, width) = X.middleCols(first, width);
+      });
+    }
+
     /// Mixes 64 bits (the finaliser of SplitMix64).
     std::uint64_t mix(std::uint64_t z)
     {
@@ -149,9 +162,11 @@ namespace Squeal
     : row_map(X.row_map)
     , n_rows(X.n_rows)
     , k(X.k)
-    , own(X.local())
+    , own(n_rows, k)
     , values(own.data())
-  {}
+  {
+    copy(X.local(), own);
+  }
 
   MultiVector::MultiVector(MultiVector &&X)
     : row_map(X.row_map)
@@ -170,7 +185,7 @@ namespace Squeal
     if (is_view())
       {
         require_same_shape(*this, X, "assignment to columns of a set of vectors");
-        local() = X.local();
+        copy(X.local(), local());
         return *this;
       }
     return *this = MultiVector(X);
@@ -213,7 +228,7 @@ namespace Squeal
   {
     require(!is_view() && X.n_local_rows() == n_rows, "columns behind others");
     own.conservativeResize(Eigen::NoChange, k + X.k);
-    own.rightCols(X.k) = X.local();
+    copy(X.local(), own.rightCols(X.k));
     k += X.k;
     values = own.data();
   }
@@ -342,7 +357,7 @@ namespace Squeal
     for (const MultiVector *part : parts)
       {
         require(part->n_local_rows() == all.n_local_rows(), "union of sets of vectors");
-        all.local().middleCols(column, part->n_columns()) = part->local();
+        copy(part->local(), all.local().middleCols(column, part->n_columns()));
         column += part->n_columns();
       }
     return all;
@@ -360,8 +375,7 @@ namespace Squeal
   {
     require_same_shape(X, Y, "inner products");
     std::vector<double> result(X.n_columns());
-    for (int j = 0; j < X.n_columns(); ++j)
-      result[j] = X.col(j).dot(Y.col(j));
+    run_tasks(X.n_columns(), [&](const int j) { result[j] = X.col(j).dot(Y.col(j)); });
     sum_over_processes(X.communicator(), result.data(), result.size());
     return result;
   }

@@ -139,7 +139,7 @@ namespace Squeal
 
     double largest_of_all(const SparseMatrix &A, const double local)
     {
-      return dealii::Utilities::MPI::max(local, A.communicator());
+      return largest_of_processes(A.communicator(), local);
     }
   } // namespace
 

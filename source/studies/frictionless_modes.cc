@@ -154,64 +154,78 @@ namespace Squeal
       options.counting = ModeCounting::inertia;
     }
 
-    /**
-     * Counts the coupled modes up to @p end_of_count [rad/s], and finds the component modes. The factor of the disc may be made beside the
-     * count and the modes of the pins.
-     */
-    std::optional<ModeCount> count_and_find_components(FrictionlessModes &result, const double end_of_count, Run &run)
+    /// Component modes, in two steps: those of the pins may be found while coupled modes are counted.
+    class ComponentSolutions
     {
-      const Linearisation &linearisation = result.linearisation;
-      const CoupledSystem &coupled       = linearisation.coupled;
-      const Scene         &scene         = *linearisation.scene;
-      const Parameters    &parameters    = run.parameters;
-      const double         omega_max     = circular_frequency(parameters.discretization.maximum_frequency);
-      const double         limit         = omega_max * omega_max;
-      check_speed(coupled, parameters);
+    public:
+      /// Begins with the factor of the disc and the modes of the pins.
+      ComponentSolutions(const Linearisation &linearisation, Run &run)
+        : scene(*linearisation.scene)
+        , closed(linearisation.interface)
+        , run(run)
+        , omega_max(circular_frequency(run.parameters.discretization.maximum_frequency))
+        , disc(problem(Component::disc, ContactBoundary::free))
+        , disc_options(
+            real_modes_options(run.parameters.solvers, "modes of the disc", stabilizing_shift(*scene.model, scene.system, omega_max)))
+      {
+        disc_options.n_expected = static_cast<int>(scene.expected_modes / 2.);
+        disc_options.factor     = factor_of_stiffness(*disc->stiffness, disc_options);
+        pins_free               = begin(problem(Component::pins, ContactBoundary::free), pin_options("modes of the free pins"), 1.);
+        pins_sliding = begin(problem(Component::pins, ContactBoundary::sliding), pin_options("modes of the sliding pins"), label_band);
+      }
 
-      // Outlives the factor that another thread makes of it
-      std::optional disc = component_problem(*scene.model, linearisation.interface, scene.system, Component::disc, ContactBoundary::free);
-      const double  disc_shift   = stabilizing_shift(*scene.model, scene.system, omega_max);
-      auto          disc_options = real_modes_options(parameters.solvers, "modes of the disc", disc_shift);
-      disc_options.n_expected    = static_cast<int>(scene.expected_modes / 2.);
-      disc_options.factor        = factor_of_stiffness(*disc->stiffness, disc_options);
-      const auto pin_problem     = [&](const ContactBoundary boundary) {
-        return component_problem(*scene.model, linearisation.interface, scene.system, Component::pins, boundary);
-      };
-      const ComponentProblem         free_pins = pin_problem(ContactBoundary::free), sliding_pins = pin_problem(ContactBoundary::sliding);
-      const std::optional<ModeCount> count = number_of_modes(coupled, end_of_count, run);
+      void finish(FrictionlessModes &result)
+      {
+        run.progress.begin("Component modes");
+        result.pins_free    = pins_free.get();
+        result.pins_sliding = pins_sliding.get();
+        run.progress.update(disc_options.what);
+        result.disc         = begin(disc, disc_options, label_band).get();
+        disc_options.factor = {};
+        disc.reset();
 
-      const auto components = [&](const ComponentProblem &problem, const SymmetricModesOptions &options, const double band) {
-        run.progress.update(options.what);
-        return component_modes(*scene.model, scene.interface, scene.system, problem, band * band * limit, options);
-      };
-      const auto pins = [&](const ComponentProblem &problem, const char *name, const double band) {
-        SymmetricModesOptions options = real_modes_options(parameters.solvers, name, 0.);
+        const auto n_in_band = [&](const ComponentModes &modes) { return Squeal::n_in_band(modes.eigenvalues, omega_max * omega_max); };
+        const auto n_disc = n_in_band(result.disc), n_free = n_in_band(result.pins_free), n_sliding = n_in_band(result.pins_sliding);
+        run.count("disc modes", n_disc);
+        run.count("free pin modes", n_free);
+        run.count("sliding pin modes", n_sliding);
+        run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
+                                 run.parameters.discretization.maximum_frequency, " Hz"));
+      }
+
+    private:
+      std::shared_ptr<const ComponentProblem> problem(const Component component, const ContactBoundary boundary) const
+      {
+        return std::make_shared<ComponentProblem>(component_problem(*scene.model, closed, scene.system, component, boundary));
+      }
+
+      SymmetricModesOptions pin_options(const char *name) const
+      {
+        SymmetricModesOptions options = real_modes_options(run.parameters.solvers, name, 0.);
         // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
         options.by_parts = true;
         factorize_parts(options);
-        return components(problem, options, band);
-      };
-      run.progress.begin("Component modes");
-      // Counted before the pins are solved, while other threads are still at work on the factors
-      if (disc_options.counting == ModeCounting::inertia)
-        disc_options.count = count_below(*disc->stiffness, *disc->mass, label_band * label_band * limit, disc_options.what);
-      result.pins_free    = pins(free_pins, "modes of the free pins", 1.);
-      result.pins_sliding = pins(sliding_pins, "modes of the sliding pins", label_band);
-      result.disc         = components(*disc, disc_options, label_band);
-      disc_options.factor = {};
-      disc.reset();
-      const auto n_disc = n_in_band(result.disc.eigenvalues, limit), n_free = n_in_band(result.pins_free.eigenvalues, limit),
-                 n_sliding = n_in_band(result.pins_sliding.eigenvalues, limit);
-      run.count("disc modes", n_disc);
-      run.count("free pin modes", n_free);
-      run.count("sliding pin modes", n_sliding);
-      run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
-                               parameters.discretization.maximum_frequency, " Hz"));
-      return count;
-    }
+        return options;
+      }
+
+      std::future<ComponentModes> begin(const std::shared_ptr<const ComponentProblem> &of,
+                                        const SymmetricModesOptions                   &options,
+                                        const double                                   band) const
+      {
+        return component_modes_beside(*scene.model, scene.interface, scene.system, of, band * band * omega_max * omega_max, options);
+      }
+
+      const Scene                            &scene;
+      const ContactInterface                 &closed;
+      Run                                    &run;
+      const double                            omega_max; ///< end of the band [rad/s]
+      std::shared_ptr<const ComponentProblem> disc;
+      SymmetricModesOptions                   disc_options;
+      std::future<ComponentModes>             pins_free, pins_sliding;
+    };
   } // namespace
 
-  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin, const Steps steps)
   {
     const Scene         &scene      = *linearisation.scene;
     const Parameters    &parameters = run.parameters;
@@ -231,7 +245,26 @@ namespace Squeal
     result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
                                                       FactorTime::beside);
 
-    const std::optional<ModeCount> count = count_and_find_components(result, (1. + margin) * omega_max, run);
+    check_speed(coupled, parameters);
+    ComponentSolutions             components(linearisation, run);
+    const std::optional<ModeCount> count = number_of_modes(coupled, (1. + margin) * omega_max, run);
+
+    SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
+    options.count                 = count;
+    // As many modes as there are pins that are alike may have one frequency
+    options.block_size = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
+    // The factor serves here too, unless the shift brought damping into it.
+    if (result.shift == 0. || !coupled.has_damping())
+      options.inverse = result.inverse.get();
+    options.n_expected    = static_cast<int>(scene.expected_modes);
+    const auto real_modes = [&] {
+      return symmetric_modes_beside(*coupled.stiffness, *coupled.mass, count ? count->limit : (1. + margin) * (1. + margin) * limit,
+                                    options);
+    };
+    std::future<SymmetricModes> real;
+    if (steps == Steps::overlapping && !parameters.solvers.uses_multigrid())
+      real = real_modes();
+    components.finish(result);
 
     // ------------------------------------------------------ real coupled modes
     run.progress.begin("Factorisation");
@@ -242,18 +275,14 @@ namespace Squeal
     result.factorisation.cpu_seconds += result.inverse->factor_seconds_beside();
 
     run.progress.begin("Real modes");
-    SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
-    options.count                 = count;
-    // As many modes as there are pins that are alike may have one frequency
-    options.block_size = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
-    // The factor at hand serves here too, unless the shift brought damping into it.
-    if (result.shift == 0. || !coupled.has_damping())
-      options.inverse = &result.inverse->frictionless();
-    if (const auto *iterative = dynamic_cast<const IterativeInverse *>(&result.inverse->frictionless()); iterative != nullptr)
-      options.preconditioner = &iterative->preconditioner();
-    options.near_null_space = result.linearisation.coupled.near_null_space.get();
-    options.n_expected      = static_cast<int>(scene.expected_modes);
-    result.real = symmetric_modes(*coupled.stiffness, *coupled.mass, count ? count->limit : (1. + margin) * (1. + margin) * limit, options);
+    if (!real.valid())
+      {
+        if (const auto *iterative = dynamic_cast<const IterativeInverse *>(&result.inverse->frictionless()); iterative != nullptr)
+          options.preconditioner = &iterative->preconditioner();
+        options.near_null_space = result.linearisation.coupled.near_null_space.get();
+        real                    = real_modes();
+      }
+    result.real              = real.get();
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <future>
 #include <mutex>
 
 namespace Squeal
@@ -126,9 +127,15 @@ namespace Squeal
         for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
           *vectors = with_rows(*vectors, model.size());
       MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
+      // Written, where another thread may do it, from where the model has it while it projects on it
+      const MultiVector block     = view(smaller, 0, smaller.n_columns());
+      const bool        is_beside = n_task_threads() > 1 && dealii::Utilities::MPI::n_mpi_processes(communicator) == 1;
+      std::future<void> kept;
       if (store != nullptr)
-        store->keep(smaller);
+        kept = std::async(is_beside ? std::launch::async : std::launch::deferred, [&] { store->keep(block); });
       model.restart(std::move(smaller));
+      if (kept.valid())
+        kept.get();
       return n_growths;
     }
     using Each = std::function<void(int, const ChartPoint &)>;

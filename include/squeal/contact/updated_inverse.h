@@ -72,29 +72,27 @@ namespace Squeal
     /// X B for B, n_c × k, the same on every process: k solves if X is not there yet.
     MultiVector attachment_modes_times(const DenseMatrix &B) const;
 
-    /// S⁻¹ by itself.
+    /// S⁻¹ by itself. Several threads may ask for it, and for apply() without friction.
     const Factorization &frictionless() const;
 
     /// Processor time of another thread on which the factor was made beside other work; 0 if there was none [s].
     double factor_seconds_beside() const
     {
-      return seconds_beside;
+      return later.get().cpu_seconds;
     }
 
   private:
     /// X with the factor of S, perhaps on another thread.
     void find_attachment_modes(const Factorization &of) const;
 
-    const AttachmentModes                  attachment;
-    const RowMap                           rows;
-    std::shared_ptr<const LowRankFactor>   A;
-    std::shared_ptr<const SparseMatrix>    V;
-    mutable std::unique_ptr<MultiVector>   X;     ///< once it has been needed; where it comes with the factor, not before frictionless()
-    mutable std::future<FactorBeside>      later; ///< waits when it goes, before what the other thread uses
-    mutable std::unique_ptr<Factorization> factor;
-    mutable double                         seconds_beside = 0.;
-    std::optional<DenseMatrix>             VX; ///< the same, n_c × n_c, on every process
-    double                                 friction_coefficient = 0.;
-    std::optional<RealLU>                  correction;
+    const AttachmentModes                attachment;
+    const RowMap                         rows;
+    std::shared_ptr<const LowRankFactor> A;
+    std::shared_ptr<const SparseMatrix>  V;
+    mutable std::unique_ptr<MultiVector> X;     ///< once it has been needed; where it comes with the factor, not before frictionless()
+    std::shared_future<FactorBeside>     later; ///< waits when it goes, before what the other thread uses
+    std::optional<DenseMatrix>           VX;    ///< the same, n_c × n_c, on every process
+    double                               friction_coefficient = 0.;
+    std::optional<RealLU>                correction;
   };
 } // namespace Squeal

@@ -114,6 +114,16 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
 
+  /**
+   * What symmetric_modes() returns or throws, when it is asked for. Modes are counted at once. Where another thread may work and to find them
+   * takes no other process, they are found beside what is done until then; those of a large matrix, and all others, wait until they are asked
+   * for. K and M, and what the options point to, must outlive it.
+   */
+  std::future<SymmetricModes> symmetric_modes_beside(const SparseMatrix          &K,
+                                                     const SparseMatrix          &M,
+                                                     double                       largest_eigenvalue,
+                                                     const SymmetricModesOptions &options = {});
+
   /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none,
   /// or where multigrid takes its place and does not know yet how K moves.
   std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options);
