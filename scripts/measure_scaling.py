@@ -20,7 +20,7 @@ import benchmarking
 
 # Element size [m], layers of the disc, nodes on a pin's face, layers of the pins
 MESHES = {"32": (0.0115, 3, 19, 4), "78": (0.008, 4, 37, 6), "138": (0.006, 4, 61, 6), "281": (0.0045, 5, 91, 8),
-          "476": (0.0036, 6, 91, 10), "1000": (0.0029, 9, 91, 10)}
+          "476": (0.0036, 6, 91, 10), "670": (0.0032, 7, 91, 10), "1000": (0.0029, 9, 91, 10)}
 STUDIES = {"stability": "disc_pins.prm", "sweep": "sweep.prm"}
 STEPS = ("Mode count", "Component modes", "Factorisation", "Real modes", "Complex modes", "Reduced model", "Sweep", "Branches")
 
@@ -51,9 +51,10 @@ def columns(record):
               "peak [GB]": max(step["peak memory so far [byte]"] for step in record["steps"]) / 1e9,
               "expected [GB]": record["quantities"]["expected memory [byte]"] / 1e9}
     for name in STEPS:
-        seconds = sum(step["wall time [s]"] for step in record["steps"] if step["name"] == name)
-        if seconds > 0.:
-            result[f"{name} [s]"] = seconds
+        steps = [step for step in record["steps"] if step["name"] == name]
+        if steps:
+            result[f"{name} [s]"] = sum(step["wall time [s]"] for step in steps)
+            result[f"{name}, peak so far [GB]"] = steps[-1]["peak memory so far [byte]"] / 1e9
     return result
 
 
@@ -73,7 +74,7 @@ def main():
         print(f"\n{name} 000 dofs")
         for column, value in found.items():
             exponent = ""
-            if before and column != "coupled dofs" and before.get(column, 0.) > 0.:
+            if before and column != "coupled dofs" and before.get(column, 0.) > 0. and value > 0.:
                 exponent = f"  ~ n^{math.log(value / before[column]) / math.log(found['coupled dofs'] / before['coupled dofs']):.2f}"
             print(f"  {column:<32} {value:12.5g}{exponent}", flush=True)
         before = found

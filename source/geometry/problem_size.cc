@@ -13,10 +13,10 @@ namespace Squeal
   namespace
   {
     // Fit of ProblemSize::memory() [byte]
-    constexpr double program            = 1.7e8;
-    constexpr double per_dof            = 1.6e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
+    constexpr double program            = 3.0e8;
+    constexpr double per_dof            = 1.55e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
     constexpr double reference_dofs     = 3e4;
-    constexpr double growth             = 0.05;
+    constexpr double growth             = 0.03;
     constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
     constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
 
