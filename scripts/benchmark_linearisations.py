@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Linearisations of the small quadratic eigenproblem of a chart with dissipation, timed beside each other.
+
+    scripts/benchmark_linearisations.py DIRECTORY [--vectors 234] [--runs 3] [--core 0]
+
+DIRECTORY is the output of a run with Output/Write matrices = true and dissipation, prm/dissipation.prm for instance. The lowest real modes
+without friction make the problem small: lambda^2 M + lambda C + K with so many rows, dense, K not symmetric. Right and left vectors of
+the band are found
+
+    companion    by the QR algorithm (dgeev) on [[0, I], [-inv(M) K, -inv(M) C]], which keeps nothing of the structure
+    symmetric    by the QZ algorithm (dggev) on lambda [[C, M], [M, 0]] + [[K, 0], [0, -M]], whose blocks stay as symmetric as K, C and M are
+    values       by the QR algorithm for the values of the companion form alone, and two steps of inverse iteration with
+                 lambda^2 M + lambda C + K for each of the band
+    toar         by SLEPc's two-level orthogonal Arnoldi method, a Krylov method that keeps the structure of the companion form;
+                 once for right vectors, once for left ones (needs scripts/setup.sh peers)
+
+Processor seconds of one core, medians; the largest relative distance of an eigenvalue of the band from the first method's.
+"""
+
+import argparse
+import os
+import sys
+import time
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sparse
+import scipy.sparse.linalg
+
+import benchmarking
+import exported_matrices
+import slepc_modes
+
+FRICTION, BAND = "Operation/Friction coefficient", "Band/Maximum frequency"
+
+
+def small_problem(directory, n_vectors):
+    """M, C and K in the lowest real modes of the frictionless system, and the end of the band [rad/s]."""
+    matrices = exported_matrices.read_matrices(directory)
+    parameters = exported_matrices.read_parameters(f"{directory}/parameters.prm")
+    bare = exported_matrices.couple(matrices, 0.0)
+    full = exported_matrices.couple(matrices, float(parameters[FRICTION]))
+    _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), n_vectors, sparse.csc_matrix(bare.mass), sigma=0.0)
+    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], 2 * np.pi * float(parameters[BAND])
+
+
+def in_band(values, end):
+    """Which of the eigenvalues are those of modes in the band: one of each conjugate pair."""
+    return np.flatnonzero((values.imag > 0) & (values.imag <= end))
+
+
+def companion_form(M, C, K):
+    r = len(M)
+    return np.block([[np.zeros((r, r)), np.eye(r)], [-scipy.linalg.solve(M, K), -scipy.linalg.solve(M, C)]])
+
+
+def by_companion(M, C, K, end):
+    values, _, _ = scipy.linalg.eig(companion_form(M, C, K), left=True, right=True)
+    return values[in_band(values, end)]
+
+
+def by_symmetric(M, C, K, end):
+    zero = np.zeros_like(M)
+    values, _, _ = scipy.linalg.eig(np.block([[-K, zero], [zero, M]]), np.block([[C, M], [M, zero]]), left=True, right=True)
+    return values[in_band(values, end)]
+
+
+def by_values(M, C, K, end):
+    values = scipy.linalg.eigvals(companion_form(M, C, K))
+    values = values[in_band(values, end)]
+    start = np.random.default_rng(1).standard_normal(len(M)).astype(complex)
+    for value in values:
+        factor = scipy.linalg.lu_factor(value**2 * M + value * C + K)
+        for kind in (0, 2):  # right, left
+            vector = start
+            for _ in range(2):
+                vector = scipy.linalg.lu_solve(factor, vector, trans=kind)
+                vector /= np.linalg.norm(vector)
+    return values
+
+
+def by_toar(M, C, K, end):
+    n = len(by_toar.expected)
+    for transpose in (False, True):
+        blocks = [sparse.csr_matrix(A.T if transpose else A) for A in (M, C, K)]
+        solution = slepc_modes.Solution(exported_matrices.QuadraticProblem(*blocks), 2 * n + 4, "toar")
+    return solution.eigenvalues[in_band(solution.eigenvalues, end)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory")
+    parser.add_argument("--vectors", type=int, default=234)
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--core", type=int, default=0)
+    arguments = parser.parse_args()
+    os.sched_setaffinity(0, {arguments.core})
+    print(benchmarking.describe_machine(arguments.core), flush=True)
+
+    (M, C, K), end = small_problem(arguments.directory, arguments.vectors)
+    if abs(C).max() == 0.0:
+        sys.exit(f"{arguments.directory} has no damping: the problem is linear in lambda^2. Take prm/dissipation.prm.")
+    methods = {"companion": by_companion, "symmetric": by_symmetric, "values": by_values}
+    if slepc_modes.available():
+        methods["toar"] = by_toar
+    reference = by_toar.expected = by_companion(M, C, K, end)
+    times, found = {name: [] for name in methods}, {}
+    for _ in range(arguments.runs):
+        for name, method in methods.items():
+            before = time.process_time()
+            found[name] = method(M, C, K, end)
+            times[name].append(time.process_time() - before)
+    print(f"{len(M)} vectors, {len(reference)} modes of the band")
+    for name, values in found.items():
+        distance = max((abs(values - value).min() / abs(value) for value in reference), default=0.0) if len(values) else np.inf
+        print(f"  {name:<10} CPU [s] {benchmarking.spread(times[name], 3)}, {len(values)} found, distance {distance:.1e}")
+
+
+if __name__ == "__main__":
+    main()
