@@ -34,17 +34,15 @@ import benchmarking
 import exported_matrices
 import slepc_modes
 
-FRICTION, BAND = "Operation/Friction coefficient", "Band/Maximum frequency"
-
 
 def small_problem(directory, n_vectors):
     """M, C and K in the lowest real modes of the frictionless system, and the end of the band [rad/s]."""
     matrices = exported_matrices.read_matrices(directory)
-    parameters = exported_matrices.read_parameters(f"{directory}/parameters.prm")
     bare = exported_matrices.couple(matrices, 0.0)
-    full = exported_matrices.couple(matrices, float(parameters[FRICTION]))
+    full = exported_matrices.couple(matrices, exported_matrices.run_parameter(directory, "Operation/Friction coefficient"))
+    band = exported_matrices.run_parameter(directory, "Band/Maximum frequency")
     _, basis = scipy.sparse.linalg.eigsh(sparse.csc_matrix(bare.stiffness), n_vectors, sparse.csc_matrix(bare.mass), sigma=0.0)
-    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], 2 * np.pi * float(parameters[BAND])
+    return [basis.T @ (matrix @ basis) for matrix in (full.mass, full.damping, full.stiffness)], 2 * np.pi * band
 
 
 def in_band(values, end):

@@ -64,4 +64,9 @@ namespace Squeal
       if (failure)
         std::rethrow_exception(failure);
   }
+
+  void run_parts(const int total, const int size, const std::function<void(int, int)> &f)
+  {
+    run_tasks(std::max(1, (total + size - 1) / size), [&](const int part) { f(part * size, std::min(size, total - part * size)); });
+  }
 } // namespace Squeal

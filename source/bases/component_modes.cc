@@ -45,17 +45,6 @@ namespace Squeal
 
   namespace
   {
-    /// The options with the motions of the component in @p space, which multigrid has to know.
-    SymmetricModesOptions with_motions(SymmetricModesOptions         options,
-                                       const Model                  &model,
-                                       const ComponentProblem       &problem,
-                                       std::optional<NearNullSpace> &space)
-    {
-      if (options.library == FactorizationLibrary::multigrid)
-        options.near_null_space = &space.emplace(near_null_space(model, *problem.kernel));
-      return options;
-    }
-
     ComponentModes labelled(const Model             &model,
                             const ContactInterface  &interface,
                             const SecondOrderSystem &system,
@@ -94,24 +83,14 @@ namespace Squeal
     };
     const auto pending = std::make_shared<Pending>();
     pending->problem   = problem;
-    pending->modes     = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue,
-                                                with_motions(options, model, *problem, pending->space));
+    // Multigrid has to know how the dofs of this component move
+    SymmetricModesOptions used = options;
+    if (options.library == FactorizationLibrary::multigrid)
+      used.near_null_space = &pending->space.emplace(near_null_space(model, *problem->kernel));
+    pending->modes = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue, used);
     return std::async(std::launch::deferred, [&model, &interface, &system, pending] {
       return labelled(model, interface, system, *pending->problem, pending->modes.get());
     });
-  }
-
-  ComponentModes component_modes(const Model                 &model,
-                                 const ContactInterface      &interface,
-                                 const SecondOrderSystem     &system,
-                                 const ComponentProblem      &problem,
-                                 const double                 largest_eigenvalue,
-                                 const SymmetricModesOptions &options)
-  {
-    std::optional<NearNullSpace> space;
-    const SymmetricModes         modes =
-      symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, with_motions(options, model, problem, space));
-    return labelled(model, interface, system, problem, modes);
   }
 
   ComponentModes component_modes(const Model                 &model,
@@ -123,8 +102,8 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    return component_modes(model, interface, system, component_problem(model, closed, system, component, boundary), largest_eigenvalue,
-                           options);
+    const auto problem = std::make_shared<ComponentProblem>(component_problem(model, closed, system, component, boundary));
+    return component_modes_beside(model, interface, system, problem, largest_eigenvalue, options).get();
   }
 
   namespace

@@ -4,7 +4,6 @@
 #include <squeal/base/tasks.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/eigen/uncoupled_parts.h>
-#include <squeal/linear_algebra/blas_threads.h>
 
 #include <algorithm>
 #include <deque>
@@ -72,11 +71,15 @@ namespace Squeal
 
       SymmetricModes modes()
       {
-        solve_dense_parts();
+        if (by_parts && rows.n_processes() == 1)
+          run_tasks(static_cast<int>(solvers.size()), [&](const int p) {
+            if (solvers[p].is_dense())
+              solvers[p].solve_densely();
+          });
         std::vector<SymmetricModes> parts;
         for (SymmetricSolver &solver : solvers)
           parts.push_back(solver.modes());
-        return result(parts);
+        return by_parts ? merged(parts, rows) : parts.front();
       }
 
       /// Whether modes_alone() is worth an attempt.
@@ -88,33 +91,23 @@ namespace Squeal
       /// The same without any call of MPI; nothing, rarely, where it would take one: modes() may still be asked for.
       std::optional<SymmetricModes> modes_alone()
       {
-        solve_dense_parts();
-        std::vector<SymmetricModes> parts;
-        for (SymmetricSolver &solver : solvers)
+        const auto keep_to_itself = [&](const bool keep) {
+          for (SymmetricSolver &solver : solvers)
+            solver.keep_to_itself(keep);
+        };
+        keep_to_itself(true);
+        try
           {
-            std::optional<SymmetricModes> modes = solver.modes_alone();
-            if (!modes)
-              return {};
-            parts.push_back(std::move(*modes));
+            return modes();
           }
-        return result(parts);
+        catch (const MustCommunicate &)
+          {
+            keep_to_itself(false);
+            return {};
+          }
       }
 
     private:
-      void solve_dense_parts()
-      {
-        if (by_parts && rows.n_processes() == 1)
-          run_tasks(static_cast<int>(solvers.size()), [&](const int p) {
-            if (solvers[p].is_dense())
-              solvers[p].solve_densely();
-          });
-      }
-
-      SymmetricModes result(const std::vector<SymmetricModes> &parts) const
-      {
-        return by_parts ? merged(parts, rows) : parts.front();
-      }
-
       const bool                                       by_parts;
       const RowMap                                     rows;
       std::vector<std::shared_ptr<const SparseMatrix>> matrices; ///< of the parts
@@ -129,7 +122,7 @@ namespace Squeal
   {
     const auto                                        problem = std::make_shared<CountedProblem>(K, M, largest_eigenvalue, options);
     std::shared_future<std::optional<SymmetricModes>> beside;
-    if (n_task_threads() > 1 && K.n_rows() < rows_of_large_matrices && problem->may_be_alone())
+    if (is_done_beside(K.rows()) && problem->may_be_alone())
       beside = std::async(std::launch::async, [problem] { return problem->modes_alone(); }).share();
     return std::async(std::launch::deferred, [problem, beside] {
       std::optional<SymmetricModes> found = beside.valid() ? beside.get() : std::nullopt;

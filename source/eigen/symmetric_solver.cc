@@ -23,9 +23,6 @@ namespace Squeal
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_fruitless_starts = 4;
 
-    /// Thrown where modes_alone() would have to communicate.
-    struct MustCommunicate
-    {};
   } // namespace
 
   SymmetricSolver::SymmetricSolver(const SparseMatrix &K, const SparseMatrix &M, const double limit, const SymmetricModesOptions &options)
@@ -72,23 +69,13 @@ namespace Squeal
 
   bool SymmetricSolver::may_be_alone() const
   {
-    const bool direct = options.library == FactorizationLibrary::automatic || options.library == FactorizationLibrary::cholmod;
     return counted && K.rows().n_processes() == 1 &&
-           (count.n_modes == 0 || is_dense() || (options.solver == RealSolver::lanczos && direct));
+           (count.n_modes == 0 || is_dense() || (options.solver == RealSolver::lanczos && needs_no_process(K.rows(), options.library)));
   }
 
-  std::optional<SymmetricModes> SymmetricSolver::modes_alone()
+  void SymmetricSolver::keep_to_itself(const bool keep)
   {
-    keeps_to_itself = true;
-    std::optional<SymmetricModes> result;
-    try
-      {
-        result = modes();
-      }
-    catch (const MustCommunicate &)
-      {}
-    keeps_to_itself = false;
-    return result;
+    keeps_to_itself = keep;
   }
 
   SymmetricModes SymmetricSolver::uncounted()

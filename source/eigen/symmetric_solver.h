@@ -13,6 +13,10 @@ namespace Squeal
   /// Systems up to this size are solved densely.
   constexpr int largest_dense_system = 300;
 
+  /// Modes cannot be found without a call of MPI: they may still be asked for where one is allowed.
+  struct MustCommunicate
+  {};
+
   /// Solves one symmetric eigenproblem, step by step: counts when it is made, then finds, refines and accepts modes.
   class SymmetricSolver
   {
@@ -26,13 +30,13 @@ namespace Squeal
     /// The dense eigenvalue problem of a process that is alone, ahead of modes(); others may be solved on other threads meanwhile.
     void solve_densely();
 
-    /// Whether modes_alone() is worth an attempt.
+    /// Whether modes() calls no MPI, but for what MustCommunicate stands for.
     bool may_be_alone() const;
 
     SymmetricModes modes();
 
-    /// The same without any call of MPI, on whatever thread; nothing where it would take one.
-    std::optional<SymmetricModes> modes_alone();
+    /// Whether modes() throws MustCommunicate where it would take a call of MPI, so that any thread may ask for them.
+    void keep_to_itself(bool keep);
 
   private:
     /// Rayleigh-Ritz approximations in a space, ascending.
@@ -92,7 +96,7 @@ namespace Squeal
     const bool                       counted;
     ModeCount                        count;
     bool                             lifted          = false;
-    bool                             keeps_to_itself = false; ///< modes_alone() is at work
+    bool                             keeps_to_itself = false;
     std::unique_ptr<Factorization>   factorization;
     std::unique_ptr<Multigrid>       multigrid;
     std::optional<RealPairs>         dense_pairs;

@@ -16,6 +16,16 @@ namespace Squeal
     }
   } // namespace
 
+  bool needs_no_process(const RowMap &rows, const FactorizationLibrary library)
+  {
+    return rows.n_processes() == 1 && (library == FactorizationLibrary::automatic || library == FactorizationLibrary::cholmod);
+  }
+
+  bool is_done_beside(const RowMap &rows)
+  {
+    return n_task_threads() > 1 && rows.n() < rows_of_large_matrices;
+  }
+
   std::future<FactorBeside> factorize_beside(const RowMap                                               &rows,
                                              const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
                                              const FactorizationLibrary                                  library,
@@ -23,11 +33,7 @@ namespace Squeal
                                              const NearNullSpace                                        *near_null_space,
                                              const std::function<void(const Factorization &)>           &then)
   {
-    // MUMPS communicates even on one process
-    const bool is_alone =
-      rows.n_processes() == 1 && (library == FactorizationLibrary::automatic || library == FactorizationLibrary::cholmod);
-    const bool is_beside = is_alone && n_task_threads() > 1 && rows.n() < rows_of_large_matrices;
-    if (!is_beside)
+    if (!needs_no_process(rows, library) || !is_done_beside(rows))
       return std::async(std::launch::deferred, [=] {
         FactorBeside result{factorize_positive_definite(*matrix(), library, what, near_null_space)};
         if (then)

@@ -30,13 +30,6 @@ namespace Squeal
     /// Rows that are a task; the same however many threads there are, so that sums do not depend on their number.
     constexpr int rows_together = 8192;
 
-    /// Calls @p f with the first row and the number of rows of every part of @p n_rows.
-    void for_parts(const int n_rows, const std::function<void(int part, int first, int n)> &f)
-    {
-      run_tasks(std::max(1, (n_rows + rows_together - 1) / rows_together),
-                [&](const int part) { f(part, part * rows_together, std::min(rows_together, n_rows - part * rows_together)); });
-    }
-
     /// Rows of vectors that stay in the nearest cache while many others pass by.
     constexpr int rows_in_cache = 256;
 
@@ -123,11 +116,8 @@ namespace Squeal
     /// Y = X. Several threads copy much: to write to new memory takes longer than to read.
     void copy(const ConstColumns &X, Eigen::Ref<DenseMatrix> Y)
     {
-      const int n = static_cast<int>(X.cols());
-      run_tasks((n + columns_of_copy - 1) / columns_of_copy, [&](const int part) {
-        const int first = part * columns_of_copy, width = std::min(columns_of_copy, n - first);
-        Y.middleCols(first, width) = X.middleCols(first, width);
-      });
+      run_parts(static_cast<int>(X.cols()), columns_of_copy,
+                [&](const int first, const int n) { Y.middleCols(first, n) = X.middleCols(first, n); });
     }
 
     /// Mixes 64 bits (the finaliser of SplitMix64).
@@ -268,7 +258,7 @@ namespace Squeal
     auto              y      = Y.local();
     const bool        by_few = few_meet_many(Y.n_columns(), X.n_columns());
     const DenseMatrix scaled = by_few ? DenseMatrix(alpha * S) : DenseMatrix();
-    for_parts(Y.n_local_rows(), [&](int, const int first, const int n) {
+    run_parts(Y.n_local_rows(), rows_together, [&](const int first, const int n) {
       auto image = y.middleRows(first, n);
       if (by_few)
         {
@@ -296,15 +286,12 @@ namespace Squeal
     DenseMatrix sum_over_parts(const MultiVector &X, const std::function<DenseMatrix(int first, int n)> &f)
     {
       std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
-      for_parts(X.n_local_rows(), [&](const int part, const int first, const int n) { sums[part] = f(first, n); });
+      run_parts(X.n_local_rows(), rows_together, [&](const int first, const int n) { sums[first / rows_together] = f(first, n); });
       DenseMatrix result = std::move(sums.front());
       for (std::size_t part = 1; part < sums.size(); ++part)
         result += sums[part];
-      if (X.map().n_processes() > 1)
-        {
-          sum_over_processes(X.communicator(), result.data(), result.size());
-          agree(X.communicator(), result);
-        }
+      sum_over_processes(X.communicator(), result.data(), result.size());
+      agree(X.communicator(), result);
       return result;
     }
   } // namespace

@@ -5,7 +5,6 @@
 #include <deal.II/base/aligned_vector.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace Squeal
 {
@@ -13,13 +12,6 @@ namespace Squeal
   {
     /// Rows of a product that are a task.
     constexpr int rows_of_task = 2048;
-
-    /// Calls @p f with the first row and the number of rows of every task for @p n_rows.
-    void for_rows(const int n_rows, const std::function<void(int first, int n)> &f)
-    {
-      run_tasks((n_rows + rows_of_task - 1) / rows_of_task,
-                [&](const int task) { f(task * rows_of_task, std::min(rows_of_task, n_rows - task * rows_of_task)); });
-    }
 
     /// Y = A X for a few columns, whose rows are put side by side so that the entries of A are read once for all of them.
     template <int width>
@@ -29,10 +21,10 @@ namespace Squeal
       dealii::AlignedVector<LaneRow<width>> rows, image;
       rows.resize_fast(X.rows());
       image.resize_fast(A.n_rows);
-      for_rows(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
+      run_parts(static_cast<int>(X.rows()), rows_of_task, [&](const int first, const int n_rows) {
         to_lanes(X.data() + first, X.outerStride(), n_rows, n_columns, rows.data() + first);
       });
-      for_rows(A.n_rows, [&](const int first, const int n_rows) {
+      run_parts(A.n_rows, rows_of_task, [&](const int first, const int n_rows) {
         set_products({n_rows, A.start + first, A.column, A.value}, rows.data(), image.data() + first);
         from_lanes(image.data() + first, Y.data() + first, Y.outerStride(), n_rows, n_columns);
       });
@@ -41,7 +33,7 @@ namespace Squeal
     /// The same for one column.
     void multiply_column(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
-      for_rows(A.n_rows, [&](const int first, const int n_rows) {
+      run_parts(A.n_rows, rows_of_task, [&](const int first, const int n_rows) {
         for (int i = first; i < first + n_rows; ++i)
           {
             double sum = 0.;

@@ -28,9 +28,8 @@ namespace Squeal
   {
     constexpr int rows_together = 1024;
     auto          x             = X.local();
-    const int     n_rows        = X.n_local_rows();
-    run_tasks((n_rows + rows_together - 1) / rows_together, [&](const int part) {
-      auto              rows    = x.middleRows(part * rows_together, std::min(rows_together, n_rows - part * rows_together));
+    run_parts(X.n_local_rows(), rows_together, [&](const int first, const int n) {
+      auto              rows    = x.middleRows(first, n);
       const DenseMatrix product = rows * S;
       rows                      = product;
     });

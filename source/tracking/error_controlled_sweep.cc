@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/base/text.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
 #include <deal.II/base/mpi.h>
@@ -129,7 +130,7 @@ namespace Squeal
       MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
       // Written, where another thread may do it, from where the model has it while it projects on it
       const MultiVector block     = view(smaller, 0, smaller.n_columns());
-      const bool        is_beside = n_task_threads() > 1 && dealii::Utilities::MPI::n_mpi_processes(communicator) == 1;
+      const bool        is_beside = n_task_threads() > 1 && is_alone(communicator);
       std::future<void> kept;
       if (store != nullptr)
         kept = std::async(is_beside ? std::launch::async : std::launch::deferred, [&] { store->keep(block); });

@@ -20,4 +20,10 @@ namespace Squeal
    * first of those that fail throws is thrown here, when no other is at work any more.
    */
   void run_tasks(int n, const std::function<void(int)> &task);
+
+  /**
+   * Calls f(first, n) as tasks for parts of 0, ..., total - 1 of @p size each, the last of them of what is left; for one part without
+   * anything if the total is 0. Parts are the same however many threads there are.
+   */
+  void run_parts(int total, int size, const std::function<void(int first, int n)> &f);
 } // namespace Squeal

@@ -55,16 +55,8 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
-  /// The same for a problem that is at hand.
-  ComponentModes component_modes(const Model                 &model,
-                                 const ContactInterface      &interface,
-                                 const SecondOrderSystem     &system,
-                                 const ComponentProblem      &problem,
-                                 double                       largest_eigenvalue,
-                                 const SymmetricModesOptions &options);
-
   /**
-   * What component_modes() returns or throws, when it is asked for. Modes are counted at once. Where another thread may work and to find
+   * The same for a problem that is at hand, when it is asked for. Modes are counted at once. Where another thread may work and to find
    * them takes no other process, they are found beside what is done until then; those of a large matrix, and all others, wait.
    * Model, interface and system must outlive it, and so must what the options point to.
    */
