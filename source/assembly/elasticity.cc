@@ -96,9 +96,8 @@ namespace Squeal
 
     void add_mount(BodyTerms &bodies, const Model &model, const ElasticMount &mount)
     {
-      const types::boundary_id surface    = model.surface_id(mount.surface);
-      const auto               is_mounted = [surface](const Cell &cell, const unsigned int f) {
-        return cell->at_boundary(f) && cell->face(f)->boundary_id() == surface;
+      const auto is_mounted = [&ids = model.surface_ids(mount.surface)](const Cell &cell, const unsigned int f) {
+        return cell->at_boundary(f) && ids.count(cell->face(f)->boundary_id()) > 0;
       };
       const CellPredicate has_mount = [&](const Cell &cell) {
         const auto faces = cell->face_indices();

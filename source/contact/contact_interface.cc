@@ -46,14 +46,14 @@ namespace Squeal
     /// Those that this process owns; it has all their faces.
     std::vector<SurfaceNode> own_surface_nodes(const Model &model, const char *surface)
     {
-      const types::boundary_id id = model.surface_id(surface);
-      const auto              &fe = model.dof_handler().get_fe();
+      const auto     &ids = model.surface_ids(surface);
+      const auto     &fe  = model.dof_handler().get_fe();
       FEFaceValues<3> values(model.mapping(), fe, QGauss<2>(model.degree() + 1), update_values | update_normal_vectors | update_JxW_values);
       std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
       std::map<unsigned int, SurfaceNode>  nodes;
       for (const auto &cell : model.dof_handler().active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
-          if (!cell->is_artificial() && cell->at_boundary(f) && cell->face(f)->boundary_id() == id)
+          if (!cell->is_artificial() && cell->at_boundary(f) && ids.count(cell->face(f)->boundary_id()) > 0)
             {
               values.reinit(cell, f);
               cell->get_dof_indices(dofs);

@@ -32,8 +32,8 @@ namespace Squeal
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
 
-    /// A .geo that sets the parameters and includes the geometry, which keeps values that exist.
-    std::string driver(const std::string &geometry, const GeometryParameters &parameters)
+    /// A .geo that sets the parameters before the geometry, which keeps values that exist.
+    std::string driver(const GeometryParameters &parameters)
     {
       std::string script;
       for (const auto &[name, value] : parameters.script_variables())
@@ -41,7 +41,7 @@ namespace Squeal
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && variable.declaration.onelab_name.empty())
           script += variable.declaration.name + " = " + exact_text(*variable.value) + ";\n";
-      return script + "Include \"" + geometry + "\";\n";
+      return script;
     }
 
     // Statements of Gmsh by which a script reaches beyond the mesh
@@ -52,7 +52,7 @@ namespace Squeal
     {
       if (!is_script(geometry))
         return {geometry, "", {}};
-      MesherInput input{geometry, driver(geometry, parameters), {}};
+      MesherInput input{geometry, driver(parameters), {}};
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && !variable.declaration.onelab_name.empty())
           input.numbers[variable.declaration.onelab_name] = *variable.value;
@@ -140,17 +140,40 @@ namespace Squeal
       check_memory(size, least_degree, no_modes, where, 0., communicator);
     }
 
+    /// Refuses a mesh whose groups, of the dimensions that count, do not say what they are.
+    void check_groups(const GmshMesh &mesh, const std::string &where)
+    {
+      if (mesh.dimension() < 2)
+        throw MeshError(
+          mesh.n_unnamed_volume_elements == 0 ?
+            "The geometry has neither physical volumes nor physical surfaces" :
+            text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical group"),
+          where,
+          "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'; Gmsh reads no names from meshes of "
+          "other formats than .msh (.unv, .inp, .bdf, ...): name their parts in the .geo after Merge, or convert them to a "
+          ".msh with physical names");
+      constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
+      for (const GmshMesh::Group &group : mesh.groups)
+        if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))
+          throw MeshError(text("Physical ", kinds[group.dimension], ' ', group.number, " has no name"), where,
+                          "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh");
+    }
+
     HexMesh mesh_once(const GeometryParameters       &parameters,
                       const std::string              &where,
                       const std::vector<std::string> &additional_surfaces,
                       MPI_Comm                        communicator)
     {
       const GmshMesh gmsh = run_gmsh_once(parameters, where, communicator);
+      check_groups(gmsh, where);
       if (gmsh.dimension() == 3)
-        return make_hex_mesh(gmsh, additional_surfaces, where);
-      if (gmsh.dimension() != 2)
-        throw MeshError("The geometry has neither physical volumes nor physical surfaces", where,
-                        "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'");
+        {
+          HexMesh mesh = make_hex_mesh(gmsh, additional_surfaces, where);
+          if (const unsigned int n = make_right_handed(mesh); n > 0)
+            mesh.notes.push_back(
+              text(n, " of ", mesh.hexahedra.size(), " hexahedra are left-handed; their bottom and top nodes have been exchanged"));
+          return mesh;
+        }
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
       check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)

@@ -18,6 +18,31 @@ namespace Squeal
     /// For each corner, the corners at the ends of its edges, as a right-handed triple.
     constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 
+    /// At each corner, the triple product of the three edges that meet there, each divided by its length; 0 where one has none.
+    std::array<double, 8> scaled_jacobians(const HexMesh &mesh, const std::array<unsigned int, 8> &nodes)
+    {
+      std::array<double, 8> result;
+      for (unsigned int corner = 0; corner < 8; ++corner)
+        {
+          dealii::Tensor<2, 3> edges;
+          double               lengths = 1.;
+          for (unsigned int e = 0; e < 3; ++e)
+            {
+              edges[e] = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
+              lengths *= edges[e].norm();
+            }
+          result[corner] = lengths > 0. ? determinant(edges) / lengths : 0.;
+        }
+      return result;
+    }
+
+    /// Whether the nodes of two faces, the same, follow each other in the same sense.
+    bool turn_alike(const HexFace &a, const HexFace &b)
+    {
+      const auto first = std::find(b.nodes.begin(), b.nodes.end(), a.nodes[0]) - b.nodes.begin();
+      return b.nodes[(first + 1) % 4] == a.nodes[1];
+    }
+
     std::string describe(const HexMesh &mesh, const unsigned int element)
     {
       const HexMesh::Hexahedron &hexahedron = mesh.hexahedra[element];
@@ -85,20 +110,8 @@ namespace Squeal
     MeshQuality quality{1., 0};
     for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
       {
-        const auto &nodes           = mesh.hexahedra[element].nodes;
-        double      scaled_jacobian = 1.;
-        for (unsigned int corner = 0; corner < 8; ++corner)
-          {
-            dealii::Tensor<2, 3> edges;
-            double               lengths = 1.;
-            for (unsigned int e = 0; e < 3; ++e)
-              {
-                edges[e] = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
-                lengths *= edges[e].norm();
-              }
-            const double jacobian = lengths > 0. ? determinant(edges) / lengths : 0.;
-            scaled_jacobian       = std::min(scaled_jacobian, jacobian);
-          }
+        const auto   corners         = scaled_jacobians(mesh, mesh.hexahedra[element].nodes);
+        const double scaled_jacobian = *std::min_element(corners.begin(), corners.end());
         if (scaled_jacobian < quality.worst_scaled_jacobian)
           {
             quality.worst_scaled_jacobian = scaled_jacobian;
@@ -121,6 +134,39 @@ namespace Squeal
     return quality;
   }
 
+  unsigned int make_right_handed(HexMesh &mesh)
+  {
+    std::vector<unsigned int> reordered;
+    for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
+      {
+        auto      &nodes   = mesh.hexahedra[element].nodes;
+        const auto corners = scaled_jacobians(mesh, nodes);
+        if (std::all_of(corners.begin(), corners.end(), [](const double corner) { return corner < 0.; }))
+          {
+            std::rotate(nodes.begin(), nodes.begin() + 4, nodes.end());
+            reordered.push_back(element);
+          }
+      }
+    if (reordered.empty())
+      return 0;
+
+    const std::vector<HexFace> faces = all_faces(mesh);
+    for (std::size_t i = 0; i + 1 < faces.size(); ++i)
+      if (faces[i].key == faces[i + 1].key && turn_alike(faces[i], faces[i + 1]))
+        {
+          const auto has_face = [&](const unsigned int element) {
+            const auto &nodes = mesh.hexahedra[element].nodes;
+            return std::all_of(faces[i].key.begin(), faces[i].key.end(),
+                               [&](const unsigned int node) { return std::count(nodes.begin(), nodes.end(), node) > 0; });
+          };
+          const auto element = std::find_if(reordered.begin(), reordered.end(), has_face);
+          throw MeshError("An element is inverted: it and its neighbour lie on the same side of their common face",
+                          describe(mesh, element == reordered.end() ? reordered[0] : *element),
+                          "correct the nodes of this element, or let no two elements overlap");
+        }
+    return reordered.size();
+  }
+
   void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
     // Volumes
@@ -140,7 +186,7 @@ namespace Squeal
                       where, "name the disc's volume 'disc' and each pin's or pad's with a name that begins with 'pin_'");
 
     // Surfaces
-    std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp};
+    std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
     std::set<std::string> with_faces;
     for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
@@ -192,9 +238,21 @@ namespace Squeal
     const auto                      contacts       = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
     const auto                      clamps         = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
     std::set<unsigned int>          mounted; // volumes
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      if (std::count(mounted_surfaces.begin(), mounted_surfaces.end(), mesh.surface_names[quadrilateral.surface]) > 0)
-        mounted.insert(volume_of_node[quadrilateral.nodes[0]]);
+    for (const std::string &surface : mounted_surfaces)
+      {
+        const auto nodes   = nodes_by_volume(mesh, volume_of_node, surface);
+        bool       is_free = false;
+        for (std::size_t volume = 0; volume < nodes.size(); ++volume)
+          {
+            if (!nodes[volume].empty())
+              mounted.insert(volume);
+            is_free = is_free || !std::includes(clamps[volume].begin(), clamps[volume].end(), nodes[volume].begin(), nodes[volume].end());
+          }
+        if (!is_free)
+          throw MeshError("All nodes of '" + surface + "', on which Mounts/Elastic mounts puts a mount, are clamped by '" +
+                            PhysicalNames::pin_clamp + "'",
+                          where, "take the name 'pin_clamp' from these faces, or the mount from Mounts/Elastic mounts");
+      }
     for (std::size_t pin = 1; pin < mesh.volume_names.size(); ++pin)
       {
         const std::string &name = mesh.volume_names[pin];

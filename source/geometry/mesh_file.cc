@@ -99,8 +99,9 @@ namespace Squeal
       {
         auto &[nodes, volume] = hexahedron;
         if (const auto first = hexahedra.lower_bound(tag)->second.second; first != volume)
-          throw MeshError("A hexahedron belongs to '" + result.volume_names[first] + "' and to '" + result.volume_names[volume] + "'",
-                          where, "put every volume into one physical group");
+          throw MeshError(
+            "A hexahedron belongs to physical volumes '" + result.volume_names[first] + "' and '" + result.volume_names[volume] + "'",
+            where, "put every volume into one physical group; in a mesh file, let each group have an elementary tag (entity) of its own");
         for (unsigned int &node : nodes)
           node = new_index[node];
         result.hexahedra.push_back({nodes, volume});

@@ -32,6 +32,8 @@ namespace Squeal
   namespace
   {
     constexpr const char *repair       = "correct the geometry; opening it in Gmsh shows the place";
+    constexpr const char *add_entities = "a .msh of format 4 must declare the entities of its elements, with their physical groups, in "
+                                         "$Entities; write it with them, or in format 2.2";
     constexpr std::size_t quoted_lines = 8;
 
     [[noreturn]] void cannot_start(const int error)
@@ -185,7 +187,7 @@ namespace Squeal
           // Where the libraries are, and nothing else
           if (const char *path = std::getenv("LD_LIBRARY_PATH"))
             result.push_back(std::string("LD_LIBRARY_PATH=") + path);
-          result.push_back("HOME=/nonexistent"); // no preferences of the libraries, either
+          result.push_back("HOME=/dev/null"); // no preferences of the libraries, either; not even root can make a folder there
         }
       else
         for (char **variable = environ; *variable != nullptr; ++variable)
@@ -248,7 +250,7 @@ namespace Squeal
           case MesherReply::mesh:
             return from_bytes(content);
           case MesherReply::failure:
-            throw MeshError(content + ". " + quoted(log), where, repair);
+            throw MeshError(content + ". " + quoted(log), where, log.find("Unknown entity") == std::string::npos ? repair : add_entities);
           case MesherReply::out_of_memory:
             refuse_memory(limits, where);
           case MesherReply::starts_program:
@@ -267,8 +269,7 @@ namespace Squeal
 
   GmshMesh run_mesher(const MesherInput &input, const std::string &where, const MesherLimits &limits)
   {
-    std::vector<std::string> arguments = {installation().mesher.string(), input.script.empty() ? input.file : mesher_script_name,
-                                          exact_text(limits.bytes), exact_text(limits.seconds),
+    std::vector<std::string> arguments = {installation().mesher.string(), input.file, exact_text(limits.bytes), exact_text(limits.seconds),
                                           limits.is_confined ? mesher_confined : mesher_free};
     for (const auto &[name, value] : input.numbers)
       arguments.insert(arguments.end(), {name, exact_text(value)});

@@ -161,8 +161,6 @@ namespace Squeal
                                 "name only curves that bound the disc or a hole in it");
               curve.edges.push_back(edge);
             }
-        if (group.name.empty())
-          throw MeshError("The plan has a physical curve without a name", where, "write Physical Curve(\"name\") = {...}");
         for (const char *reserved :
              {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side})
           if (group.name == reserved)

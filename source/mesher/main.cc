@@ -32,7 +32,7 @@ namespace
   }
 } // namespace
 
-/// Arguments: file, bytes of memory, seconds, whether confined, then pairs of names and values for DefineNumber.
+/// Arguments: file or nothing, bytes of memory, seconds, whether confined, then pairs of names and values for DefineNumber.
 int main(int argc, char **argv)
 {
   if (argc < 5)
@@ -55,7 +55,7 @@ int main(int argc, char **argv)
             send(MesherReply::not_confined, error.what());
             _exit(0);
           }
-      send(MesherReply::mesh, to_bytes(mesh_geometry(argv[1])));
+      send(MesherReply::mesh, to_bytes(mesh_geometry(mesher_script_name, argv[1])));
     }
   catch (const GmshError &error)
     {

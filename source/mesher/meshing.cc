@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 #include <functional>
 #include <map>
 #include <new>
+#include <set>
 
 namespace Squeal
 {
@@ -56,6 +58,18 @@ namespace Squeal
       return groups;
     }
 
+    /**
+     * Whether a file is a mesh of a format before 4, where every element has its own physical tag next to that of its entity. Gmsh
+     * gives the elements of an entity all groups of any of them, and converters write one entity for all.
+     */
+    bool has_physical_tags(const std::string &file)
+    {
+      std::ifstream stream(file, std::ios::binary);
+      std::string   word;
+      double        version = 1.;
+      return stream >> word && (word == "$NOD" || (word == "$MeshFormat" && stream >> version && version < 3.));
+    }
+
     /// Index of each node by its tag.
     std::map<std::size_t, unsigned int> collect_nodes(GmshMesh &mesh)
     {
@@ -91,33 +105,91 @@ namespace Squeal
         }
     }
 
-    GmshMesh collect_mesh()
+    /// Refuses tags for which Gmsh would give the elements of all entities.
+    void check_physical_tags()
+    {
+      gmsh::vectorpair entities;
+      gmsh::model::getEntities(entities);
+      for (const auto &[dimension, tag] : entities)
+        if (tag < 0)
+          throw GmshError("Elements of dimension " + std::to_string(dimension) + " have the negative physical tag " + std::to_string(tag));
+    }
+
+    /// Entities of a dimension by the numbers of their physical groups; 0: those in none. With @p are_tagged, see has_physical_tags().
+    std::map<int, std::vector<int>> physical_groups(const int dimension, const bool are_tagged)
+    {
+      gmsh::vectorpair entities;
+      gmsh::model::getEntities(entities, dimension);
+      std::map<int, std::vector<int>> result;
+      for (const auto &[d, entity] : entities)
+        {
+          std::vector<int> groups = {entity}; // physical tags have been read as those of entities
+          if (!are_tagged)
+            gmsh::model::getPhysicalGroupsForEntity(dimension, entity, groups);
+          if (groups.empty())
+            groups = {0};
+          for (const int group : groups)
+            result[std::abs(group)].push_back(entity); // negative where a file reverses the entity
+        }
+      return result;
+    }
+
+    /// Keeps one of those elements that have the same nodes: an element stands twice where two groups of one name have it.
+    void remove_copies(std::vector<GmshMesh::Element> &elements)
+    {
+      std::set<std::vector<unsigned int>> known;
+      const auto                          is_copy = [&](const GmshMesh::Element &element) {
+        std::vector<unsigned int> nodes = element.nodes;
+        std::sort(nodes.begin(), nodes.end());
+        return !known.insert(nodes).second;
+      };
+      elements.erase(std::remove_if(elements.begin(), elements.end(), is_copy), elements.end());
+    }
+
+    /// Groups of one dimension, those of one name as one.
+    std::vector<GmshMesh::Group> collect_groups(const int                                  dimension,
+                                                const std::map<int, std::vector<int>>     &entities_of_groups,
+                                                const std::map<std::size_t, unsigned int> &nodes)
+    {
+      std::vector<GmshMesh::Group> result;
+      std::set<std::string>        shared_names;
+      for (const auto &[number, entities] : entities_of_groups)
+        if (number != 0)
+          {
+            std::string name;
+            gmsh::model::getPhysicalName(dimension, number, name);
+            auto group = std::find_if(result.begin(), result.end(), [&](const auto &other) { return !name.empty() && other.name == name; });
+            if (group != result.end())
+              shared_names.insert(name);
+            else
+              group = result.insert(result.end(), {dimension, number, name, {}});
+            for (const int entity : entities)
+              add_elements(*group, Elements(dimension, entity), nodes);
+          }
+      for (GmshMesh::Group &group : result)
+        for (auto &[type, elements] : group.elements)
+          {
+            std::stable_sort(elements.begin(), elements.end(),
+                             [](const GmshMesh::Element &a, const GmshMesh::Element &b) { return a.tag < b.tag; });
+            if (shared_names.count(group.name) > 0)
+              remove_copies(elements);
+          }
+      return result;
+    }
+
+    GmshMesh collect_mesh(const bool are_tagged)
     {
       GmshMesh   mesh;
       const auto nodes = collect_nodes(mesh);
-      for (const auto &[dimension, tag] : physical_groups())
+      for (int dimension = 0; dimension <= 3; ++dimension)
         {
-          GmshMesh::Group  group{dimension, "", {}};
-          std::vector<int> entities;
-          gmsh::model::getPhysicalName(dimension, tag, group.name);
-          gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
-          for (const int entity : entities)
-            add_elements(group, Elements(dimension, entity), nodes);
-          for (auto &[type, elements] : group.elements)
-            std::sort(elements.begin(), elements.end(),
-                      [](const GmshMesh::Element &a, const GmshMesh::Element &b) { return a.tag < b.tag; });
-          mesh.groups.push_back(std::move(group));
-        }
-
-      gmsh::vectorpair volumes;
-      gmsh::model::getEntities(volumes, 3);
-      for (const auto &[dimension, volume] : volumes)
-        {
-          std::vector<int> groups;
-          gmsh::model::getPhysicalGroupsForEntity(dimension, volume, groups);
-          if (groups.empty())
-            for (const auto &tags : Elements(dimension, volume).tags)
-              mesh.n_unnamed_volume_elements += tags.size();
+          const auto entities = physical_groups(dimension, are_tagged);
+          const auto groups   = collect_groups(dimension, entities, nodes);
+          mesh.groups.insert(mesh.groups.end(), groups.begin(), groups.end());
+          if (const auto without = entities.find(0); dimension == 3 && without != entities.end())
+            for (const int volume : without->second)
+              for (const auto &tags : Elements(dimension, volume).tags)
+                mesh.n_unnamed_volume_elements += tags.size();
         }
       return mesh;
     }
@@ -128,7 +200,7 @@ namespace Squeal
     // One of its libraries would keep preferences in the user's folder
     const char       *variable = std::getenv("HOME");
     const std::string home     = variable != nullptr ? variable : "/";
-    setenv("HOME", "/nonexistent", 1);
+    setenv("HOME", "/dev/null", 1); // where not even root can make a folder
     gmsh::initialize(0, nullptr, /* readConfigFiles */ false);
     setenv("HOME", home.c_str(), 1);
     gmsh::option::setNumber("General.Terminal", 1);
@@ -146,9 +218,17 @@ namespace Squeal
     attempt("setting a parameter of the geometry", [&] { gmsh::onelab::setNumber(name, {value}); });
   }
 
-  GmshMesh mesh_geometry(const std::string &file)
+  GmshMesh mesh_geometry(const std::string &script, const std::string &file)
   {
-    attempt("reading the geometry", [&] { gmsh::open(file); });
+    const bool are_tagged = has_physical_tags(file);
+    gmsh::option::setNumber("Mesh.SwitchElementTags", are_tagged);
+    attempt("reading the geometry", [&] {
+      gmsh::open(script);
+      if (!file.empty())
+        gmsh::merge(file); // not by the script's Include, whose strings end at quotes
+    });
+    if (are_tagged)
+      check_physical_tags();
     const auto groups    = physical_groups();
     const int  dimension = groups.empty() ? 0 : groups.back().first;
     if (dimension >= 2 && Elements(dimension).types.empty())
@@ -159,7 +239,7 @@ namespace Squeal
         gmsh::model::mesh::generate(dimension);
       });
     GmshMesh mesh;
-    attempt("handing over the mesh", [&] { mesh = collect_mesh(); });
+    attempt("handing over the mesh", [&] { mesh = collect_mesh(are_tagged); });
     return mesh;
   }
 } // namespace Squeal

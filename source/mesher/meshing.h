@@ -24,8 +24,9 @@ namespace Squeal
   void set_number(const std::string &name, double value);
 
   /**
-   * Opens a geometry or mesh and meshes what is not meshed yet: a solid as the file itself prescribes, a plan with
-   * quadrilaterals only, every element halved. Throws GmshError, and std::bad_alloc where memory ends.
+   * Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as
+   * the file itself prescribes, a plan with quadrilaterals only, every element halved. Groups with the same name become one. Throws
+   * GmshError, and std::bad_alloc where memory ends.
    */
-  GmshMesh mesh_geometry(const std::string &file);
+  GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 } // namespace Squeal

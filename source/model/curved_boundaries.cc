@@ -46,16 +46,13 @@ namespace Squeal
       /// Surfaces that are cylinders, component by component.
       void find()
       {
-        std::set<types::boundary_id> candidates;
-        for (const char *name : {PhysicalNames::disc_bore, PhysicalNames::disc_rim, PhysicalNames::pin_side})
-          if (model.has_surface(name))
-            candidates.insert(model.surface_id(name));
         std::map<Patch, std::vector<Point<2>>> patches; // vertices, seen along z
         for (const auto &cell : triangulation.active_cell_iterators())
           for (const auto &face : cell->face_iterators())
-            if (face->at_boundary() && candidates.count(face->boundary_id()))
-              for (const unsigned int v : face->vertex_indices())
-                patches[{face->boundary_id(), cell->material_id()}].emplace_back(face->vertex(v)[0], face->vertex(v)[1]);
+            for (const char *name : candidates)
+              if (is_on(face, name))
+                for (const unsigned int v : face->vertex_indices())
+                  patches[{name, cell->material_id()}].emplace_back(face->vertex(v)[0], face->vertex(v)[1]);
         for (const auto &[patch, points] : patches)
           if (const auto circle = circle_through(points))
             {
@@ -87,11 +84,9 @@ namespace Squeal
       /// The same rims on both sides of the contact: a pin's outline and rings on the disc, the disc's rim or bore on a pad that ends there.
       void attach_other_side() const
       {
-        const std::set<types::boundary_id> contact = {model.surface_id(PhysicalNames::disc_contact),
-                                                      model.surface_id(PhysicalNames::pin_contact)};
         for (const auto &cell : triangulation.active_cell_iterators())
           for (const auto &face : cell->face_iterators())
-            if (face->at_boundary() && contact.count(face->boundary_id()))
+            if (is_on(face, PhysicalNames::disc_contact) || is_on(face, PhysicalNames::pin_contact))
               for (unsigned int l = 0; l < face->n_lines(); ++l)
                 if (const auto it = curved_edges.find(key(face->line(l))); it != curved_edges.end())
                   face->line(l)->set_manifold_id(it->second);
@@ -106,7 +101,7 @@ namespace Squeal
       }
 
     private:
-      using Patch = std::pair<types::boundary_id, types::material_id>;
+      using Patch = std::pair<std::string, types::material_id>; ///< surface, component
       using Line  = Triangulation<3>::line_iterator;
       using Key   = std::array<long, 3>; ///< equal for coincident mid-points of edges
 
@@ -124,12 +119,20 @@ namespace Squeal
       std::map<Patch, Cylinder>         cylinders;
       std::map<Key, types::manifold_id> curved_edges;
 
+      static constexpr const char *candidates[] = {PhysicalNames::disc_bore, PhysicalNames::disc_rim, PhysicalNames::pin_side};
+
+      bool is_on(const Face &face, const char *surface) const
+      {
+        return face->at_boundary() && model.has_surface(surface) && model.surface_ids(surface).count(face->boundary_id()) > 0;
+      }
+
       std::optional<Cylinder> cylinder_of(const MeshCell &cell, const unsigned int f) const
       {
-        if (!cell->face(f)->at_boundary())
-          return {};
-        const auto it = cylinders.find({cell->face(f)->boundary_id(), cell->material_id()});
-        return it == cylinders.end() ? std::nullopt : std::make_optional(it->second);
+        for (const char *name : candidates)
+          if (is_on(cell->face(f), name))
+            if (const auto it = cylinders.find({name, cell->material_id()}); it != cylinders.end())
+              return it->second;
+        return {};
       }
 
       bool is_round(const Face &face, const std::array<double, 2> &axis) const

@@ -11,6 +11,8 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <boost/algorithm/string/join.hpp>
+#include <boost/serialization/set.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -40,18 +42,43 @@ namespace Squeal
           cell.material_id = hexahedron.volume;
           lists.cells.push_back(cell);
         }
-      for (const auto &quadrilateral : mesh.quadrilaterals)
+      return lists;
+    }
+
+    /// Adds the named faces, each once, with a boundary id for its combination of names; returns the ids of every surface.
+    std::vector<std::set<types::boundary_id>> add_faces(const HexMesh &mesh, CellLists &lists)
+    {
+      std::map<std::array<unsigned int, 4>, std::pair<const HexMesh::Quadrilateral *, std::set<unsigned int>>> faces; // with all names
+      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
         {
+          auto key = quadrilateral.nodes;
+          std::sort(key.begin(), key.end());
+          auto &[face, names] = faces[key];
+          face                = &quadrilateral;
+          names.insert(quadrilateral.surface);
+        }
+      std::map<std::set<unsigned int>, types::boundary_id> combinations;
+      std::vector<std::set<types::boundary_id>>            ids(mesh.surface_names.size());
+      for (const auto &[key, entry] : faces)
+        {
+          const auto &[quadrilateral, names] = entry;
           CellData<2> face;
           for (unsigned int v = 0; v < 4; ++v)
-            face.vertices[v] = quadrilateral.nodes[gmsh_vertex[v]];
-          face.boundary_id = quadrilateral.surface + 1; // 0: faces without a name
+            face.vertices[v] = quadrilateral->nodes[gmsh_vertex[v]];
+          face.boundary_id = combinations.emplace(names, combinations.size() + 1).first->second; // 0: faces without a name
           lists.faces.boundary_quads.push_back(face);
+          for (const unsigned int name : names)
+            ids[name].insert(face.boundary_id);
         }
+      return ids;
+    }
+
+    /// Brings vertices and cells into deal.II's order.
+    void order(CellLists &lists)
+    {
       GridTools::delete_unused_vertices(lists.vertices, lists.cells, lists.faces);
       GridTools::invert_all_negative_measure_cells(lists.vertices, lists.cells);
       GridTools::consistently_order_cells(lists.cells);
-      return lists;
     }
 
     /// Manifolds of cells that have an edge or a face on a cylinder, by their numbers.
@@ -172,7 +199,9 @@ namespace Squeal
     together(communicator(), [&] {
       if (!is_root)
         return;
-      CellLists                             lists = cell_lists(mesh);
+      CellLists lists = cell_lists(mesh);
+      ids_of_surfaces = add_faces(mesh, lists);
+      order(lists);
       std::map<unsigned int, CellManifolds> manifolds;
       if (element_type == Element::quadratic)
         {
@@ -183,6 +212,7 @@ namespace Squeal
         }
       parts = std::make_unique<MeshParts>(std::move(lists), std::move(manifolds), n_processes);
     });
+    ids_of_surfaces = Utilities::MPI::broadcast(communicator(), ids_of_surfaces);
     Description own;
     if (is_root)
       {
@@ -202,8 +232,11 @@ namespace Squeal
   void Model::number_free_dofs()
   {
     // Clamped dofs: all three directions on the clamped surface
-    const IndexSet &own     = dofs.locally_owned_dofs();
-    const IndexSet  clamped = DoFTools::extract_boundary_dofs(dofs, ComponentMask(), {surface_id(PhysicalNames::pin_clamp)});
+    const IndexSet &own = dofs.locally_owned_dofs();
+    IndexSet        clamped(dofs.n_dofs());
+    // deal.II takes no ids for all boundaries
+    if (has_surface(PhysicalNames::pin_clamp) && !surface_ids(PhysicalNames::pin_clamp).empty())
+      clamped = DoFTools::extract_boundary_dofs(dofs, ComponentMask(), surface_ids(PhysicalNames::pin_clamp));
 
     // Numbers of the others: deal.II's order, so that ownership stays contiguous
     int n_own = 0;
@@ -318,13 +351,13 @@ namespace Squeal
     return dof_nodes[relevant.index_within_set(dof)];
   }
 
-  types::boundary_id Model::surface_id(const std::string &name) const
+  const std::set<types::boundary_id> &Model::surface_ids(const std::string &name) const
   {
     const auto it = std::find(surfaces.begin(), surfaces.end(), name);
     if (it == surfaces.end())
       throw MeshError("the mesh has no surface named `" + name + "`", "mesh",
                       "name such a surface in the geometry, or use one of: " + boost::algorithm::join(surfaces, ", "));
-    return it - surfaces.begin() + 1;
+    return ids_of_surfaces[it - surfaces.begin()];
   }
 
   bool Model::has_surface(const std::string &name) const

@@ -253,13 +253,13 @@ namespace Squeal
     for (unsigned int c = 0; c < interface.size(); ++c)
       pairs[interface[c].pin_node.number] = c;
 
-    CellNodes                cell_nodes(model);
-    const types::boundary_id id = model.surface_id(PhysicalNames::pin_contact);
-    std::vector<CellRows>    here, all;
+    CellNodes             cell_nodes(model);
+    const auto           &ids = model.surface_ids(PhysicalNames::pin_contact);
+    std::vector<CellRows> here, all;
     for (const auto &cell : model.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned())
         for (const unsigned int face : cell->face_indices())
-          if (cell->face(face)->at_boundary() && cell->face(face)->boundary_id() == id)
+          if (cell->face(face)->at_boundary() && ids.count(cell->face(face)->boundary_id()) > 0)
             {
               std::vector<Dof> corners;
               add_quadrilaterals(cell_nodes.of(cell), model.degree(), face, corners);

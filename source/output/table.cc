@@ -37,14 +37,18 @@ namespace Squeal
         const auto end = std::to_chars(digits, digits + sizeof(digits), number, std::chars_format::general, significant_digits);
         return std::string(digits, end.ptr);
       });
-      // Quotes only where the comma or a quote would end the cell
-      if (text.find_first_of(",\"\n") == std::string::npos)
-        return text;
-      std::ostringstream quoted;
-      quoted << std::quoted(text, '"', '"');
-      return quoted.str();
+      return csv_field(text);
     }
   } // namespace
+
+  std::string csv_field(const std::string &text)
+  {
+    if (text.find_first_of(",\"\n\r") == std::string::npos)
+      return text;
+    std::ostringstream quoted;
+    quoted << std::quoted(text, '"', '"');
+    return quoted.str();
+  }
 
   Cell Table::checked(const Cell &cell) const
   {

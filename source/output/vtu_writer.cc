@@ -138,12 +138,12 @@ namespace Squeal
     std::map<std::int64_t, unsigned int> pair_of_node;
     for (unsigned int c = 0; c < interface.size(); ++c)
       pair_of_node[interface[c].pin_node.number] = c;
-    const types::boundary_id                 id = model.surface_id(PhysicalNames::pin_contact);
+    const auto                              &ids = model.surface_ids(PhysicalNames::pin_contact);
     std::vector<std::array<unsigned int, 4>> faces_here;
     for (const auto &cell : model.dof_handler().active_cell_iterators())
       if (cell->is_locally_owned())
         for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && face->boundary_id() == id)
+          if (face->at_boundary() && ids.count(face->boundary_id()) > 0)
             {
               faces_here.emplace_back();
               for (unsigned int v = 0; v < 4; ++v)

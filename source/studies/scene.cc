@@ -54,6 +54,8 @@ namespace Squeal
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(
       text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
+    for (const std::string &note : scene.mesh.notes)
+      run.progress.note("  note: " + note);
     scene.expected_modes = summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),

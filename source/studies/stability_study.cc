@@ -72,7 +72,7 @@ namespace Squeal
         for (const Node &node : nodes)
           {
             stream << node.position[0] << ',' << node.position[1] << ',' << node.position[2] << ','
-                   << model.component_names()[node.component];
+                   << csv_field(model.component_names()[node.component]);
             for (const int dof : node.dofs)
               stream << ',' << dof + (dof >= 0);
             stream << '\n';
@@ -82,7 +82,8 @@ namespace Squeal
         stream << "x [m],y [m],z [m],pin,n_x,n_y,n_z,t_x,t_y,t_z,b_x,b_y,b_z,area [m^2]\n" << std::setprecision(17);
         for (const ContactNode &node : interface)
           {
-            stream << node.position[0] << ',' << node.position[1] << ',' << node.position[2] << ',' << model.component_names()[node.pin];
+            stream << node.position[0] << ',' << node.position[1] << ',' << node.position[2] << ','
+                   << csv_field(model.component_names()[node.pin]);
             for (const auto *vector : {&node.normal, &node.sliding, &node.radial})
               for (const double component : *vector)
                 stream << ',' << component;

@@ -198,6 +198,43 @@ TEST(GenerateMesh, WrittenMeshReadsBackUnchanged)
   expect_same(mesh, generate_mesh(parameters));
 }
 
+TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
+{
+  const std::string  blocks = R"(
+    SetFactory("OpenCASCADE");
+    Box(1) = {0, 0, 0, 2, 1, 0.5};
+    Box(2) = {0, 0, 0.5, 2, 1, 0.25};
+    Transfinite Curve{:} = 3; Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};
+    Physical Volume("disc") = {1};
+    Physical Volume("pin_block") = {2};
+    Physical Surface("disc_contact") = {6};
+    Physical Surface("pin_contact") = {11};
+    Physical Surface("pin_clamp") = {12};
+    Physical Surface("ground") = {5};
+    Physical Surface("wall") = {1, 5};
+  )";
+  GeometryParameters parameters;
+  const File         file("blocks.geo", blocks);
+  parameters.file    = file.string();
+  const HexMesh mesh = generate_mesh(parameters, {"ground", "wall"});
+  EXPECT_NEAR(area(mesh, "ground"), 2., 1e-12);
+  EXPECT_NEAR(area(mesh, "wall"), 2.5, 1e-12);
+
+  // Through a file, which holds such a face twice
+  std::ostringstream text;
+  write_msh(mesh, text);
+  const File written("mesh.msh", text.str());
+  parameters.file = written.string();
+  expect_same(mesh, generate_mesh(parameters, {"ground", "wall"}));
+
+  // The same with the second group named like the first
+  std::string one_name = text.str();
+  one_name.replace(one_name.find("\"wall\""), 6, "\"ground\"");
+  const File merged("merged.msh", one_name);
+  parameters.file = merged.string();
+  EXPECT_NEAR(area(generate_mesh(parameters, {"ground"}), "ground"), 2.5, 1e-12);
+}
+
 TEST(GenerateMesh, SolidGeometryIsTakenAsItIs)
 {
   GeometryParameters parameters;

@@ -153,6 +153,17 @@ TEST(Refusals, BadElementsAreFound)
   inverted.hexahedra[0].nodes = {{4, 5, 6, 7, 0, 1, 2, 3}};
   expect_mentions(message<MeshError>([&] { check_mesh(inverted); }), {"inverted", "element 0", "'disc'", "-1"});
 
+  HexMesh right_handed = inverted;
+  EXPECT_EQ(make_right_handed(right_handed), 1u);
+  EXPECT_EQ(right_handed.hexahedra[0].nodes, mesh.hexahedra[0].nodes);
+  EXPECT_EQ(make_right_handed(right_handed), 0u);
+
+  // Two elements one upon the other, the upper one folded into the lower one
+  HexMesh folded = mesh;
+  folded.points.insert(folded.points.end(), {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}});
+  folded.hexahedra.push_back({{{4, 5, 6, 7, 8, 9, 10, 11}}, 0});
+  expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 1", "'disc'"});
+
   HexMesh flat   = mesh;
   flat.points[2] = {0.5, 0.5, 0.};
   flat.points[6] = {0.5, 0.5, 1.};

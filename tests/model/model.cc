@@ -96,6 +96,34 @@ TEST(Models, ProcessesHaveTheirCellsAndTheNeighboursOfThese)
   EXPECT_EQ(model.triangulation().n_active_cells() == all.hexahedra.size(), n_processes == 1);
 }
 
+TEST(Models, FacesBearSeveralNames)
+{
+  // Half of the bore is the hub, too
+  HexMesh           all    = mesh();
+  const auto        bore   = std::find(all.surface_names.begin(), all.surface_names.end(), "disc_bore") - all.surface_names.begin();
+  const std::size_t n      = all.quadrilaterals.size();
+  unsigned int      n_bore = 0, n_hub = 0;
+  all.surface_names.emplace_back("hub");
+  for (std::size_t i = 0; i < n; ++i)
+    if (all.quadrilaterals[i].surface == bore && ++n_bore % 2 == 0)
+      {
+        all.quadrilaterals.push_back({all.quadrilaterals[i].nodes, static_cast<unsigned int>(all.surface_names.size() - 1)});
+        ++n_hub;
+      }
+  const Model model(all, Element::trilinear, MPI_COMM_WORLD);
+  const auto  n_faces = [&](const char *name) {
+    unsigned int result = 0;
+    for (const auto &cell : model.triangulation().active_cell_iterators())
+      if (cell->is_locally_owned())
+        for (const auto &face : cell->face_iterators())
+          result += face->at_boundary() && model.surface_ids(name).count(face->boundary_id()) > 0;
+    return dealii::Utilities::MPI::sum(result, MPI_COMM_WORLD);
+  };
+  EXPECT_EQ(n_faces("disc_bore"), n_bore);
+  EXPECT_EQ(n_faces("hub"), n_hub);
+  EXPECT_THROW(model.surface_ids("rim"), MeshError);
+}
+
 TEST(Models, MeshesThatDealiiRefusesAreRefusedOnAllProcesses)
 {
   // A name on a face between two cells

@@ -13,7 +13,7 @@
 
 namespace Squeal
 {
-  /// What Gmsh holds: nodes, and elements by physical group.
+  /// What Gmsh holds: nodes, and elements by physical group. No two groups of a dimension share a name.
   struct GmshMesh
   {
     struct Element
@@ -31,13 +31,14 @@ namespace Squeal
     struct Group
     {
       int                                         dimension;
+      int                                         number;   ///< the least where several groups bear the name
       std::string                                 name;     ///< empty where the group has only a number
       std::map<std::string, std::vector<Element>> elements; ///< by Gmsh's name of the type, e.g. "Quadrilateral 4"; ascending by tag
 
       template <typename Archive>
       void serialize(Archive &archive, unsigned int)
       {
-        archive &dimension &name &elements;
+        archive &dimension &number &name &elements;
       }
     };
 

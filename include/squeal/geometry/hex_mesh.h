@@ -33,9 +33,10 @@ namespace Squeal
 
     std::vector<Point>         points; ///< coordinates [m]
     std::vector<Hexahedron>    hexahedra;
-    std::vector<Quadrilateral> quadrilaterals; ///< faces on named surfaces only
+    std::vector<Quadrilateral> quadrilaterals; ///< faces on named surfaces only; once for each name that a face bears
     std::vector<std::string>   volume_names;   ///< "disc", then "pin_..."
     std::vector<std::string>   surface_names;
+    std::vector<std::string>   notes; ///< what was corrected, for the user
   };
 
   /// Of the places of the nodes, to 1e-8 of the size or less (a nanometre for some decimetres): tells two meshes with the same

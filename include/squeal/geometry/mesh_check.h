@@ -39,9 +39,17 @@ namespace Squeal
   MeshQuality check_mesh(const HexMesh &mesh);
 
   /**
+   * Exchanges bottom and top of hexahedra that are left-handed, which other programs and mirrored copies make: all eight corners have
+   * negative Jacobians. Returns their number.
+   *
+   * Throws MeshError for one that then lies on the same side of a face as its neighbour: it is not left-handed, but folded over.
+   */
+  unsigned int make_right_handed(HexMesh &mesh);
+
+  /**
    * Throws MeshError, naming @p where, unless the mesh has the parts that
-   * every analysis needs: volumes `disc` and `pin_*`, surfaces `disc_contact`,
-   * `pin_contact` and `pin_clamp`, and those in @p additional_surfaces; no node
+   * every analysis needs: volumes `disc` and `pin_*`, surfaces `disc_contact`
+   * and `pin_contact`, and those in @p additional_surfaces; no node
    * shared by two volumes; and every named surface on the outside of volumes
    * of its kind (`disc_*` on the disc, `pin_*` on pins).
    */
@@ -50,7 +58,7 @@ namespace Squeal
   /**
    * Throws MeshError, naming @p where, for a body in several pieces, a pin that
    * touches nothing, that neither a clamp nor a mount holds, or whose clamp and
-   * contact are exchanged. Needs what check_parts() makes sure of.
+   * contact are exchanged; and for a mount whose nodes are all clamped. Needs what check_parts() makes sure of.
    */
   void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
 } // namespace Squeal

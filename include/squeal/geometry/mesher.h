@@ -26,8 +26,8 @@ namespace Squeal
   /// What Gmsh opens in that process.
   struct MesherInput
   {
-    std::string                   file;    ///< a mesh or geometry; unused where there is a script
-    std::string                   script;  ///< text of a geometry
+    std::string                   file;    ///< a mesh or geometry; may be empty
+    std::string                   script;  ///< text of a geometry that is read before
     std::map<std::string, double> numbers; ///< values for DefineNumber[..., Name "..."], by that name
   };
 

@@ -16,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -79,8 +80,9 @@ namespace Squeal
     /// Place among nodes() of the node of a dof of deal.II's numbering, one of the cells that this process has.
     unsigned int node_of_dof(dealii::types::global_dof_index dof) const;
 
-    /// Boundary id of a named surface; throws MeshError naming the known ones if there is none.
-    dealii::types::boundary_id surface_id(const std::string &name) const;
+    /// Boundary ids of the faces of a named surface, one for each combination of names that they bear; throws MeshError naming the
+    /// known surfaces if there is none of this name.
+    const std::set<dealii::types::boundary_id> &surface_ids(const std::string &name) const;
 
     bool has_surface(const std::string &name) const;
 
@@ -99,6 +101,7 @@ namespace Squeal
     void find_nodes();
 
     std::vector<std::string>                             components, surfaces;
+    std::vector<std::set<dealii::types::boundary_id>>    ids_of_surfaces;
     Element                                              element_type;
     dealii::parallel::fullydistributed::Triangulation<3> tria;
     dealii::FESystem<3>                                  fe;

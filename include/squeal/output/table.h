@@ -10,6 +10,9 @@
 
 namespace Squeal
 {
+  /// A text as one field of comma-separated values, in quotes where a comma, a quote or a line break would end it.
+  std::string csv_field(const std::string &text);
+
   /// Nothing, a text, a count, or a number.
   struct Cell : std::variant<std::monostate, std::string, long, double>
   {
