@@ -4,6 +4,7 @@
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
+#include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/mesher.h>
 #include <squeal/geometry/outlines.h>
 #include <squeal/geometry/pin_grid.h>
@@ -209,6 +210,7 @@ namespace Squeal
       for (HexMesh::Point &point : mesh.points)
         point *= std::pow(10., exponent);
     check_mesh(mesh);
+    check_topology(mesh, given.pairing_tolerance, where);
     return mesh;
   }
 } // namespace Squeal

@@ -2,6 +2,7 @@
 #include <squeal/base/memory_limit.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/geometry/disc_axis.h>
+#include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/problem_size.h>
 #include <squeal/studies/scene_summary.h>
 
@@ -135,6 +136,11 @@ namespace Squeal
       run.warn(text("the disc is not round about the z axis, about which it turns: ", std::round(100. * axis.round_about_z),
                     " % of its surface is"));
     warn_of_units(bodies, parameters.materials, run);
+    if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
+      run.warn(text(contact.n_nodes,
+                    " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
+                    " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
+                    ") m: the bodies touch there, but nothing couples them"));
     if (n_modes > allowed)
       run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
                     ": lower Band/Maximum frequency, or check units"));

@@ -1,0 +1,377 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/geometry/faces.h>
+#include <squeal/geometry/mesh_topology.h>
+#include <squeal/geometry/trilinear_map.h>
+
+#include <deal.II/numerics/rtree.h>
+
+#include <boost/iterator/function_output_iterator.hpp>
+#include <boost/pending/disjoint_sets.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    namespace bgi = boost::geometry::index;
+
+    using Point  = HexMesh::Point;
+    using Box    = dealii::BoundingBox<3>;
+    using Sample = std::pair<Point, unsigned int>; ///< a place with the index of a node, face or element
+    using Tree   = dealii::RTree<Sample>;
+
+    // Nodes coincide: far below what is drawn on purpose, above the rounding of files with six digits
+    constexpr double of_shortest_edge = 1e-3, of_size = 2e-5, most_of_shortest_edge = 0.1, most_of_longest_edge = 5e-3;
+
+    /// Nodes of a finer part lie off the coarser part's faces by up to this much of an element, where a curved face is chords.
+    constexpr double off_curved_faces = 0.3;
+
+    /// Bodies overlap: below this, chords of a curved face may lie inside another body.
+    constexpr double overlap = 0.05;
+
+    constexpr unsigned int edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+
+    std::string place(const Point &p)
+    {
+      const auto coordinate = [&](const unsigned int d) { return std::abs(p[d]) > 1e-12 * p.norm() ? p[d] : 0.; };
+      return text("(", coordinate(0), ", ", coordinate(1), ", ", coordinate(2), ") m");
+    }
+
+    std::string counted(const std::size_t n, const std::string &singular, const std::string &plural)
+    {
+      return std::to_string(n) + ' ' + (n == 1 ? singular : plural);
+    }
+
+    template <typename Visit>
+    void visit_box(const Tree &tree, const Box &box, const Visit &visit)
+    {
+      tree.query(bgi::intersects(box), boost::make_function_output_iterator(visit));
+    }
+
+    Box box_around(const Point &point, const double distance)
+    {
+      Box box(std::make_pair(point, point));
+      box.extend(distance);
+      return box;
+    }
+
+    Box box_around(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
+    {
+      std::array<Point, 8> corners;
+      for (unsigned int v = 0; v < 8; ++v)
+        corners[v] = mesh.points[hexahedron.nodes[v]];
+      return Box(corners);
+    }
+
+    /// Distance from which on a node is another node, for each node [m].
+    std::vector<double> node_tolerances(const HexMesh &mesh)
+    {
+      std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity()), longest(mesh.points.size(), 0.);
+      for (const auto &[nodes, volume] : mesh.hexahedra)
+        for (const auto &[a, b] : edges)
+          {
+            const double length = mesh.points[nodes[a]].distance(mesh.points[nodes[b]]);
+            for (const unsigned int node : {nodes[a], nodes[b]})
+              {
+                shortest[node] = std::min(shortest[node], length);
+                longest[node]  = std::max(longest[node], length);
+              }
+          }
+      const auto          corners = Box(mesh.points).get_boundary_points();
+      const double        size    = corners.first.distance(corners.second);
+      std::vector<double> tolerances(mesh.points.size());
+      for (std::size_t node = 0; node < tolerances.size(); ++node)
+        tolerances[node] = std::min({std::max(of_shortest_edge * shortest[node], of_size * size), most_of_shortest_edge * shortest[node],
+                                     most_of_longest_edge * longest[node]});
+      return tolerances;
+    }
+
+    std::vector<Sample> nodes_of_outline(const HexMesh &mesh, const std::vector<HexFace> &outline)
+    {
+      std::vector<bool> is_outer(mesh.points.size(), false);
+      for (const HexFace &face : outline)
+        for (const unsigned int node : face.nodes)
+          is_outer[node] = true;
+      std::vector<Sample> samples;
+      for (unsigned int node = 0; node < is_outer.size(); ++node)
+        if (is_outer[node])
+          samples.emplace_back(mesh.points[node], node);
+      return samples;
+    }
+
+    // -------------------------------------------------------- coincident nodes
+
+    /// Calls visit(node, other), node < other, for nodes that coincide.
+    template <typename Visit>
+    void visit_coincident(const std::vector<Sample> &nodes, const std::vector<double> &tolerances, const Visit &visit)
+    {
+      const Tree tree = dealii::pack_rtree(nodes);
+      for (const auto &[point, node] : nodes)
+        visit_box(tree, box_around(point, tolerances[node]), [&, p = point, n = node](const Sample &other) {
+          if (n < other.second && p.distance(other.first) <= std::min(tolerances[n], tolerances[other.second]))
+            visit(n, other.second);
+        });
+    }
+
+    void check_merged(const HexMesh                   &mesh,
+                      const std::vector<Sample>       &nodes,
+                      const std::vector<double>       &tolerances,
+                      const std::vector<unsigned int> &volumes,
+                      const std::string               &where)
+    {
+      std::map<unsigned int, std::set<unsigned int>> twins; // by volume, those with a lower one
+      visit_coincident(nodes, tolerances, [&](const unsigned int node, const unsigned int other) {
+        if (volumes[node] == volumes[other])
+          twins[volumes[node]].insert(other);
+      });
+      for (const auto &[volume, of_volume] : twins)
+        throw MeshError(counted(of_volume.size(), "node", "nodes") + " of volume '" + mesh.volume_names[volume] + "' " +
+                          (of_volume.size() == 1 ? "coincides" : "coincide") + " with other nodes of it; the first one is at " +
+                          place(mesh.points[*of_volume.begin()]),
+                        where,
+                        "make one node of those that coincide (Coherence Mesh in Gmsh, or merge duplicate nodes in the pre-processor), "
+                        "or open the crack that they form");
+    }
+
+    // ----------------------------------------------------- sides of the contact
+
+    /// Outer faces of a named surface.
+    std::vector<HexFace> named_faces(const HexMesh &mesh, const std::vector<HexFace> &outline, const std::string &name)
+    {
+      std::vector<HexFace> result;
+      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+        if (mesh.surface_names[quadrilateral.surface] == name)
+          {
+            auto key = quadrilateral.nodes;
+            std::sort(key.begin(), key.end());
+            const auto face = std::lower_bound(outline.begin(), outline.end(), key,
+                                               [](const HexFace &candidate, const auto &nodes) { return candidate.key < nodes; });
+            if (face != outline.end() && face->key == key)
+              result.push_back(*face);
+          }
+      return result;
+    }
+
+    void check_sides(const HexMesh &mesh, const std::vector<HexFace> &outline, const double pairing_tolerance, const std::string &where)
+    {
+      std::vector<FaceGeometry> disc;
+      std::vector<Sample>       centres;
+      for (const HexFace &face : named_faces(mesh, outline, PhysicalNames::disc_contact))
+        {
+          disc.push_back(face_geometry(mesh, face.nodes));
+          centres.emplace_back(disc.back().centre, centres.size());
+        }
+      const Tree                                   tree = dealii::pack_rtree(centres);
+      std::map<unsigned int, std::vector<HexFace>> wrong; // by pin
+      for (const HexFace &face : named_faces(mesh, outline, PhysicalNames::pin_contact))
+        {
+          const FaceGeometry pin         = face_geometry(mesh, face.nodes);
+          bool               is_opposite = true;
+          visit_box(tree, box_around(pin.centre, pairing_tolerance),
+                    [&](const Sample &partner) { is_opposite = is_opposite && pin.area_normal * disc[partner.second].area_normal <= 0.; });
+          if (!is_opposite)
+            wrong[face.volume].push_back(face);
+        }
+      for (const auto &[pin, faces] : wrong)
+        throw MeshError("'" + mesh.volume_names[pin] + "' and the disc lie on the same side of " +
+                          counted(faces.size(), "contact face", "contact faces") + ", the first one at " +
+                          place(face_geometry(mesh, faces.front().nodes).centre) + ": one body is drawn into the other",
+                        where, "draw the pin on the other side of its contact face, for example with the extrusion reversed");
+    }
+
+    // --------------------------------------------------------- nodes in elements
+
+    /**
+     * Nodes where faces of the outline meet in several fans, or more than two at an edge. There, parts of a body are joined by single
+     * nodes or edges, as on both sides of hanging nodes.
+     */
+    std::vector<bool> pinched_nodes(const HexMesh &mesh, const std::vector<HexFace> &outline)
+    {
+      struct Edge
+      {
+        std::array<unsigned int, 2> nodes, corners; ///< lower node first; corners 4 f + v of face f
+      };
+      std::vector<Edge> all;
+      all.reserve(4 * outline.size());
+      for (unsigned int f = 0; f < outline.size(); ++f)
+        for (unsigned int v = 0; v < 4; ++v)
+          {
+            const unsigned int next = (v + 1) % 4, a = outline[f].nodes[v], b = outline[f].nodes[next];
+            all.push_back(a < b ? Edge{{{a, b}}, {{4 * f + v, 4 * f + next}}} : Edge{{{b, a}}, {{4 * f + next, 4 * f + v}}});
+          }
+      std::sort(all.begin(), all.end(), [](const Edge &a, const Edge &b) { return a.nodes < b.nodes; });
+
+      std::vector<bool>                   result(mesh.points.size(), false);
+      boost::disjoint_sets_with_storage<> fans(all.size()); // of corners
+      for (auto first = all.begin(), last = first; first != all.end(); first = last)
+        {
+          last = std::find_if(first, all.end(), [&](const Edge &edge) { return edge.nodes != first->nodes; });
+          for (unsigned int end = 0; end < 2; ++end)
+            if (last - first == 2)
+              fans.union_set(first->corners[end], (first + 1)->corners[end]);
+            else
+              result[first->nodes[end]] = true;
+        }
+      constexpr std::size_t    none = -1;
+      std::vector<std::size_t> fan(mesh.points.size(), none);
+      for (unsigned int corner = 0; corner < all.size(); ++corner)
+        {
+          const unsigned int node = outline[corner / 4].nodes[corner % 4];
+          const std::size_t  root = fans.find_set(corner);
+          if (fan[node] != none && fan[node] != root)
+            result[node] = true;
+          fan[node] = root;
+        }
+      return result;
+    }
+
+    /// Of nodes, or of nodes and centres of elements, by their index, which for element e is the number of nodes + e.
+    struct MisplacedPoints
+    {
+      std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< on or in elements of their volume
+      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their volume and that in which they are
+    };
+
+    Point centre(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
+    {
+      Point sum;
+      for (const unsigned int node : hexahedron.nodes)
+        sum += mesh.points[node] / 8.;
+      return sum;
+    }
+
+    std::vector<Box> boxes_of_volumes(const HexMesh &mesh, const std::vector<unsigned int> &volumes)
+    {
+      std::vector<std::vector<Point>> points(mesh.volume_names.size());
+      for (std::size_t node = 0; node < volumes.size(); ++node)
+        points[volumes[node]].push_back(mesh.points[node]);
+      return std::vector<Box>(points.begin(), points.end());
+    }
+
+    MisplacedPoints find_misplaced(const HexMesh                   &mesh,
+                                   const std::vector<HexFace>      &outline,
+                                   std::vector<Sample>              points,
+                                   const std::vector<double>       &tolerances,
+                                   const std::vector<unsigned int> &volumes,
+                                   const double                     pairing_tolerance)
+    {
+      const unsigned int      n_nodes = mesh.points.size();
+      const std::vector<bool> pinched = pinched_nodes(mesh, outline);
+      const std::vector<Box>  boxes   = boxes_of_volumes(mesh, volumes);
+      std::vector<bool>       is_outer(n_nodes, false);
+      for (const Sample &node : points)
+        is_outer[node.second] = true;
+      for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
+        points.emplace_back(centre(mesh, mesh.hexahedra[element]), n_nodes + element);
+      const Tree tree = dealii::pack_rtree(points);
+
+      MisplacedPoints found;
+      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+        {
+          const auto &[nodes, volume] = hexahedron;
+          const auto any_node         = [&, &all = nodes](const std::vector<bool> &is) {
+            return std::any_of(all.begin(), all.end(), [&](const unsigned int node) { return is[node]; });
+          };
+          Box  box     = box_around(mesh, hexahedron);
+          bool is_near = any_node(is_outer);
+          for (unsigned int other = 0; other < boxes.size() && !is_near; ++other)
+            is_near = other != volume && boost::geometry::intersects(boxes[other], box);
+          if (!is_near)
+            continue;
+
+          const bool is_pinched = any_node(pinched);
+          box.extend(is_pinched ? off_curved_faces * mesh.points[nodes[0]].distance(mesh.points[nodes[6]]) : tolerances[nodes[0]]);
+          std::optional<TrilinearMap> map;
+          visit_box(tree, box, [&, &own = nodes, own_volume = volume](const Sample &sample) {
+            const auto &[point, index] = sample;
+            const bool         is_node = index < n_nodes;
+            const unsigned int body    = is_node ? volumes[index] : mesh.hexahedra[index - n_nodes].volume;
+            if (body == own_volume && (!is_node || std::count(own.begin(), own.end(), index) > 0))
+              return;
+            if (!map)
+              map.emplace(mesh, hexahedron);
+            const std::optional<Depth> depth = map->depth(point);
+            if (!depth)
+              return;
+            if (body != own_volume)
+              {
+                if (depth->relative > overlap && depth->length > pairing_tolerance)
+                  found.overlaps[{body, own_volume}].insert(index);
+              }
+            else if (depth->length >= -tolerances[index] || (is_pinched && depth->relative >= -off_curved_faces))
+              found.hanging[body].insert(index);
+          });
+        }
+      return found;
+    }
+
+    void refuse(const MisplacedPoints &points, const HexMesh &mesh, const std::string &where)
+    {
+      const unsigned int n_nodes  = mesh.points.size();
+      const auto         place_of = [&](const unsigned int index) {
+        return place(index < n_nodes ? mesh.points[index] : centre(mesh, mesh.hexahedra[index - n_nodes]));
+      };
+      for (const auto &[volume, nodes] : points.hanging)
+        throw MeshError(counted(nodes.size(), "node", "nodes") + " of volume '" + mesh.volume_names[volume] + "' " +
+                          (nodes.size() == 1 ? "lies" : "lie") +
+                          " on edges or faces of elements of this volume, or inside them, without being their nodes; the first one is at " +
+                          place_of(*nodes.begin()),
+                        where, "mesh neighbouring parts of a volume with the same nodes on their common faces (no hanging nodes)");
+      const auto most = std::max_element(points.overlaps.begin(), points.overlaps.end(),
+                                         [](const auto &a, const auto &b) { return a.second.size() < b.second.size(); });
+      if (most == points.overlaps.end())
+        return;
+      const auto &[volumes, indices] = *most;
+      const std::size_t n_inside     = std::distance(indices.begin(), indices.lower_bound(n_nodes));
+      throw MeshError("Volumes '" + mesh.volume_names[volumes.first] + "' and '" + mesh.volume_names[volumes.second] +
+                        "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
+                        counted(indices.size() - n_inside, "element centre", "element centres") +
+                        " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
+                      where, "move one of them, or remove the one that is drawn twice");
+    }
+  } // namespace
+
+  void check_topology(const HexMesh &mesh, const double pairing_tolerance, const std::string &where)
+  {
+    const std::vector<HexFace>      outline    = outer_faces(mesh);
+    const std::vector<Sample>       nodes      = nodes_of_outline(mesh, outline);
+    const std::vector<double>       tolerances = node_tolerances(mesh);
+    const std::vector<unsigned int> volumes    = volume_of_nodes(mesh);
+    check_merged(mesh, nodes, tolerances, volumes, where);
+    check_sides(mesh, outline, pairing_tolerance, where);
+    refuse(find_misplaced(mesh, outline, nodes, tolerances, volumes, pairing_tolerance), mesh, where);
+  }
+
+  UnnamedContact find_unnamed_contact(const HexMesh &mesh)
+  {
+    std::vector<bool> is_contact(mesh.points.size(), false);
+    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+      if (const std::string &name = mesh.surface_names[quadrilateral.surface];
+          name == PhysicalNames::disc_contact || name == PhysicalNames::pin_contact)
+        for (const unsigned int node : quadrilateral.nodes)
+          is_contact[node] = true;
+
+    const std::vector<unsigned int> volumes = volume_of_nodes(mesh);
+    UnnamedContact                  found;
+    unsigned int                    first = mesh.points.size();
+    visit_coincident(nodes_of_outline(mesh, outer_faces(mesh)), node_tolerances(mesh), [&](const unsigned int a, const unsigned int b) {
+      if (volumes[a] == volumes[b] || (is_contact[a] && is_contact[b]))
+        return;
+      ++found.n_nodes;
+      if (a < first)
+        {
+          first       = a;
+          found.body  = mesh.volume_names[volumes[a]];
+          found.other = mesh.volume_names[volumes[b]];
+          found.place = mesh.points[a];
+        }
+    });
+    return found;
+  }
+} // namespace Squeal
