@@ -49,8 +49,8 @@ namespace Squeal
       HexMesh::Point             centre;
       for (const unsigned int node : hexahedron.nodes)
         centre += mesh.points[node] / 8.;
-      return text("element ", element, " of volume '", mesh.volume_names[hexahedron.volume], "', near (", centre[0], ", ", centre[1], ", ",
-                  centre[2], ") m");
+      return text("element ", element, " of volume '",
+                  mesh.volume_names[hexahedron.volume], "', near (", centre[0], ", ", centre[1], ", ", centre[2], ") m");
     }
 
     std::string list(const std::vector<std::string> &names)
@@ -107,11 +107,12 @@ namespace Squeal
     if (mesh.hexahedra.empty())
       throw MeshError("The mesh has no elements", "mesh", "check the geometry");
 
-    MeshQuality quality{1., 0};
+    MeshQuality quality{1., 0, 0};
     for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
       {
         const auto   corners         = scaled_jacobians(mesh, mesh.hexahedra[element].nodes);
         const double scaled_jacobian = *std::min_element(corners.begin(), corners.end());
+        quality.n_bad += !(scaled_jacobian >= smallest_scaled_jacobian);
         if (scaled_jacobian < quality.worst_scaled_jacobian)
           {
             quality.worst_scaled_jacobian = scaled_jacobian;
@@ -125,12 +126,13 @@ namespace Squeal
   MeshQuality check_mesh(const HexMesh &mesh)
   {
     const MeshQuality quality = mesh_quality(mesh);
-    if (!(quality.worst_scaled_jacobian >= smallest_scaled_jacobian))
-      throw MeshError(text(quality.worst_scaled_jacobian < 0. ? "An element is inverted" : "An element is degenerate", ": scaled Jacobian ",
-                           quality.worst_scaled_jacobian, ", at least ", smallest_scaled_jacobian, " is needed"),
+    if (quality.n_bad > 0)
+      throw MeshError(text(quality.n_bad, " of ", mesh.hexahedra.size(), quality.n_bad == 1 ? " elements is" : " elements are",
+                           " inverted or degenerate; the worst one has scaled Jacobian ", quality.worst_scaled_jacobian, ", at least ",
+                           smallest_scaled_jacobian, " is needed"),
                       describe(mesh, quality.worst_element),
                       "change the element size or the number of nodes per pin face; keep pins away from "
-                      "edges and from each other, and in a mesh of your own correct this element");
+                      "edges and from each other, and in a mesh of your own correct these elements");
     return quality;
   }
 

@@ -12,6 +12,7 @@ namespace Squeal
   {
     double       worst_scaled_jacobian; ///< 1 for a box, 0 for a flat corner, negative if inverted
     unsigned int worst_element;         ///< index of the hexahedron it was found in
+    unsigned int n_bad;                 ///< hexahedra below smallest_scaled_jacobian
   };
 
   /**
@@ -33,8 +34,8 @@ namespace Squeal
   /**
    * The quality of a mesh that can be computed on.
    *
-   * Throws MeshError for an element below smallest_scaled_jacobian, saying
-   * where it is, and as mesh_quality() does.
+   * Throws MeshError for elements below smallest_scaled_jacobian, saying how
+   * many there are, which one is the worst and where it is, and as mesh_quality() does.
    */
   MeshQuality check_mesh(const HexMesh &mesh);
 
