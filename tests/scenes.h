@@ -2,6 +2,7 @@
 
 #include <squeal/assembly/elasticity.h>
 #include <squeal/contact/coupled_system.h>
+#include <squeal/contact/travel.h>
 #include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
@@ -111,6 +112,15 @@ namespace Squeal::Testing
     return mesh;
   }
 
+  /// A disc about z = 0 with faces of radius 0.2 m as a ring: pins above press on it from outside, those below from inside.
+  inline HexMesh turned_to_rims(const HexMesh &disc)
+  {
+    return mapped(disc, [](const Point3 &p) {
+      const double r = std::hypot(p[0], p[1]), factor = (0.25 + p[2]) / r;
+      return Point3{{factor * p[0], factor * p[1], 0.2 - r}};
+    });
+  }
+
   /// The mirror image about the plane y = 0.
   inline HexMesh mirrored(HexMesh mesh)
   {
@@ -190,7 +200,7 @@ namespace Squeal::Testing
       , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))
-      , damping{radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation), {}}
+      , damping{radial_dissipation(interface, equal_load_shares(model, interface, operation), operation), {}}
       , contact_damping(Squeal::contact_damping(contact, damping))
       , coupled(couple(system, contact, damping))
     {}

@@ -191,17 +191,6 @@ namespace Squeal
     return interface;
   }
 
-  std::vector<double> equal_load_shares(const ContactInterface &interface, const double load_per_side)
-  {
-    std::map<int, unsigned int> nodes_per_side;
-    for (const ContactNode &node : interface)
-      ++nodes_per_side[node.side()];
-    std::vector<double> reactions;
-    for (const ContactNode &node : interface)
-      reactions.push_back(-load_per_side / nodes_per_side[node.side()]);
-    return reactions;
-  }
-
   std::vector<double> radial_dissipation(const ContactInterface    &interface,
                                          const std::vector<double> &reactions,
                                          const OperationParameters &operation)

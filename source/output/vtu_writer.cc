@@ -246,16 +246,11 @@ namespace Squeal
   void VtuWriter::write_contact_state(const ContactField &state) const
   {
     // Clamped dofs follow their backplate
-    DofVector        u = dof_vector(state.displacement, [](const double value) { return value; });
-    std::vector<int> side(state.approach.size(), 0);
-    for (const ContactNode &node : interface)
-      side[node.pin] = node.side();
-    for (const auto dof : DoFTools::extract_dofs(model.dof_handler(), ComponentMask(std::vector<bool>{false, false, true})))
-      if (u.locally_owned_elements().is_element(dof) && model.free_dof(dof) < 0)
-        {
-          const unsigned int component = model.nodes()[model.node_of_dof(dof)].component;
-          u(dof)                       = -side[component] * state.approach[component];
-        }
+    DofVector u = dof_vector(state.displacement, [](const double value) { return value; });
+    for (unsigned int k = 0; k < 3; ++k)
+      for (const auto dof : DoFTools::extract_dofs(model.dof_handler(), ComponentMask(std::vector<bool>{k == 0, k == 1, k == 2})))
+        if (u.locally_owned_elements().is_element(dof) && model.free_dof(dof) < 0)
+          u(dof) = state.backplates[model.nodes()[model.node_of_dof(dof)].component][k];
     u.update_ghost_values();
 
     BodyOutput bodies(model);

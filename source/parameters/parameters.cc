@@ -270,8 +270,7 @@ namespace Squeal
 
   bool Parameters::has_contact_damping() const
   {
-    return operation.radial_dissipation != RadialDissipation::none || operation.friction_slope != 0. || study->compares_dissipation ||
-           study->adds_dissipation;
+    return operation.has_contact_damping() || study->compares_dissipation || study->adds_dissipation;
   }
 
   bool Parameters::has_friction() const

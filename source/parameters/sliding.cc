@@ -24,19 +24,19 @@ namespace Squeal
                      "which nodes may lift off. All other parameters of this section belong to steady sliding.");
     declarations.add("Control", control,
                      "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
-                     "displacement, the travel of both backplates; load per pin, a force on each pin.");
+                     "displacement, the travel of every backplate; load per pin, a force on each pin.");
     declarations.add("Displacement", displacement,
-                     "Way of each backplate along the disc's axis towards the disc, from where a pin without gap touches it, for "
-                     "Control = displacement. Units: m.",
+                     "Travel of each backplate towards the disc, along the axis (a shoe on a rim: along its mean contact normal), from where a "
+                     "pin without gap touches the disc, for Control = displacement. Units: m.",
                      {0.});
     declare_list(declarations, "Loads", pin_loads,
                  "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
-                 "share of Operation/Load per side. Units: N.",
+                 "share of Operation/Load per side, a shoe on a rim all of it. Units: N.",
                  load_list, {&PinLoad::load}, &PinLoad::pin);
     declare_list(declarations, "Gaps", gaps,
                  "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, "
-                 "along the disc's axis, positive where the pin does not touch. The gap grows by the tapers per distance from the "
-                 "centre of the face along the sliding direction and outwards. Units: m, none, none.",
+                 "along the travel of the backplate, positive where the pin does not touch. The gap grows by the tapers per distance from the "
+                 "centre of the face along the sliding direction and outwards (a shoe on a rim: along the axis). Units: m, none, none.",
                  gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 
@@ -48,7 +48,7 @@ namespace Squeal
                              "give a positive force; a pin that shall not touch gets a gap and no actuator of its own");
     if (control == BackplateControl::displacement && !(displacement > 0.) && gaps.empty())
       throw ParameterError("the backplates do not move", "parameter Steady sliding/Displacement",
-                           "give a positive way, or set Steady sliding/Control = load per side");
+                           "give a positive travel, or set Steady sliding/Control = load per side");
     if (control != BackplateControl::load_per_pin && !pin_loads.empty())
       throw ParameterError("loads of single pins are given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Loads", "set Steady sliding/Control = load per pin, or remove the loads");

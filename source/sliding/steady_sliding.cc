@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/contact/travel.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/sliding/floating_disc.h>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 namespace Squeal
 {
@@ -33,22 +33,18 @@ namespace Squeal
       return centres;
     }
 
-    /// Distances of a node from the centre of its face, along t and outwards [m].
-    std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre)
+    /// Distances of a node from the centre of its face, along t and outwards, or along the axis where a rim is rubbed [m].
+    std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre, const Travel &travel)
     {
-      return {node.sliding.dot(node.position - centre), node.axis_distance() - std::hypot(centre[0], centre[1])};
+      return {node.sliding.dot(node.position - centre),
+              travel.side == 0 ? node.position[2] - centre[2] : node.axis_distance() - std::hypot(centre[0], centre[1])};
     }
 
-    /// Force on the backplate along the axis for a unit reaction at a node with friction [-].
-    double axial_force(const ContactNode &node, const double mu)
-    {
-      return -node.side() * (node.normal[2] + mu * node.sliding[2]);
-    }
-
-    /// Backplate of each contact node, numbered from 0, and the load on each; none of the latter where the travel is given.
+    /// Travel and backplate of each component, and the load on each backplate; none where the travel is given.
     struct Backplates
     {
-      std::vector<int>    of_node;
+      std::vector<Travel> travels;
+      std::vector<int>    of_pin;
       std::vector<double> loads;
       int                 n;
     };
@@ -59,33 +55,23 @@ namespace Squeal
                           const SlidingParameters   &parameters)
     {
       const bool per_pin = parameters.control == BackplateControl::load_per_pin;
-      // A backplate is known by its pin, or by its side
-      std::map<int, int>                         numbers;
-      std::map<int, std::map<unsigned int, int>> pins_of_side;
-      Backplates                                 result{{}, {}, 0};
-      for (const ContactNode &node : interface)
-        {
-          const int key = per_pin ? static_cast<int>(node.pin) : node.side();
-          if (numbers.count(key) == 0)
-            numbers[key] = result.n++;
-          result.of_node.push_back(numbers[key]);
-          pins_of_side[node.side()][node.pin] = numbers[key];
-        }
+      Backplates result{travels(model, interface), {}, {}, 0};
+      result.of_pin = backplate_numbers(result.travels, per_pin);
+      result.n      = 1 + *std::max_element(result.of_pin.begin(), result.of_pin.end());
       if (parameters.control == BackplateControl::displacement)
         return result;
       result.loads.assign(result.n, operation.load_per_side);
       if (!per_pin)
         return result;
 
-      for (const auto &[side, pins] : pins_of_side)
-        for (const auto &[pin, number] : pins)
-          result.loads[number] = operation.load_per_side / pins.size();
+      // Pins share the load of the backplate that they would have in common
+      const std::vector<int> shared = backplate_numbers(result.travels, false);
+      for (std::size_t pin = 0; pin < shared.size(); ++pin)
+        if (const int number = result.of_pin[pin]; number >= 0)
+          result.loads[number] = operation.load_per_side / std::count(shared.begin(), shared.end(), shared[pin]);
       for (const PinLoad &load : parameters.pin_loads)
-        {
-          const unsigned int pin = pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
-          if (numbers.count(pin) > 0)
-            result.loads[numbers[pin]] = load.load;
-        }
+        if (const int number = result.of_pin[pin_number(model.component_names(), load.pin, "Steady sliding/Loads")]; number >= 0)
+          result.loads[number] = load.load;
       for (const double load : result.loads)
         if (!(load > 0.))
           throw ParameterError("a pin that Steady sliding/Loads does not list has no load", "parameter Operation/Load per side",
@@ -108,13 +94,14 @@ namespace Squeal
                              DenseMatrix::Zero(n_c, n_z),     DenseMatrix::Zero(n_z, n_c),         plates.loads, {}};
       for (int c = 0; c < n_c; ++c)
         {
-          const ContactNode &node = sliding.interface[c];
-          const double       a    = std::abs(node.normal[2]);
+          const ContactNode &node   = sliding.interface[c];
+          const Travel      &travel = plates.travels[node.pin];
+          const double       a      = travel.closing(node);
           problem.initial_gap.push_back(a * ((moves ? 0. : displacement) - gaps[c]));
           if (moves)
             {
-              problem.motions(c, plates.of_node[c]) = a;
-              problem.balance(plates.of_node[c], c) = axial_force(node, mu);
+              problem.motions(c, plates.of_pin[node.pin]) = a;
+              problem.balance(plates.of_pin[node.pin], c) = travel.force(node, mu);
             }
         }
       if (motions)
@@ -134,7 +121,7 @@ namespace Squeal
     struct CondensedSliding
     {
       Backplates                 plates;
-      Eigen::VectorXd            gaps;    ///< along the axis [m]
+      Eigen::VectorXd            gaps;    ///< along the travel [m]
       std::optional<MultiVector> motions; ///< of the disc
       ContactProblem             problem;
     };
@@ -144,20 +131,18 @@ namespace Squeal
       const auto &[model, interface, contact, system, response, Psi_n, Psi_t] = sliding;
       const double          mu                                                = operation.friction_coefficient;
       const Backplates      plates                                            = backplates(model, interface, operation, parameters);
-      const Eigen::VectorXd gaps                                              = axial_gaps(model, interface, parameters);
+      const Eigen::VectorXd gaps                                              = initial_gaps(model, interface, parameters);
       const auto            motions                                           = balanced_disc_motions(model, contact, system, response, mu);
       return {plates, gaps, motions, contact_problem(sliding, plates, gaps, motions, parameters.displacement, mu)};
     }
 
-    /// u with the travel of the backplates of the pins.
-    MultiVector with_backplates(const SlidingModel &sliding, MultiVector u, const std::vector<double> &approach)
+    /// u with the displacement of the backplates of the pins.
+    MultiVector with_backplates(const SlidingModel &sliding, MultiVector u, const std::vector<Eigen::Vector3d> &backplates)
     {
-      std::vector<double> travel(approach.size(), 0.);
-      for (const ContactNode &node : sliding.interface)
-        travel[node.pin] = -node.side() * approach[node.pin];
       for (const Node &node : sliding.model.nodes())
-        if (const int i = u.map().place(node.dofs[2]); i >= 0)
-          u(i, 0) += travel[node.component];
+        for (unsigned int k = 0; k < 3; ++k)
+          if (const int i = u.map().place(node.dofs[k]); i >= 0)
+            u(i, 0) += backplates[node.component][k];
       return u;
     }
 
@@ -190,8 +175,9 @@ namespace Squeal
       for (std::size_t c = 0; c < interface.size(); ++c)
         {
           const ContactNode &node = interface[c];
-          loads[plates.of_node[c]] += axial_force(node, mu) * reactions[c];
-          gap[c] += std::abs(node.normal[2]) * (state.approach[node.pin] - gaps[c]);
+          const Travel      &path = plates.travels[node.pin];
+          loads[plates.of_pin[node.pin]] += path.force(node, mu) * reactions[c];
+          gap[c] += path.closing(node) * (state.approach[node.pin] - gaps[c]);
           arm = std::max(arm, node.axis_distance());
         }
       const double load = loads.maxCoeff();
@@ -213,17 +199,19 @@ namespace Squeal
     }
   } // namespace
 
-  Eigen::VectorXd axial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters)
+  Eigen::VectorXd initial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters)
   {
     std::vector<PinGap> of_pin(model.component_names().size(), PinGap{"", 0.});
     for (const PinGap &gap : parameters.gaps)
       of_pin[pin_number(model.component_names(), gap.pin, "Steady sliding/Gaps")] = gap;
-    const auto      centres = face_centres(model, interface);
+    const auto      centres    = face_centres(model, interface);
+    const auto      directions = travels(model, interface);
     Eigen::VectorXd result(interface.size());
     for (std::size_t c = 0; c < interface.size(); ++c)
       {
-        const PinGap &gap            = of_pin[interface[c].pin];
-        const auto [along, outwards] = offsets(interface[c], centres[interface[c].pin]);
+        const unsigned int pin       = interface[c].pin;
+        const PinGap      &gap       = of_pin[pin];
+        const auto [along, outwards] = offsets(interface[c], centres[pin], directions[pin]);
         result[c]                    = gap.gap + gap.sliding_taper * along + gap.radial_taper * outwards;
       }
     return result;
@@ -234,18 +222,19 @@ namespace Squeal
                      const OperationParameters &operation,
                      const SlidingParameters   &parameters)
   {
-    const Eigen::VectorXd            gaps = axial_gaps(model, interface, parameters);
-    std::vector<Eigen::AlignedBox3d> bodies(model.component_names().size());
+    const Backplates                 plates = backplates(model, interface, operation, parameters);
+    const Eigen::VectorXd            gaps   = initial_gaps(model, interface, parameters);
+    std::vector<Eigen::AlignedBox1d> extents(model.component_names().size()); // along the travel
     for (const Node &node : model.nodes())
-      bodies[node.component].extend(Eigen::Vector3d::Map(node.position.data()));
+      extents[node.component].extend(
+        Eigen::Matrix<double, 1, 1>(plates.travels[node.component].direction.dot(Eigen::Vector3d::Map(node.position.data()))));
     std::vector<double> heights;
-    for (const auto &body : bodies)
-      heights.push_back(dealii::Utilities::MPI::max(body.max()[2], model.communicator()) -
-                        dealii::Utilities::MPI::min(body.min()[2], model.communicator()));
+    for (const auto &extent : extents)
+      heights.push_back(dealii::Utilities::MPI::max(extent.max()[0], model.communicator()) -
+                        dealii::Utilities::MPI::min(extent.min()[0], model.communicator()));
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 
-    const Backplates    plates = backplates(model, interface, operation, parameters);
     std::vector<double> smallest(plates.n, std::numeric_limits<double>::max());
     for (std::size_t c = 0; c < interface.size(); ++c)
       {
@@ -255,7 +244,8 @@ namespace Squeal
           throw ParameterError(
             "the gap of " + exact_text(gaps[c]) + " m is larger than the height of the pin, " + exact_text(height) + " m",
             "parameter Steady sliding/Gaps, pin " + model.component_names()[pin], "gaps are given in metres: 1e-5 is 10 micrometres");
-        smallest[plates.of_node[c]] = std::min(smallest[plates.of_node[c]], gaps[c]);
+        double &of_plate = smallest[plates.of_pin[pin]];
+        of_plate         = std::min(of_plate, gaps[c]);
       }
     if (parameters.control == BackplateControl::displacement)
       for (const double gap : smallest)
@@ -294,18 +284,21 @@ namespace Squeal
     state.closed     = solution.closed;
     state.n_steps    = solution.n_steps;
     state.uniqueness = contact_uniqueness(problem, solution);
-    state.approach.resize(model.component_names().size(), 0.);
-    for (std::size_t c = 0; c < interface.size(); ++c)
-      state.approach[interface[c].pin] = plates.loads.empty() ? parameters.displacement : solution.motions[plates.of_node[c]];
+    for (std::size_t k = 0; k < plates.travels.size(); ++k)
+      {
+        const int plate = plates.of_pin[k];
+        state.approach.push_back(plate < 0 ? 0. : plates.loads.empty() ? parameters.displacement : solution.motions[plate]);
+      }
 
     const DenseMatrix r = as_column(state.reactions);
     MultiVector       u = Psi_n * r;
     multiply_add(mu, Psi_t, r, 1., u);
     if (motions)
       multiply_add(1., *motions, as_column(solution.motions).tail(motions->n_columns()), 1., u);
-    state.displacement       = std::make_shared<MultiVector>(u);
-    state.total_displacement = std::make_shared<MultiVector>(with_backplates(sliding, u, state.approach));
-    state.certificate        = certificate(sliding, plates, gaps, state, mu);
+    state.displacement = std::make_shared<MultiVector>(u);
+    state.total_displacement =
+      std::make_shared<MultiVector>(with_backplates(sliding, u, backplate_displacements(plates.travels, state.approach)));
+    state.certificate = certificate(sliding, plates, gaps, state, mu);
     return state;
   }
 
@@ -320,7 +313,7 @@ namespace Squeal
     const int              n_plates = scene.problem.forces.size() - (scene.motions ? scene.motions->n_columns() : 0);
     DenseMatrix            gaps = gram(sliding.normal, force_rates), forces = DenseMatrix::Zero(scene.problem.forces.size(), gaps.cols());
     for (Eigen::Index c = 0; c < gaps.rows(); ++c)
-      gaps.row(c) -= std::abs(sliding.interface[c].normal[2]) * gap_rates.row(c);
+      gaps.row(c) -= scene.plates.travels[sliding.interface[c].pin].closing(sliding.interface[c]) * gap_rates.row(c);
     if (scene.motions)
       forces.bottomRows(forces.rows() - n_plates) = gram(*scene.motions, force_rates);
     return reaction_rates(scene.problem, state.closed, gaps, forces);
@@ -331,23 +324,25 @@ namespace Squeal
                                        const SlidingState        &state,
                                        const OperationParameters &operation)
   {
-    const auto centres = face_centres(model, interface);
+    const auto centres    = face_centres(model, interface);
+    const auto directions = travels(model, interface);
     const auto c_b = radial_dissipation(interface, state.reactions, operation), c_t = sliding_dissipation(state.reactions, operation);
     std::vector<PinContact> result;
     for (unsigned int pin = 1; pin < model.component_names().size(); ++pin)
       {
-        PinContact entry{model.component_names()[pin], 0, 0, 0, 0., 0., 0., 0., 0., 0., 0., state.approach[pin], 0.};
+        PinContact entry{model.component_names()[pin], directions[pin].side, 0, 0, 0., 0., 0., 0., 0., 0., 0., state.approach[pin], 0.};
+        double     axis_distance = 0.;
         for (std::size_t c = 0; c < interface.size(); ++c)
           if (const ContactNode &node = interface[c]; node.pin == pin)
             {
               const double force           = -state.reactions[c];
-              const auto [along, outwards] = offsets(node, centres[pin]);
-              entry.side                   = node.side();
+              const auto [along, outwards] = offsets(node, centres[pin], directions[pin]);
               ++entry.n_nodes;
               entry.n_open += force == 0.;
               entry.load += force;
               entry.sliding_offset += force * along;
               entry.radial_offset += force * outwards;
+              axis_distance += force * node.axis_distance();
               entry.largest_pressure = std::max(entry.largest_pressure, force / node.area);
               entry.radial_damping += c_b[c];
               entry.sliding_damping += c_t[c];
@@ -359,8 +354,11 @@ namespace Squeal
           {
             entry.sliding_offset /= entry.load;
             entry.radial_offset /= entry.load;
+            axis_distance /= entry.load;
           }
-        entry.sliding_speed = operation.rotation_speed * (std::hypot(centres[pin][0], centres[pin][1]) + entry.radial_offset);
+        else
+          axis_distance = std::hypot(centres[pin][0], centres[pin][1]);
+        entry.sliding_speed = operation.rotation_speed * axis_distance;
         result.push_back(entry);
       }
     return result;

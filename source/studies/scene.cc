@@ -3,6 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/mode_count_estimate.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/contact/travel.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
@@ -69,6 +70,8 @@ namespace Squeal
     scene.contact   = contact_operators(*scene.model, scene.interface);
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
+    if (parameters.sliding.state == ContactState::equal_load && parameters.has_contact_damping())
+      equal_load_shares(*scene.model, scene.interface, parameters.operation); // refuses bodies without travel
     const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
     run.count("dofs, clamped included", scene.model->n_dofs());
     run.count("dofs", n);
@@ -117,12 +120,17 @@ namespace Squeal
     return state;
   }
 
-  StateOfContact state_of_contact(const ContactInterface            &interface,
+  StateOfContact state_of_contact(const Model                       &model,
+                                  const ContactInterface            &interface,
                                   const std::optional<SlidingState> &state,
                                   const OperationParameters         &operation)
   {
-    StateOfContact            result;
-    const std::vector<double> reactions = state ? state->reactions : equal_load_shares(interface, operation.load_per_side);
+    StateOfContact      result;
+    std::vector<double> reactions(interface.size(), 0.);
+    if (state)
+      reactions = state->reactions;
+    else if (operation.has_contact_damping())
+      reactions = equal_load_shares(model, interface, operation);
     for (unsigned int c = 0; c < interface.size(); ++c)
       if (!state || state->closed[c])
         result.closed.push_back(c);
@@ -143,7 +151,7 @@ namespace Squeal
 
   Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation)
   {
-    const StateOfContact state = state_of_contact(scene.interface, sliding, operation);
+    const StateOfContact state = state_of_contact(*scene.model, scene.interface, sliding, operation);
     Linearisation        result;
     result.scene   = &scene;
     result.sliding = sliding;

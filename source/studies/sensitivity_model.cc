@@ -119,7 +119,7 @@ namespace Squeal
         // Friction: −μ P_tᵀ r_n. The reactions of a motion do not change, since normals do not
         const ComplexDenseMatrix slip = from_halves(replicate(*contact.tangential * apart.left));
         result -= sign / motion.step * friction_coefficient * (slip.transpose() * reactions);
-        const ContactDamping damping = selected(state_of_contact(interface, state, operation).damping, sweep.regime.closed);
+        const ContactDamping damping = selected(state_of_contact(*scene.model, interface, state, operation).damping, sweep.regime.closed);
         if (const auto C = contact_damping(contact, damping))
           {
             const ComplexDenseMatrix forms = product_of_halves(gram(apart.left, *C * apart.right));
@@ -149,7 +149,7 @@ namespace Squeal
     std::vector<ParameterValues> &result    = entry->second;
     const SweepPlan              &plan      = sweep.plan;
     const OperationParameters     operation = plan.lines[main_line].at(friction_coefficient);
-    if (!is_new || !plan.sliding || (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0.))
+    if (!is_new || !plan.sliding || !operation.has_contact_damping())
       return result;
 
     const ContactInterface &interface = plan.scene.interface;
@@ -157,8 +157,8 @@ namespace Squeal
     DenseMatrix             gaps      = DenseMatrix::Zero(interface.size(), parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p)
       if (const auto &motion = parameters[p].contact)
-        gaps.col(p) = (axial_gaps(*plan.scene.model, motion->after, plan.sliding_parameters) -
-                       axial_gaps(*plan.scene.model, motion->before, plan.sliding_parameters)) /
+        gaps.col(p) = (initial_gaps(*plan.scene.model, motion->after, plan.sliding_parameters) -
+                       initial_gaps(*plan.scene.model, motion->before, plan.sliding_parameters)) /
                       motion->step;
     const DenseMatrix rates = reaction_rates(*plan.sliding, operation, plan.sliding_parameters, state,
                                              force_rates(*plan.sliding, state, friction_coefficient, parameters, body_rates()), gaps);
@@ -181,12 +181,13 @@ namespace Squeal
 
   ParameterValues SensitivityModel::contact_rates(const SensitivityParameter &parameter, const double friction_coefficient) const
   {
+    const Scene              &scene     = sweep.plan.scene;
     const OperationParameters operation = sweep.plan.lines[main_line].at(friction_coefficient);
     const double              step      = operation_step * std::max(std::abs(operation.*parameter.operation), least_of_operation);
     const auto                damping   = [&](const double change) {
       OperationParameters changed = operation;
       changed.*parameter.operation += change;
-      const StateOfContact state = state_of_contact(sweep.plan.scene.interface, sweep.plan.sliding_state(changed), changed);
+      const StateOfContact state = state_of_contact(*scene.model, scene.interface, sweep.plan.sliding_state(changed), changed);
       return selected(state.damping, sweep.regime.closed).values();
     };
     const ParameterValues after = damping(step);

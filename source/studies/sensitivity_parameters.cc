@@ -1,5 +1,6 @@
 #include <squeal/assembly/rotation.h>
 #include <squeal/base/exceptions.h>
+#include <squeal/contact/travel.h>
 #include <squeal/sensitivity/mesh_motions.h>
 #include <squeal/studies/sensitivity_parameters.h>
 
@@ -136,7 +137,7 @@ namespace Squeal
         if (operation.rotating_disc)
           result.back().body_rates[BodyParameter::angular_velocity] = {operation.angular_velocity() < 0. ? -1. : 1.};
       }
-    if (operation.load_per_side > 0.)
+    if (operation.load_per_side > 0. && have_travels(*scene.model, scene.interface))
       result.push_back({"Operation/Friction slope", "", "s/m", operation.friction_slope, {}, {}, &OperationParameters::friction_slope});
     return result;
   }

@@ -1,3 +1,4 @@
+#include <squeal/contact/travel.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/output/vtu_writer.h>
 #include <squeal/studies/sliding_results.h>
@@ -32,11 +33,11 @@ namespace Squeal
     Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
     {
       std::vector<std::pair<std::string, Cell>> rows;
-      std::map<int, double>                     loads;
+      std::map<std::string, double>             loads; // lower before upper
       for (const PinContact &pin : pins)
-        loads[pin.side] += pin.load;
-      for (const auto &[side, load] : loads)
-        rows.emplace_back(std::string("normal load of the ") + (side > 0 ? "upper" : "lower") + " side [N]", load);
+        loads[pin.side == 0 ? pin.pin : pin.side > 0 ? "the upper side" : "the lower side"] += pin.load;
+      for (const auto &[part, load] : loads)
+        rows.emplace_back("normal load of " + part + " [N]", load);
       const SlidingCertificate &c = state.certificate;
       rows.emplace_back("residual of the full system [-]", c.residual);
       rows.emplace_back("error of the prescribed loads [-]", c.load);
@@ -85,8 +86,9 @@ namespace Squeal
     const SlidingState        &state     = *linearisation.sliding;
     const OperationParameters &operation = run.parameters.operation;
     const auto                 u         = state.total_displacement->col(0);
+    const auto                 plates    = backplate_displacements(travels(*scene.model, scene.interface), state.approach);
     VtuWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
-      .write_contact_state({std::vector<double>(u.begin(), u.end()), state.approach, state.reactions, state.gaps,
+      .write_contact_state({std::vector<double>(u.begin(), u.end()), plates, state.reactions, state.gaps,
                             radial_dissipation(scene.interface, state.reactions, operation),
                             sliding_dissipation(state.reactions, operation)});
   }

@@ -55,7 +55,7 @@ namespace Squeal
   StateOfContact SweepPlan::state_at(const int line, const double friction_coefficient) const
   {
     const OperationParameters operation = lines[line].at(friction_coefficient);
-    return state_of_contact(scene.interface, sliding_state(operation), operation);
+    return state_of_contact(*scene.model, scene.interface, sliding_state(operation), operation);
   }
 
   OperatingPoint SweepPlan::point(const int line, const double friction_coefficient, const std::vector<unsigned int> &closed) const

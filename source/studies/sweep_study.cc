@@ -25,8 +25,7 @@ namespace Squeal
         return;
       const OperationParameters &operation = parameters.operation;
       const bool                 is_steady = parameters.needs_steady_sliding();
-      if (operation.radial_dissipation == RadialDissipation::none && operation.friction_slope == 0. &&
-          !(is_steady && varied == MapParameter::load))
+      if (!operation.has_contact_damping() && !(is_steady && varied == MapParameter::load))
         throw ParameterError("without contact damping nothing depends on the " + to_string(varied), "parameter Sweep/Map parameter",
                              "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
       if (is_steady && varied == MapParameter::load && parameters.sliding.control != BackplateControl::load_per_side)

@@ -183,7 +183,7 @@ TEST(StaticModes, FacesAtFortyFiveDegreesAreNoTrap)
   const double     h         = std::sqrt(0.5);
   for (ContactNode &node : interface)
     {
-      node.normal  = {-h, 0., h * node.side()};
+      node.normal  = {-h, 0., std::copysign(h, node.normal[2])};
       node.sliding = {0., 1., 0.};
     }
   for (const Component component : {Component::disc, Component::pins})

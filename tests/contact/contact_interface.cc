@@ -98,7 +98,6 @@ TEST(ContactInterface, EveryNodeOnceWithItsFrame)
             }
           // n outwards, t along e_θ, b = n × t: outwards on top, inwards below
           const double side = node.position[2] > 0. ? 1. : -1.;
-          EXPECT_EQ(node.side(), side);
           EXPECT_EQ(node.normal, Eigen::Vector3d(0., 0., side));
           const Eigen::Vector3d e_theta(-node.position[1] / r, node.position[0] / r, 0.),
             e_r(node.position[0] / r, node.position[1] / r, 0.);
@@ -130,7 +129,7 @@ TEST(ContactInterface, ConicalFacesGetTheirNormals)
         const Eigen::Vector3d e_r(node.position[0] / r, node.position[1] / r, 0.), e_theta(-e_r[1], e_r[0], 0.);
         // Faces span 3.75°: their normals differ from the cone's by half of that at the ends of a pin.
         const double tolerance = 1.1 * slope * M_PI / 96.;
-        const double side      = node.side();
+        const double side      = node.normal[2] > 0. ? 1. : -1.;
         EXPECT_NEAR(dot(node.normal, e_r), -side * slope * scale, 1e-3);
         EXPECT_NEAR(dot(node.normal, e_theta), 0., tolerance);
         EXPECT_NEAR(node.normal[2], side * scale, 1e-3);
@@ -236,16 +235,17 @@ TEST(ContactInterface, ANodeOnTheAxisIsRefused)
 
 TEST(RadialDissipation, SharesTheLoadOfEachSide)
 {
-  const auto          interface  = pairs(flat_mesh());
+  const Model         model(flat_mesh(), Element::trilinear, MPI_COMM_WORLD);
+  const auto          interface  = pair_contact_nodes(model, Rotation::positive, 1e-6);
   OperationParameters operation  = operating(RadialDissipation::consistent);
   operation.friction_coefficient = 0.37;
   operation.rotation_speed       = 3.;
   operation.load_per_side        = 500.;
-  const auto consistent          = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
+  const auto consistent          = radial_dissipation(interface, equal_load_shares(model, interface, operation), operation);
   operation.radial_dissipation   = RadialDissipation::published;
-  const auto published           = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
+  const auto published           = radial_dissipation(interface, equal_load_shares(model, interface, operation), operation);
   operation.radial_dissipation   = RadialDissipation::none;
-  const auto none                = radial_dissipation(interface, equal_load_shares(interface, operation.load_per_side), operation);
+  const auto none                = radial_dissipation(interface, equal_load_shares(model, interface, operation), operation);
 
   // c_b w_0 is the friction force μ R_n0 (consistent) or R_n0 (published): their sums are μ N and N on each side.
   double sums[2][2] = {};
@@ -253,12 +253,12 @@ TEST(RadialDissipation, SharesTheLoadOfEachSide)
   for (std::size_t c = 0; c < interface.size(); ++c)
     {
       const double w = operation.rotation_speed * interface[c].axis_distance();
-      sums[0][interface[c].side() > 0] += consistent[c] * w;
-      sums[1][interface[c].side() > 0] += published[c] * w;
+      sums[0][interface[c].normal[2] > 0.] += consistent[c] * w;
+      sums[1][interface[c].normal[2] > 0.] += published[c] * w;
       EXPECT_GT(consistent[c], 0.);
       EXPECT_EQ(none[c], 0.);
       // Equal shares
-      EXPECT_NEAR(published[c] * w / (500. / (interface[c].side() > 0 ? 9. : 12.)), 1., 1e-14);
+      EXPECT_NEAR(published[c] * w / (500. / (interface[c].normal[2] > 0. ? 9. : 12.)), 1., 1e-14);
     }
   for (int side = 0; side < 2; ++side)
     {

@@ -196,7 +196,7 @@ TEST_P(Contact, DampingTracesTheCoefficients)
 {
   // trace C_b = Σ c_b ‖P_bᵀ row‖² = 2 Σ c_b
   const Scene s   = scene(GetParam());
-  const auto  c_b = radial_dissipation(s.interface, equal_load_shares(s.interface, s.operation.load_per_side), s.operation);
+  const auto  c_b = radial_dissipation(s.interface, equal_load_shares(s.model, s.interface, s.operation), s.operation);
   double      sum = 0.;
   for (const double c : c_b)
     sum += 2. * c;

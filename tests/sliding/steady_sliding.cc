@@ -1,6 +1,7 @@
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/contact/travel.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
@@ -93,7 +94,7 @@ namespace
   {
     double sum = 0.;
     for (std::size_t c = 0; c < s.interface.size(); ++c)
-      if (s.interface[c].side() == side)
+      if (s.interface[c].normal[2] * side > 0.)
         sum -= state.reactions[c];
     return sum;
   }
@@ -127,7 +128,7 @@ TEST(SteadySliding, CompressionOfColumnsBetweenPlates)
   const SlidingState state = steady_sliding(sliding, operation, SlidingScene::steady());
   double             area  = 0.;
   for (const ContactNode &node : s.interface)
-    area += node.side() > 0 ? node.area : 0.;
+    area += node.normal[2] > 0. ? node.area : 0.;
   const double expected = 1000. * layers(1, 2).pin_height / (materials.pin.young_modulus * area);
   EXPECT_NEAR(state.approach[1], expected, 1e-6 * expected);
 }
@@ -303,6 +304,54 @@ TEST(SteadySliding, ConesAndQuadraticElements)
         const SlidingScene s(cone(slope), {{"disc_bore", 1e9, 7.80e10, 1.88e10}}, element);
         check(s, s.solve());
       }
+}
+
+TEST(SteadySliding, ShoesOutsideAndInsideOfARing)
+{
+  const SlidingScene s(turned_to_rims(four_pins()));
+  const auto        &names = s.model.component_names();
+  const auto         e     = travels(s.model, s.interface);
+  const auto         force = [&](const SlidingState &state, const unsigned int pin) {
+    double sum = 0.;
+    for (std::size_t c = 0; c < s.interface.size(); ++c)
+      if (s.interface[c].pin == pin)
+        sum += state.reactions[c] * e[pin].force(s.interface[c], s.operation.friction_coefficient);
+    return sum;
+  };
+
+  SlidingParameters sliding = SlidingScene::steady();
+  for (const double gap : {0., 1e-6})
+    {
+      // A gap is taken up by the travel
+      sliding.gaps             = {{names[2], gap}};
+      const SlidingState state = s.solve(sliding), touching = s.solve();
+      check(s, state);
+      for (const unsigned int pin : {1, 2, 3, 4})
+        {
+          EXPECT_NEAR(force(state, pin), 1000., 1e-7);
+          EXPECT_NEAR(state.approach[pin] - touching.approach[pin], pin == 2 ? gap : 0., 1e-15);
+        }
+    }
+  const SlidingState loaded = s.solve();
+  for (const PinContact &pin : s.pins(loaded))
+    {
+      EXPECT_EQ(pin.side, 0);
+      EXPECT_NEAR(pin.sliding_speed / s.operation.rotation_speed, pin.pin < names[3] ? 0.25 - 0.01 : 0.25 + 0.01, 0.05);
+    }
+
+  sliding.gaps               = {};
+  sliding.control            = BackplateControl::load_per_pin;
+  sliding.pin_loads          = {{names[1], 300.}};
+  const SlidingState by_load = s.solve(sliding);
+  check(s, by_load);
+  for (const unsigned int pin : {1, 2, 3, 4})
+    EXPECT_NEAR(force(by_load, pin), pin == 1 ? 300. : 1000., 1e-7);
+
+  // Moved as far as the load moved the first, that one carries the load
+  sliding              = SlidingScene::steady();
+  sliding.control      = BackplateControl::displacement;
+  sliding.displacement = 3e-6;
+  check(s, s.solve(sliding));
 }
 
 TEST(SteadySliding, FloatingDisc)

@@ -26,12 +26,6 @@ namespace Squeal
     {
       return std::hypot(position[0], position[1]);
     }
-
-    /// Side of the disc: +1 where the normal points along +z, -1 elsewhere.
-    int side() const
-    {
-      return normal[2] > 0. ? 1 : -1;
-    }
   };
 
   /// The contact nodes, the same on every process.
@@ -46,9 +40,6 @@ namespace Squeal
    * node would belong to two pairs, or if a contact node is clamped.
    */
   ContactInterface pair_contact_nodes(const Model &model, Rotation rotation, double tolerance);
-
-  /// R_n0 [N] ≤ 0 if every node of a side carries the same share of @p load_per_side [N].
-  std::vector<double> equal_load_shares(const ContactInterface &interface, double load_per_side);
 
   /**
    * Viscous contact damping of each node [N s/m] in a state with reactions R_n0:

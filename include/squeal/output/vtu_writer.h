@@ -16,12 +16,12 @@ namespace Squeal
   /// A state of contact as the field writer needs it; one value for each pair of contact nodes.
   struct ContactField
   {
-    std::vector<double> displacement;    ///< on the free dofs [m], rows of this process, with the travel of the backplates
-    std::vector<double> approach;        ///< travel of the backplate of each component towards the disc [m]
-    std::vector<double> reactions;       ///< R_n0 [N]
-    std::vector<double> gaps;            ///< [m]
-    std::vector<double> radial_damping;  ///< c_b [N s/m]
-    std::vector<double> sliding_damping; ///< c_t [N s/m]
+    std::vector<double>          displacement;    ///< on the free dofs [m], rows of this process, with that of the backplates
+    std::vector<Eigen::Vector3d> backplates;      ///< displacement of the backplate of each component [m]
+    std::vector<double>          reactions;       ///< R_n0 [N]
+    std::vector<double>          gaps;            ///< [m]
+    std::vector<double>          radial_damping;  ///< c_b [N s/m]
+    std::vector<double>          sliding_damping; ///< c_t [N s/m]
   };
 
   /**

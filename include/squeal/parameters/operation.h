@@ -45,6 +45,9 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
+    /// Whether the contact damps or excites by the speed of sliding.
+    bool has_contact_damping() const;
+
     /// ±Ω, positive about e_z [rad/s].
     double angular_velocity() const;
   };

@@ -19,7 +19,7 @@ namespace Squeal
   inline constexpr EnumName<ContactState> enum_table<ContactState>[] = {{ContactState::equal_load, "equal load"},
                                                                         {ContactState::steady_sliding, "steady sliding"}};
 
-  /// What is prescribed at the rigid backplates, which move along the disc's axis.
+  /// What is prescribed at the rigid backplates, which move along their travel (contact/travel.h).
   enum class BackplateControl
   {
     load_per_side, ///< one backplate for each side, pressed with a given force
@@ -34,11 +34,12 @@ namespace Squeal
 
   /**
    * Gap between the face of an unloaded pin and the disc, measured along the
-   * disc's axis before the backplates move:
+   * travel of its backplate before it moves:
    *
    *   gap + sliding taper · s_t + radial taper · s_r
    *
-   * with the distances s_t along t and s_r outwards from the centre of the face.
+   * with the distances s_t along t and s_r outwards from the centre of the face;
+   * s_r is along the axis where the travel is not.
    */
   struct PinGap
   {

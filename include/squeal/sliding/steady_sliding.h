@@ -69,15 +69,16 @@ namespace Squeal
    *   g = P_n u + a d − gap
    *
    * u is the elastic displacement relative to the backplates, rigid and guided
-   * along the disc's axis, which have moved towards the disc by d; a = |n_z|;
-   * the gaps of @p parameters are taken along the axis. Each load is the axial
-   * force on its backplate, −Σ (±n_z) r_n − Σ (±t_z) r_t. Friction acts along
-   * t at every closed node; a drive holds the disc against its moment.
+   * along their travel e (contact/travel.h), which have moved towards the disc
+   * by d; a = −e·n; the gaps of @p parameters are taken along e. Each load is
+   * the force on its backplate along e, Σ e·n r_n + Σ e·t r_t. Friction acts
+   * along t at every closed node; a drive holds the disc against its moment.
    *
    * Solved on the contact nodes with the normal and tangential attachment
    * modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.
    *
-   * Throws ParameterError before any solve if a pin is unknown, a gap is larger
+   * Throws MeshError before any solve if a body has no direction of travel;
+   * ParameterError if a pin is unknown, a gap is larger
    * than the pin is high or than the displacement can close; SolverError if no
    * state was found, or the disc is free to slide in its plane.
    */
@@ -91,11 +92,11 @@ namespace Squeal
    *
    * where reactions balance the free motions R of the disc, Rᵀ (f' + P_nᵀ r' + μ P_tᵀ r') = 0, and no load changes. Attachment modes
    * of the reactions are those of the displacements, P_n K⁻¹ f' = (K⁻¹ P_nᵀ)ᵀ f': nothing is solved for at full order. Normals and the
-   * axial component of t do not change.
+   * component of t along the travel do not change.
    *
    * @param state       the state at these parameters
    * @param force_rates f' = −K' u + μ (P_t')ᵀ r and what else loads the bodies where it stands, n × k [N per unit]
-   * @param gap_rates   change of axial_gaps(), n_c × k [m per unit]
+   * @param gap_rates   change of initial_gaps(), n_c × k [m per unit]
    */
   DenseMatrix reaction_rates(const SlidingModel        &sliding,
                              const OperationParameters &operation,
@@ -104,10 +105,11 @@ namespace Squeal
                              const MultiVector         &force_rates,
                              const DenseMatrix         &gap_rates);
 
-  /// Gap of each node along the axis before the backplates move [m].
-  Eigen::VectorXd axial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters);
+  /// Gap of each node along its travel before the backplates move [m].
+  Eigen::VectorXd initial_gaps(const Model &model, const ContactInterface &interface, const SlidingParameters &parameters);
 
-  /// Refuses parameters of the section `Steady sliding` that do not fit the pins; throws ParameterError.
+  /// Refuses parameters of the section `Steady sliding` that do not fit the pins, with a ParameterError, and bodies without a direction of
+  /// travel, with a MeshError.
   void check_sliding(const Model               &model,
                      const ContactInterface    &interface,
                      const OperationParameters &operation,
@@ -117,11 +119,11 @@ namespace Squeal
   struct PinContact
   {
     std::string  pin;
-    int          side; ///< ±1
+    int          side; ///< ±1: above or below the disc; 0: travels along the normal of its own face
     unsigned int n_nodes, n_open;
     double       load;             ///< −Σ r_n [N]
     double       sliding_offset;   ///< centre of pressure from the centre of the face along t [m]
-    double       radial_offset;    ///< outwards [m]
+    double       radial_offset;    ///< outwards, or along the axis where side = 0 [m]
     double       largest_pressure; ///< largest −r_n / area of the node [Pa]
     double       sliding_speed;    ///< w_0 at the centre of pressure [m/s]
     double       radial_damping;   ///< Σ c_b [N s/m]

@@ -36,8 +36,9 @@ namespace Squeal
     ContactDamping            damping; ///< of all pairs; zeros at open ones
   };
 
-  /// That of @p sliding; where there is none, equal shares of the load on all nodes.
-  StateOfContact state_of_contact(const ContactInterface            &interface,
+  /// That of @p sliding; where there is none, equal shares of the load on all nodes, which only contact damping needs.
+  StateOfContact state_of_contact(const Model                       &model,
+                                  const ContactInterface            &interface,
                                   const std::optional<SlidingState> &sliding,
                                   const OperationParameters         &operation);
 

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <squeal/contact/contact_interface.h>
+#include <squeal/model/model.h>
+
+#include <vector>
+
+namespace Squeal
+{
+  /// How the backplate of a pin moves towards the disc: the direction in which a load presses.
+  struct Travel
+  {
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero(); ///< e, a unit vector; zero for a component without contact nodes, such as the disc
+    int             side      = 0; ///< ±1: along the axis, from above or below the disc; 0: along the normal of the body's own face
+
+    /// a = −e·n: normal gap that a unit of travel closes at a node [-].
+    double closing(const ContactNode &node) const
+    {
+      return -direction.dot(node.normal);
+    }
+
+    /// e·(n + μ t): force along e on the backplate for a unit reaction at a node with friction [-]; negative, since reactions are.
+    double force(const ContactNode &node, const double mu) const
+    {
+      return direction.dot(node.normal + mu * node.sliding);
+    }
+  };
+
+  /**
+   * Travel of each component: e = −N/|N|, N = Σ area n over its contact nodes. Within 45 degrees of the disc's axis, backplates are guided
+   * along the axis.
+   *
+   * Throws MeshError if a body has no direction of travel: contact nodes of it look across the direction or away from it, such as
+   * those of a body that rubs both faces of the disc.
+   */
+  std::vector<Travel> travels(const Model &model, const ContactInterface &interface);
+
+  /// Whether every body has a direction of travel.
+  bool have_travels(const Model &model, const ContactInterface &interface);
+
+  /// Backplate of each component, numbered from 0; −1: none. Pins that travel along the axis share that of their side unless each has its own.
+  std::vector<int> backplate_numbers(const std::vector<Travel> &travels, bool one_for_each_pin);
+
+  /// Displacement of the backplate of each component [m] after an approach to the disc [m].
+  std::vector<Eigen::Vector3d> backplate_displacements(const std::vector<Travel> &travels, const std::vector<double> &approach);
+
+  /**
+   * R_n0 [N] ≤ 0 if all nodes of a backplate have the same reaction, and the force along its travel, contact friction included, is
+   * the load per side: Σ e·(n + μ t) R_n0 = load.
+   *
+   * Throws MeshError as travels() does, ParameterError if friction alone carries the load.
+   */
+  std::vector<double> equal_load_shares(const Model &model, const ContactInterface &interface, const OperationParameters &operation);
+} // namespace Squeal

@@ -1,0 +1,148 @@
+#include "scenes.h"
+
+#include <squeal/base/exceptions.h>
+#include <squeal/contact/travel.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+using namespace Squeal;
+using namespace Squeal::Testing;
+
+namespace
+{
+  /// Two pins above, one below, of different sizes.
+  HexMesh flat_mesh()
+  {
+    return extrude(
+      polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::top, -3, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 2}}),
+      layers(1, 2));
+  }
+
+  /// The disc with faces as cones of a slope, and wavy around the axis.
+  HexMesh inclined_mesh(const double slope)
+  {
+    return mapped(flat_mesh(), [slope](const Point3 &p) {
+      return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.2 * slope * p[1]}};
+    });
+  }
+
+  struct Pressed
+  {
+    explicit Pressed(const HexMesh &mesh, const double friction = 0.4, const Rotation rotation = Rotation::positive)
+      : model(mesh, Element::trilinear, MPI_COMM_WORLD)
+      , interface(pair_contact_nodes(model, rotation, 1e-6))
+    {
+      operation.friction_coefficient = friction;
+      operation.load_per_side        = 500.;
+    }
+
+    /// Force along a direction that the reactions of a body leave to its backplate [N].
+    double force(const unsigned int pin, const Eigen::Vector3d &e, const std::vector<double> &reactions) const
+    {
+      double sum = 0.;
+      for (std::size_t c = 0; c < interface.size(); ++c)
+        if (interface[c].pin == pin)
+          sum += reactions[c] * e.dot(interface[c].normal + operation.friction_coefficient * interface[c].sliding);
+      return sum;
+    }
+
+    Model               model;
+    ContactInterface    interface;
+    OperationParameters operation;
+  };
+
+  std::string refusal(const Pressed &s)
+  {
+    try
+      {
+        equal_load_shares(s.model, s.interface, s.operation);
+      }
+    catch (const Error &error)
+      {
+        return error.what();
+      }
+    return "";
+  }
+} // namespace
+
+TEST(Travel, LevelAndConicalFacesArePressedAlongTheAxis)
+{
+  for (const double slope : {0., 0.5})
+    for (const double mu : {0., 0.4})
+      {
+        const Pressed s(inclined_mesh(slope), mu);
+        const auto    e = travels(s.model, s.interface);
+        const auto    r = equal_load_shares(s.model, s.interface, s.operation);
+        EXPECT_EQ(e[0].direction, Eigen::Vector3d(0., 0., 0.));
+        for (const unsigned int pin : {1, 2, 3})
+          {
+            EXPECT_EQ(e[pin].side, pin < 3 ? 1 : -1);
+            EXPECT_EQ(e[pin].direction, Eigen::Vector3d(0., 0., pin < 3 ? -1. : 1.));
+          }
+        EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 0, 1}));
+        EXPECT_EQ(backplate_numbers(e, true), (std::vector<int>{-1, 0, 1, 2}));
+
+        // The axial force on the backplate of each side is the load, and the nodes of a side have equal reactions
+        EXPECT_NEAR(s.force(1, e[1].direction, r) + s.force(2, e[2].direction, r), 500., 1e-10);
+        EXPECT_NEAR(s.force(3, e[3].direction, r), 500., 1e-10);
+        for (std::size_t c = 0; c < r.size(); ++c)
+          for (std::size_t d = 0; d < r.size(); ++d)
+            if (e[s.interface[c].pin].side == e[s.interface[d].pin].side)
+              EXPECT_EQ(r[c], r[d]);
+      }
+}
+
+TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
+{
+  for (const Rotation rotation : {Rotation::positive, Rotation::negative})
+    {
+      const Pressed s(turned_to_rims(flat_mesh()), 0.4, rotation);
+      const auto    e = travels(s.model, s.interface);
+      const auto    r = equal_load_shares(s.model, s.interface, s.operation);
+      EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 1, 2}));
+      for (const unsigned int pin : {1, 2, 3})
+        {
+          // Towards the ring from the middle of the shoe: inwards from outside, outwards from inside
+          Eigen::Vector3d middle(0., 0., 0.);
+          for (const ContactNode &node : s.interface)
+            if (node.pin == pin)
+              middle += node.area * Eigen::Vector3d(node.position[0], node.position[1], 0.);
+          EXPECT_EQ(e[pin].side, 0);
+          EXPECT_NEAR(e[pin].direction.dot(middle.normalized()), pin < 3 ? -1. : 1., 1e-12);
+          EXPECT_NEAR(s.force(pin, e[pin].direction, r), 500., 1e-10);
+        }
+    }
+}
+
+TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
+{
+  // The upper pins and the lower one as one body: faces of unequal areas, and of equal ones
+  for (const bool is_equal : {false, true})
+    {
+      HexMesh mesh =
+        is_equal ? extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 1}}), layers(1, 2)) :
+                   flat_mesh();
+      for (auto &hexahedron : mesh.hexahedra)
+        hexahedron.volume = std::min(hexahedron.volume, 1u);
+      mesh.volume_names = {mesh.volume_names[0], "pin_caliper"};
+      const Pressed s(mesh);
+      EXPECT_FALSE(have_travels(s.model, s.interface));
+      const std::string message = refusal(s);
+      EXPECT_NE(message.find("pin_caliper"), std::string::npos) << message;
+      EXPECT_NE(message.find("of its " + std::to_string(s.interface.size()) + " contact nodes"), std::string::npos) << message;
+    }
+  EXPECT_TRUE(have_travels(Pressed(flat_mesh()).model, Pressed(flat_mesh()).interface));
+}
+
+TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
+{
+  // Faces that rise along the sliding direction: with enough friction they hold the pin without any load
+  const HexMesh mesh = mapped(flat_mesh(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
+  const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
+  EXPECT_EQ(refusal(weak), "");
+  for (const Pressed *s : {&strong, &reversed}) // one side or the other
+    EXPECT_NE(refusal(*s).find("Operation/Friction coefficient"), std::string::npos) << refusal(*s);
+}
