@@ -22,6 +22,8 @@ class SlidingContact:
             rows = list(csv.DictReader(file))
         self.pins = [row["pin"] for row in rows]
         self.sides = np.array([float(row["n_z"]) for row in rows])
+        self.normals = np.array([[float(row[f"n_{axis}"]) for axis in "xyz"] for row in rows])
+        self.friction_coefficient = friction_coefficient
         self.areas = np.array([float(row["area [m^2]"]) for row in rows])
         self.positions = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in rows])
         self.sliding = np.array([[float(row[f"t_{axis}"]) for axis in "xyz"] for row in rows])
@@ -48,6 +50,24 @@ class SlidingContact:
         matrix = np.block([[self.flexibility / unit, -B], [B.T, np.zeros((len(loads), len(loads)))]])
         solution = lemke(matrix, np.concatenate([(gaps - START) / unit, -np.array(loads)]))
         return solution[:n], unit * solution[n:] + START
+
+    def pressed_along_normals(self, load):
+        """Normal load [N] and way [m] of each body if all nodes are closed and it is pressed along the mean of its own normals."""
+        names = list(dict.fromkeys(self.pins))
+        n, k = len(self.pins), len(names)
+        closing, balance = np.zeros((n, k)), np.zeros((k, n))
+        for j, name in enumerate(names):
+            nodes = [c for c, pin in enumerate(self.pins) if pin == name]
+            mean = self.areas[nodes] @ self.normals[nodes]
+            travel = -mean / np.linalg.norm(mean)
+            closing[nodes, j] = -self.normals[nodes] @ travel
+            balance[j, nodes] = (self.normals[nodes] + self.friction_coefficient * self.sliding[nodes]) @ travel
+        # g = G r + B z = 0 at every node, L r = load of every body
+        unit = np.mean(np.diag(self.flexibility))
+        matrix = np.block([[self.flexibility / unit, closing], [balance, np.zeros((k, k))]])
+        solution = np.linalg.solve(matrix, np.concatenate([np.zeros(n), np.full(k, load)]))
+        sums = [-sum(r for r, pin in zip(solution, self.pins) if pin == name) for name in names]
+        return sums, unit * solution[n:]
 
 
 def lemke(matrix, vector):

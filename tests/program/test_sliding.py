@@ -9,6 +9,7 @@ import subprocess
 import sys
 import unittest
 
+from hex_mesh import PARAMETERS, HexMesh, angles
 from program import SOURCE, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
 from vtu_file import VtuFile
 
@@ -493,3 +494,63 @@ class DissipationStudy(SlidingTest):
         alone = self.run_scene("alone", STEADY, CONSISTENT, gaps)
         rates = [float(row["divergence rate [%]"]) for row in read_table(alone / "complex_modes.csv") if row["label"] == "T1"]
         self.assertAlmostEqual(float(most_damped["steady sliding consistent [%]"]), min(rates), delta=1e-8)
+
+
+class Shoes(SlidingTest):
+    """Bodies that press on the rim of a ring: their contact normals are radial."""
+
+    @classmethod
+    def write_shoes(cls, name, *parts, n_parts=24):
+        """A ring, and shoes from one part of the circle to another, as NAME.msh and NAME.prm."""
+        mesh, levels = HexMesh(), [-0.02, 0, 0.02]
+        disc = mesh.block("disc", [0.15, 0.2, 0.25, 0.3], angles(n_parts), levels, is_ring=True)
+        mesh.name(disc["-a"].values(), "disc_bore")
+        for number, (first, last) in enumerate(parts, 1):
+            shoe = mesh.block(f"pin_shoe_{number}", [0.3, 0.315, 0.33], angles(n_parts, first, last), levels,
+                              is_ring=last - first == n_parts)
+            mesh.name([nodes for (_, part, _), nodes in disc["+a"].items() if first <= part < last], "disc_contact")
+            mesh.name(shoe["-a"].values(), "pin_contact")
+            mesh.name(shoe["+a"].values(), "pin_clamp")
+        mesh.write_2(cls.folder / f"{name}.msh")
+        (cls.folder / f"{name}.prm").write_text(PARAMETERS.format(file=f"{name}.msh", mount="disc_bore"), encoding="utf-8")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.write_shoes("shoes", (0, 4), (12, 14))
+        cls.write_shoes("band", (0, 24))
+
+    def test_every_shoe_bears_the_load(self):
+        results = self.run_scene("loaded", STEADY, "Output/Write matrices=true", file="shoes.prm")
+        self.assert_certified(results, has_load=False)
+        self.assertEqual([pin["open nodes [-]"] for pin in pins(results).values()], [0, 0])
+        if not importlib.util.find_spec("scipy"):
+            self.skipTest("needs SciPy")
+        from lemke import SlidingContact
+
+        normal_loads, ways = SlidingContact(results, FRICTION).pressed_along_normals(LOAD)
+        self.assert_close(loads(results), normal_loads, 1e-9)
+        self.assert_close([pin["travel of backplate [m]"] for pin in pins(results).values()], ways, 1e-9)
+
+    def test_single_loads_gaps_and_displacements(self):
+        single = self.run_scene("single", STEADY, "Steady sliding/Control=load per pin", "Steady sliding/Loads=pin_shoe_2: 400",
+                                file="shoes.prm")
+        alike = self.run_scene("alike", STEADY, "Operation/Load per side=400", file="shoes.prm")
+        self.assert_certified(single, has_load=False)
+        # The disc is stiff: what a shoe does depends on its own load
+        self.assertAlmostEqual(loads(single)[1] / loads(alike)[1], 1, delta=1e-2)
+        self.assertAlmostEqual(loads(single)[0] / loads(alike)[0], LOAD / 400, delta=1e-2)
+        short = self.run_scene("short", STEADY, "Steady sliding/Gaps=pin_shoe_1: 1e-5", file="shoes.prm")
+        ways = [pin["travel of backplate [m]"] for pin in pins(self.run_scene("touching", STEADY, file="shoes.prm")).values()]
+        self.assert_close([pin["travel of backplate [m]"] for pin in pins(short).values()], [ways[0] + 1e-5, ways[1]], 1e-9)
+        moved = self.run_scene("moved", STEADY, "Steady sliding/Control=displacement", "Steady sliding/Displacement=2e-6", file="shoes.prm")
+        self.assert_certified(moved, has_load=False)
+
+    def test_a_band_around_the_rim_has_no_travel(self):
+        for setting in (STEADY, CONSISTENT, "Operation/Friction slope=-0.01"):
+            process = self.call("band.prm", "--dry-run", "--set", setting)
+            self.assertEqual(process.returncode, 1, process.stdout)
+            self.assertIn("pin_shoe_1", process.stderr)
+            self.assertIn("Steady sliding/Contact state = equal load", process.stderr)
+        results = self.run_scene("band", file="band.prm")
+        self.assertTrue(all(math.isfinite(number) for number in numbers(results / "complex_modes.csv")))
