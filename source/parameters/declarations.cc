@@ -1,8 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/declarations.h>
-
-#include <deal.II/base/utilities.h>
+#include <squeal/parameters/number_list.h>
 
 #include <boost/algorithm/string/join.hpp>
 
@@ -29,7 +28,8 @@ namespace Squeal
     [[noreturn]] void refuse(const std::string &path, const std::string &demand, const std::string &value, const std::string &accepted)
     {
       const std::string given = value.empty() ? "but is empty" : "not " + (parse_number(value) ? legible(value) : in_quotes(value));
-      throw ParameterError(path + " must " + demand + ", " + given, "", "give " + accepted + "; squeal --print-parameters says what it is");
+      throw ParameterError(path + " must " + demand + ", " + given, "",
+                           "give " + accepted + decimal_point_hint(value) + "; squeal --print-parameters says what it is");
     }
 
     /// A number of a certain kind, and what messages call it.
@@ -114,7 +114,7 @@ namespace Squeal
     const std::string path = section + name, accepted = kind.accepted("numbers") + ", separated by commas";
     declared.push_back({path, documentation, accepted, [&values] { return exact_text(values); },
                         [&values, kind, path, accepted, most_numbers](const std::string &text) {
-                          const auto parts = dealii::Utilities::split_string_list(text, ',');
+                          const auto parts = split_numbers(text, path, "");
                           if (parts.size() > most_numbers)
                             throw ParameterError(path + " has " + std::to_string(parts.size()) + " values, but takes at most " +
                                                    std::to_string(most_numbers),

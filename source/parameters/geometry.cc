@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/number_list.h>
 #include <squeal/parameters/pin_face.h>
 
 #include <algorithm>
@@ -100,7 +101,7 @@ namespace Squeal
           variable.value = parse_number(text);
           if (!variable.value && !text.empty())
             refuse("Geometry/" + name + " is " + in_quotes(text) + ", which is not a finite number", name,
-                   "give a number, or leave it empty for the value in the geometry");
+                   "give a number, or leave it empty for the value in the geometry" + decimal_point_hint(text));
         });
     }
 

@@ -8,7 +8,6 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <cmath>
-#include <set>
 
 namespace Squeal
 {
@@ -94,9 +93,9 @@ namespace Squeal
     if (coupled_frequencies.empty())
       throw ParameterError("no frequency up to which real coupled modes make bases", "parameter Reduction/Coupled frequency",
                            "give at least one; 0 means the end of the band");
-    if (std::set<double>(coupled_frequencies.begin(), coupled_frequencies.end()).size() < coupled_frequencies.size())
-      throw ParameterError("a frequency is given twice: " + exact_text(coupled_frequencies), "parameter Reduction/Coupled frequency",
-                           "give each once");
+    check_distinct(coupled_frequencies, "Reduction/Coupled frequency");
+    check_distinct(grown_tolerances, "Reduction/Grown tolerances");
+    check_distinct(snapshots, "Reduction/Snapshots");
     for (const double tolerance : grown_tolerances)
       if (!(tolerance >= 1e-11 && tolerance <= 1e-1))
         throw ParameterError("the tolerance " + exact_text(tolerance) + " is out of reach or no accuracy at all",

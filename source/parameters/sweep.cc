@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
+#include <squeal/parameters/number_list.h>
 #include <squeal/parameters/sweep.h>
 
 #include <cmath>
@@ -32,9 +33,9 @@ namespace Squeal
     {
       for (const double value : values)
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
-          throw ParameterError("the friction coefficient " + exact_text(value) + " is outside of the sweep",
-                               std::string("parameter Sweep/") + name,
-                               "give values between Sweep/First friction coefficient and Sweep/Last friction coefficient");
+          throw ParameterError(
+            "the friction coefficient " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
+            "give values between Sweep/First friction coefficient and Sweep/Last friction coefficient, with decimal points");
     }
   } // namespace
 
@@ -95,6 +96,9 @@ namespace Squeal
   {
     check_range(friction_coefficients, "friction coefficients",
                 "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients");
+    check_distinct(mode_shapes, "Sweep/Mode shapes at");
+    check_distinct(planes, "Sweep/Complex plane at");
+    check_distinct(counts, "Sweep/Count modes at");
     check_inside(mode_shapes, friction_coefficients, "Mode shapes at");
     check_inside(planes, friction_coefficients, "Complex plane at");
     check_inside(counts, friction_coefficients, "Count modes at");

@@ -11,6 +11,21 @@
 
 namespace Squeal
 {
+  /**
+   * Numbers of a list that are separated by commas, as texts. Throws ParameterError where some commas look like decimal ones, as in
+   * "0,3, 0,4", "0,4, 1" and "0,05"; uniform lists such as "0,30" and "1,2,3" are what they are.
+   *
+   * @param what  the list, for a message: "Sweep/Count modes at"
+   * @param where parameter or line
+   */
+  std::vector<std::string> split_numbers(const std::string &list, const std::string &what, const std::string &where);
+
+  /// For the remedy of a refused text: "; write a decimal point: 0.4" where a number in it seems to have a decimal comma, else nothing.
+  std::string decimal_point_hint(const std::string &text);
+
+  /// Throws ParameterError where a number is given twice to a @p parameter, "Section/Name", that needs each once.
+  void check_distinct(const std::vector<double> &numbers, const char *parameter);
+
   /// How a list of entries such as "disc_bore: 0, 7.8e10, 1.88e10; disc_rim: ..." is written.
   struct ListFormat
   {
@@ -21,8 +36,8 @@ namespace Squeal
     std::set<std::size_t> n_numbers; ///< how many an entry may have
     char                  separator = ';', between_numbers = ',';
 
-    /// Throws ParameterError with this format as the remedy.
-    [[noreturn]] void refuse(const std::string &what) const;
+    /// Throws ParameterError with this format as the remedy; @p list: as written, where a decimal comma may be the reason.
+    [[noreturn]] void refuse(const std::string &what, const std::string &list = "") const;
   };
 
   struct ListEntry
