@@ -17,8 +17,10 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -85,6 +87,15 @@ Decides whether a disc rubbed by friction pins squeals.
     run_study(run);
   }
 
+  /// Whether a library or this program could not start a thread.
+  bool is_limit_of_threads(const std::exception &error)
+  {
+    const auto *system = dynamic_cast<const std::system_error *>(&error);
+    // TBB throws the text alone
+    return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
+           std::string(error.what()).find(std::strerror(EAGAIN)) != std::string::npos;
+  }
+
   /// The message of a failed run; rethrows what is being handled.
   std::string failure_message()
   {
@@ -110,6 +121,10 @@ Decides whether a disc rubbed by friction pins squeals.
       }
     catch (const std::exception &error)
       {
+        if (is_limit_of_threads(error))
+          return std::string("a thread cannot be started: ") + std::strerror(EAGAIN) +
+                 "\n  where:  this machine, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
+                 "  change: take fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
         return std::string(error.what()) + "\n  where:  a library" + defect;
       }
     catch (const int code)
@@ -139,52 +154,59 @@ Decides whether a disc rubbed by friction pins squeals.
 } // namespace
 
 int main(int argc, char **argv)
-{
-  Squeal::return_freed_blocks();
-  Squeal::ignore_again(); // before the program starts itself again, perhaps
-  Squeal::use_native_blas_kernels(argv);
-  Squeal::prepare_mpi_environment();
-  // A limit on the size of files is an error of the write that meets it.
-  std::signal(SIGXFSZ, SIG_IGN);
-  Squeal::Interruption interruption;
+try
+  {
+    Squeal::return_freed_blocks();
+    Squeal::ignore_again(); // before the program starts itself again, perhaps
+    Squeal::use_native_blas_kernels(argv);
+    Squeal::prepare_mpi_environment();
+    // A limit on the size of files is an error of the write that meets it.
+    std::signal(SIGXFSZ, SIG_IGN);
+    Squeal::Interruption interruption;
 
-  // Without a current folder, libraries abort when they start.
-  std::error_code                              no_folder;
-  [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
-  if (no_folder)
-    {
-      print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(), "current folder",
-                                    "change to a folder that exists")
-                    .what());
-      return 1;
-    }
+    // Without a current folder, libraries abort when they start.
+    std::error_code                              no_folder;
+    [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
+    if (no_folder)
+      {
+        print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(),
+                                      "current folder", "change to a folder that exists")
+                      .what());
+        return 1;
+      }
 
-  // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
-  char   without_handler[]   = "-no_signal_handler";
-  char  *library_arguments[] = {argv[0], without_handler, nullptr};
-  char **library_argv        = library_arguments;
-  int    library_argc        = 2;
-  // deal.II must not start threads of its own beside the processes.
-  dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
-  const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-  if (!is_root)
-    interruption.be_silent();
-  std::ostream  silence(nullptr);
-  std::ostream &screen = is_root ? std::cout : silence;
-  // mpirun shows every process a terminal, whether there is one behind it or not.
-  const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
-  Squeal::Progress progress(screen, live && is_root);
+    // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
+    char   without_handler[]   = "-no_signal_handler";
+    char  *library_arguments[] = {argv[0], without_handler, nullptr};
+    char **library_argv        = library_arguments;
+    int    library_argc        = 2;
+    // deal.II must not start threads of its own beside the processes.
+    dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
+    const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+    if (!is_root)
+      interruption.be_silent();
+    std::ostream  silence(nullptr);
+    std::ostream &screen = is_root ? std::cout : silence;
+    // mpirun shows every process a terminal, whether there is one behind it or not.
+    const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+    Squeal::Progress progress(screen, live && is_root);
 
-  const std::string command = Squeal::shell_command({argv, argv + argc});
-  try
-    {
-      run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress, interruption);
-      if (is_root && !screen.flush())
-        throw Squeal::FileError("not everything could be printed", "standard output", "check where it is redirected to, and free space");
-      return 0;
-    }
-  catch (...)
-    {
-      return report(failure_message(), is_root);
-    }
-}
+    const std::string command = Squeal::shell_command({argv, argv + argc});
+    try
+      {
+        run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress, interruption);
+        if (is_root && !screen.flush())
+          throw Squeal::FileError("not everything could be printed", "standard output", "check where it is redirected to, and free space");
+        return 0;
+      }
+    catch (...)
+      {
+        return report(failure_message(), is_root);
+      }
+  }
+catch (...)
+  {
+    // Of what is started before the run, the thread that waits for signals or a pipe
+    print_error(failure_message());
+    return 1;
+  }

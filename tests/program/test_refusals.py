@@ -2,12 +2,14 @@
 
 import os
 import pathlib
+import resource
 import shutil
+import subprocess
 import time
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from mesh_file import MeshFile
-from program import ProgramTest, contents
+from program import EXECUTABLE, ProgramTest, contents
 
 
 class Refusals(ProgramTest):
@@ -76,6 +78,18 @@ class Refusals(ProgramTest):
     def test_override(self):
         self.scene_refused(["no `=`"], "Operation/Friction coefficient")
         self.scene_refused(["must be a number in 0 ... 10, not `abc`"], "Operation/Friction coefficient=abc")
+
+    def test_limit_of_threads(self):
+        """With a stack larger than the address space no thread can be started."""
+        stack, (_, most) = 1 << 47, resource.getrlimit(resource.RLIMIT_STACK)
+        if most != resource.RLIM_INFINITY:
+            self.skipTest("the size of stacks is limited")
+        process = subprocess.run([EXECUTABLE, "--version"], env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (stack, most)), timeout=60)
+        self.assertEqual(process.returncode, 1, process.stderr)
+        for word in ("error: ", "thread", "OMP_NUM_THREADS", "ulimit -u"):
+            self.assertIn(word, process.stderr)
+        self.assertNotIn("defect", process.stderr)
 
     # -------------------------------------------------------------- parameters
 
