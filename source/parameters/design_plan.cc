@@ -1,6 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/parameters/design_plan.h>
+#include <squeal/parameters/design_file.h>
+#include <squeal/parameters/number_list.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -8,15 +9,13 @@
 #include <boost/random/sobol.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <boost/random/uniform_int_distribution.hpp>
-#include <boost/tokenizer.hpp>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <iomanip>
+#include <map>
 #include <numeric>
 #include <sstream>
 
@@ -31,7 +30,7 @@ namespace Squeal
     constexpr std::size_t most_designs = 100000;
 
     constexpr const char *where_variables = "parameter Designs/Variables";
-    constexpr const char *how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
+    const std::string     how_to_write    = "write Section/Name = a, b, c; or Section/Name = a to b in n";
 
     /// A value that people can read: six digits tell designs apart.
     std::string rounded(const double value)
@@ -50,7 +49,7 @@ namespace Squeal
     {
       const auto value = parse_number(text);
       if (!value)
-        refuse(in_quotes(text) + " in " + in_quotes(entry) + " is not a finite number");
+        refuse(in_quotes(text) + " in " + in_quotes(entry) + " is not a finite number", how_to_write + decimal_point_hint(entry));
       return *value;
     }
 
@@ -82,6 +81,64 @@ namespace Squeal
         variable.levels.push_back(i + 1 < n ? variable.at(i / (n - 1.)) : exact_text(variable.last));
     }
 
+    /// "Section/Name[3]" divided into path and number; zero: none.
+    std::pair<std::string, unsigned int> split_index(const std::string &name, const std::string &where = where_variables)
+    {
+      const auto bracket = name.find('[');
+      if (bracket == std::string::npos)
+        return {name, 0};
+      const auto number = parse_number(name.substr(bracket + 1, name.size() - bracket - 2));
+      if (name.back() != ']' || !number || *number != std::floor(*number) || *number < 1. || *number > 1e6)
+        throw ParameterError(in_quotes(name) + " does not say which number varies", where, "write Section/Name[k] with k from one on");
+      return {trim(name.substr(0, bracket)), static_cast<unsigned int>(*number)};
+    }
+
+    std::vector<std::string> names_of(const std::vector<DesignVariable> &variables)
+    {
+      std::vector<std::string> names;
+      for (const DesignVariable &variable : variables)
+        names.push_back(variable.name);
+      return names;
+    }
+
+    /// Refuses names that set a number twice: A and A, A and A[1], A + B and B.
+    void refuse_repeated(const std::vector<std::string> &names, const std::string &where)
+    {
+      std::vector<std::pair<std::string, std::pair<std::string, unsigned int>>> known; // as written, and what it sets
+      for (const std::string &several : names)
+        for (const std::string &name : split_string_list(several, '+'))
+          {
+            const auto [path, k] = split_index(name, where);
+            for (const auto &[other, sets] : known)
+              if (sets.first == path && (sets.second == k || sets.second == 0 || k == 0))
+                throw ParameterError(in_quotes(path) + " varies twice: in " + in_quotes(other) +
+                                       (other == several ? "" : " and in " + in_quotes(several)),
+                                     where, "give each parameter once");
+            known.push_back({several, {path, k}});
+          }
+    }
+
+    /// A value by which equal ones are told: "1, 2" for "1.0,2".
+    std::string plain(const std::string &value)
+    {
+      std::string result;
+      for (const std::string &part : split_string_list(value, ','))
+        {
+          const auto number = parse_number(part);
+          result += (result.empty() ? "" : ", ") + (number ? exact_text(*number) : single_spaced(part));
+        }
+      return result;
+    }
+
+    void refuse_equal_levels(const DesignVariable &variable)
+    {
+      std::map<std::string, std::string> seen;
+      for (const std::string &level : variable.levels)
+        if (const auto [other, is_new] = seen.emplace(plain(level), level); !is_new)
+          refuse(in_quotes(variable.name) + " has equal values, " + in_quotes(other->second) + " and " + in_quotes(level),
+                 "give each value once; decimals have a point, not a comma");
+    }
+
     std::vector<DesignVariable> parse_variables(const std::string &text)
     {
       std::vector<DesignVariable> result;
@@ -91,26 +148,27 @@ namespace Squeal
             continue;
           const auto equals = entry.find('=');
           if (equals == std::string::npos)
-            refuse(in_quotes(entry) + " has no `=`");
+            refuse(in_quotes(entry) + " has no `=`", how_to_write + decimal_point_hint(text));
           DesignVariable    variable{single_spaced(entry.substr(0, equals)), {}};
           const std::string values = trim(entry.substr(equals + 1));
           if (variable.name.empty())
             refuse(in_quotes(entry) + " names no parameter");
-          if (std::any_of(result.begin(), result.end(), [&](const DesignVariable &other) { return other.name == variable.name; }))
-            refuse(in_quotes(variable.name) + " varies twice", "give each parameter once");
           if ((' ' + single_spaced(values)).find(" to ") != std::string::npos)
             parse_range(values, entry, variable);
           else
             {
-              variable.levels = split_string_list(values, values.find('|') != std::string::npos ? '|' : ',');
+              variable.levels = values.find('|') != std::string::npos ? split_string_list(values, '|') :
+                                                                        split_numbers(values, variable.name, where_variables);
               variable.levels.erase(std::remove(variable.levels.begin(), variable.levels.end(), ""), variable.levels.end());
               if (variable.levels.empty())
                 refuse(in_quotes(entry) + " has no values");
             }
+          refuse_equal_levels(variable);
           result.push_back(variable);
         }
       if (result.empty())
         refuse("no parameter varies");
+      refuse_repeated(names_of(result), where_variables);
       return result;
     }
 
@@ -180,77 +238,6 @@ namespace Squeal
       return sobol_points(n, dimension, designs.seed);
     }
 
-    std::vector<std::string> fields_of(const std::string &line, const std::string &where)
-    {
-      using Separator = boost::escaped_list_separator<char>;
-      std::vector<std::string> result;
-      try
-        {
-          for (const std::string &field : boost::tokenizer<Separator>(line, Separator('\0', ',', '"')))
-            result.push_back(trim(field));
-        }
-      catch (const std::exception &error)
-        {
-          throw ParameterError("the line is not comma-separated: " + std::string(error.what()), where, "quote values that contain commas");
-        }
-      return result;
-    }
-
-    /// A file with the names of the variables in its first line and a design in each of the others.
-    DesignPlan from_file(const Parameters &parameters)
-    {
-      namespace fs            = std::filesystem;
-      const std::string &name = parameters.designs.file;
-      if (name.empty())
-        throw ParameterError("no file of designs is named", "parameter Designs/File", "name a CSV file, or choose another Designs/Plan");
-      const fs::path beside = fs::path(parameters.geometry.directory) / name, file = fs::exists(beside) ? beside : fs::path(name);
-      std::ifstream  stream(file);
-      if (!stream)
-        throw FileError("the file of designs cannot be read", "file " + beside.string() + ", parameter Designs/File",
-                        "check its name and permissions");
-      DesignPlan  plan;
-      std::string line;
-      for (int number = 1; std::getline(stream, line); ++number)
-        {
-          if (number == 1 && line.rfind("\xEF\xBB\xBF", 0) == 0)
-            line = line.substr(3);
-          if (trim(line).empty())
-            continue;
-          const std::string where  = text("file ", file.string(), ", line ", number);
-          const auto        fields = fields_of(trim(line), where);
-          if (plan.names.empty())
-            {
-              plan.names = fields;
-              if (std::find(fields.begin(), fields.end(), "") != fields.end())
-                throw ParameterError("a column has no name", where, "name the parameter of each column");
-            }
-          else if (fields.size() != plan.names.size())
-            throw ParameterError(text(fields.size(), " values stand below ", plan.names.size(), " names"), where,
-                                 "give one value for each name; quote values that contain commas");
-          else
-            plan.designs.push_back(fields);
-        }
-      if (plan.designs.empty())
-        throw ParameterError("the file holds no design", "file " + file.string(),
-                             "write names in the first line, a design in each other one");
-      return plan;
-    }
-
-    /// "Section/Name[3]" divided into path and number; zero: none.
-    std::pair<std::string, unsigned int> split_index(const std::string &name)
-    {
-      const auto bracket = name.find('[');
-      if (bracket == std::string::npos)
-        return {name, 0};
-      const auto number = parse_number(name.substr(bracket + 1, name.size() - bracket - 2));
-      if (name.back() != ']' || !number || *number != std::floor(*number) || *number < 1. || *number > 1e6)
-        refuse(in_quotes(name) + " does not say which number varies", "write Section/Name[k] with k from one on");
-      return {trim(name.substr(0, bracket)), static_cast<unsigned int>(*number)};
-    }
-  } // namespace
-
-  namespace
-  {
     /// Place and length of the k-th number of a text.
     std::pair<std::size_t, std::size_t> place_of_number(const std::string &text, const unsigned int k)
     {
@@ -338,11 +325,15 @@ namespace Squeal
   {
     const DesignParameters &designs = parameters.designs;
     if (designs.choice == DesignChoice::file)
-      return from_file(parameters);
+      {
+        DesignPlan plan = read_design_file(parameters);
+        refuse_repeated(plan.names, plan.where_names);
+        return plan;
+      }
     const std::vector<DesignVariable> variables = parse_variables(designs.variables);
     DesignPlan                        plan;
-    for (const DesignVariable &variable : variables)
-      plan.names.push_back(variable.name);
+    plan.names       = names_of(variables);
+    plan.where_names = where_variables;
     if (!designs.is_sampled())
       {
         check_levels(variables);

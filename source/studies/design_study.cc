@@ -3,6 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/parameters/design_plan.h>
+#include <squeal/studies/design_check.h>
 #include <squeal/studies/design_solution.h>
 #include <squeal/studies/design_work.h>
 
@@ -58,6 +59,13 @@ namespace Squeal
         for (int design = 1; design <= n; ++design)
           work.designs.push_back(design);
       return work;
+    }
+
+    /// Names the columns of a file that change nothing.
+    void note_unused(const Run &run, const DesignPlan &plan)
+    {
+      for (const UnusedParameter &variable : unused_variables(run.parameters, plan))
+        run.progress.note(text("  note: changes nothing in the designs: ", variable.path, " (", variable.why, ")"));
     }
 
     /// Solves a design in this process, alone; @p folder keeps what is found of an unfinished one.
@@ -182,6 +190,8 @@ namespace Squeal
     std::optional<DesignStore> store;
     const fs::path             above   = fs::path(run.folder().name()).parent_path();
     const bool                 is_part = fs::exists(above / DesignStore::reference_file); // of a study that has left its modes there
+    if (!is_part)
+      note_unused(run, work.plan);
     if (is_part && work.designs.size() > 1)
       {
         solve_family_here(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
@@ -209,13 +219,14 @@ namespace Squeal
         if (const std::size_t n_known = store->n_known(work.designs); n_known > 0)
           run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
         results = solve_all(scene, run, work, *store, run.options.again);
-        for (const int design : work.designs)
-          {
-            std::string reason;
-            if (const auto parameters = parameters_of(run, work.plan, design, reason))
-              write_parameter_file(*parameters, text("designs/", design, ".prm"), run);
-          }
       }
+    if (!is_part)
+      for (const int design : work.designs)
+        {
+          std::string reason;
+          if (const auto parameters = parameters_of(run, work.plan, design, reason))
+            write_parameter_file(*parameters, text("designs/", design, ".prm"), run);
+        }
 
     write_designs(work.plan.names, results, run);
     run.finish([&] {
@@ -234,7 +245,7 @@ namespace Squeal
        {"Designs/Variables", [](const Parameters &p) { return unless(p.designs.choice != DesignChoice::file, "Designs/Plan = file"); }},
        {"Designs/Number of designs", of_samples},
        {"Designs/Seed", of_samples}});
-    study.check = [](const Parameters &p) { check_variables(p, design_plan(p).names); };
+    study.check = [](const Parameters &p) { check_designs(p, design_plan(p)); };
     return study;
   }();
 } // namespace Squeal

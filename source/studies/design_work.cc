@@ -319,11 +319,4 @@ namespace Squeal
     study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; };
     return study;
   }
-
-  void check_variables(const Parameters &parameters, const std::vector<std::string> &names)
-  {
-    for (const std::string &several : names)
-      for (const std::string &name : dealii::Utilities::split_string_list(several, '+'))
-        current_value(parameters, name);
-  }
 } // namespace Squeal

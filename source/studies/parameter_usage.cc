@@ -164,12 +164,12 @@ namespace Squeal
                   "neither contact damping nor gyroscopic forces");
   }
 
-  std::vector<UnusedParameter> unused_parameters(const Parameters &parameters)
+  std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)
   {
     const auto                           variables = parameters.geometry.script_variables();
     std::optional<std::set<std::string>> used; // found out only where it matters
     std::vector<UnusedParameter>         unused;
-    for (const std::string &path : changed_parameters(parameters))
+    for (const std::string &path : paths)
       {
         std::string reason = why_unused(path, parameters);
         if (const std::string variable = script_variable(path); variables.count(variable) > 0)
@@ -183,6 +183,11 @@ namespace Squeal
           unused.push_back({path, reason});
       }
     return unused;
+  }
+
+  std::vector<UnusedParameter> unused_parameters(const Parameters &parameters)
+  {
+    return unused_among(changed_parameters(parameters), parameters);
   }
 
   std::string unused_parameters_note(const Parameters &parameters)

@@ -2,6 +2,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
 #include <squeal/output/chart_checkpoint.h>
+#include <squeal/studies/design_check.h>
 #include <squeal/studies/design_work.h>
 #include <squeal/studies/friction_modes.h>
 
@@ -116,10 +117,15 @@ namespace Squeal
     private:
       void solve(const DesignWork &work)
       {
-        // Other processes read the designs from a file: a study of these
-        const fs::path file = store.folder / "designs.csv";
+        // Other processes read the designs from a file: a study of these, without the values that it would refuse and nobody solves
+        const fs::path file   = store.folder / "designs.csv";
+        DesignPlan     listed = plan;
+        std::string    reason;
+        for (std::size_t i = 0; i < plan.designs.size(); ++i)
+          if (!parameters_of(run, plan, static_cast<int>(i + 1), reason))
+            listed.designs[i].assign(plan.names.size(), "");
         if (run.is_root)
-          replace_file(file, as_csv(plan));
+          replace_file(file, as_csv(listed));
         std::vector<std::string> arguments = run.options.again;
         for (const std::string &text :
              {std::string("Study=geometry"), std::string("Designs/Plan=file"), "Designs/File=" + fs::absolute(file).string()})
@@ -433,15 +439,12 @@ namespace Squeal
                                          {{"Designs/Plan", always}, {"Designs/File", always}, {"Designs/Number of designs", always}});
     study.own_parameters.push_back("Search/");
     study.check = [](const Parameters &p) {
-      std::vector<std::string> names;
-      for (const DesignVariable &variable : design_variables(p.designs))
-        {
-          names.push_back(variable.name);
-          if (!variable.is_range)
-            throw ParameterError("a search needs ranges, but " + in_quotes(variable.name) + " has a list of values",
-                                 "parameter Designs/Variables", "write Section/Name = a to b");
-        }
-      check_variables(p, names);
+      const std::vector<DesignVariable> variables = design_variables(p.designs);
+      for (const DesignVariable &variable : variables)
+        if (!variable.is_range)
+          throw ParameterError("a search needs ranges, but " + in_quotes(variable.name) + " has a list of values",
+                               "parameter Designs/Variables", "write Section/Name = a to b");
+      check_ranges(p, variables);
     };
     return study;
   }();

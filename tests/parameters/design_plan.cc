@@ -159,6 +159,33 @@ TEST(DesignPlan, RefusesWhatItDoesNotUnderstand)
   expect_refusal("A/a = 0 to 1 in 1000; A/b = 0 to 1 in 1000", "1e+06 designs");
 }
 
+TEST(DesignPlan, RefusesWhatVariesTwice)
+{
+  expect_refusal("A/x = 1, 2; A/x + B/y = 3, 4", "`A/x` varies twice");
+  expect_refusal("A/x + A/x = 1, 2", "`A/x` varies twice");
+  expect_refusal("A/x = 1, 2; A/x[1] = 3, 4", "`A/x` varies twice");
+  expect_refusal("A/x[2] = 1, 2; A/y + A/x[ 2 ] = 3, 4", "`A/x` varies twice");
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x[1] = 1, 2; A/x[2] = 3, 4").designs.size(), 4u);
+  EXPECT_THROW(design_plan(Csv("A/x,A/x\n1,2\n").parameters), ParameterError);
+}
+
+TEST(DesignPlan, RefusesEqualLevels)
+{
+  expect_refusal("A/x = 1, 1.0", "`1` and `1.0`");
+  expect_refusal("A/x = red, green, red", "equal values");
+  expect_refusal("A/x = -10, 10 | 0, 5 | -10,10.0", "equal values");
+  expect_refusal("A/x = 1 to 1.0000001 in 5", "equal values");
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1, 2; B/y = 1, 2").designs.size(), 4u);
+}
+
+TEST(DesignPlan, RefusesDecimalCommas)
+{
+  expect_refusal("A/x = 0,3, 0,4", "decimal");
+  expect_refusal("A/x = 0,3; 0,4", "`0,4` has no `=`");
+  expect_refusal("A/x = 0,3 to 0,5 in 3", "`0,3` in");
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1,2").designs.size(), 2u);
+}
+
 TEST(DesignPlan, ReadsAFile)
 {
   const Csv        file("\xEF\xBB\xBFGeometry/Pin height,\"Geometry/Top pin angles\"\r\n0.03,\"-10, 10\"\n\n0.04,\"-20, 20\"\n");
@@ -177,6 +204,47 @@ TEST(DesignPlan, RefusesFilesThatAreNoTables)
   EXPECT_THROW(design_plan(parameters), ParameterError);
   parameters.designs.file = "/nonexistent/designs.csv";
   EXPECT_THROW(design_plan(parameters), FileError);
+}
+
+TEST(DesignPlan, NamesTheLineOfAFileAndWhatIsWrongThere)
+{
+  const auto expect = [](const std::string &content, const std::vector<std::string> &mentions, const int line) {
+    const Csv file(content);
+    try
+      {
+        design_plan(file.parameters);
+        FAIL() << content;
+      }
+    catch (const ParameterError &error)
+      {
+        EXPECT_EQ(error.where, "file " + file.path.string() + ", line " + std::to_string(line)) << error.what();
+        for (const std::string &word : mentions)
+          EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+      }
+  };
+  expect("A/x;B/y\r\n0,1;0,2", {"semicolons", "decimal"}, 1);
+  expect("A/x\tB/y\n1\t2", {"tabs"}, 1);
+  expect("sep=;\r\nA/x;B/y\r\n", {"sep=;", "remove"}, 1);
+  expect(std::string("\xFF\xFE"
+                     "A\0/\0x\0\n\0",
+                     10),
+         {"UTF-16", "UTF-8"}, 1);
+  expect("A/x,B/y\r1,2\r", {"carriage return"}, 1);
+  expect("A/x,B/y,\n1,2,\n", {"column 3", "ends with a comma"}, 1);
+  expect("A/x,B/y\n1,2\n3,4,\n", {"3 values", "2 names", "ends with a comma"}, 3);
+  expect("A/x\n0,3\n", {"2 values", "1 name", "0.3"}, 2);
+  expect("A/x,B/y\n1;2\n", {"semicolons"}, 2);
+  expect("A/x,B/y\n1,\"2,\n3\"\n", {"quotation mark"}, 2);
+  expect("A/x,B/y\n", {"no design"}, 1);
+  expect("A/x,B/y + A/x\n1,2\n", {"`A/x` varies twice"}, 1);
+}
+
+TEST(DesignPlan, EqualRowsOfAFileAreDesigns)
+{
+  const Csv        file("A/x,B/y\r\n1,2\r\n3,4\r\n1,2");
+  const DesignPlan plan = design_plan(file.parameters);
+  EXPECT_EQ(plan.designs, (std::vector<Values>{{"1", "2"}, {"3", "4"}, {"1", "2"}}));
+  EXPECT_EQ(plan.where.back(), "file " + file.path.string() + ", line 4");
 }
 
 TEST(WithDesign, ChangesParametersNumbersOfThemAndSeveralAtOnce)

@@ -8,10 +8,10 @@ import signal
 import subprocess
 import time
 
-from program import EXECUTABLE, ProgramTest, design_tables, read_table
+from program import EXECUTABLE, SOURCE, ProgramTest, design_tables, read_table
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
-VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, -1"
+VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, 1"
 
 
 class DesignsTest(ProgramTest):
@@ -27,7 +27,7 @@ class DesignsTest(ProgramTest):
         self.assertEqual([row["outcome"] for row in rows], ["solved", "solved", "refused"] * 2)
         for row in rows:
             if row["outcome"] == "refused":
-                self.assertIn("Pin material/Young modulus must be >= 0 Pa, not -1", row["reason"])
+                self.assertNotEqual(row["reason"], "")
                 self.assertEqual(row["modes [-]"], "")
             else:
                 self.assertEqual(row["modes [-]"], row["modes counted [-]"])
@@ -39,7 +39,6 @@ class DesignsTest(ProgramTest):
         for row in read_table(self.study / "designs.csv"):
             number = row["design [-]"]
             if row["outcome"] != "solved":
-                self.assertFalse((self.study / "designs" / f"{number}.prm").exists())
                 continue
             single = self.run_scene(f"single_{number}", file=str(self.study / "designs" / f"{number}.prm"))
             mine = [t for t in read_table(self.study / "design_thresholds.csv") if t["design [-]"] == number]
@@ -105,6 +104,8 @@ class DesignsTest(ProgramTest):
     def test_one_design_alone_is_the_same(self):
         one = self.run_scene_of_designs("one", "2")
         self.assertEqual(design_tables(one)["designs"], [design_tables(self.study)["designs"][1]])
+        self.assertEqual([path.name for path in (one / "designs").iterdir()], ["2.prm"])
+        self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (one, self.study)))
         two = self.run_scene_of_designs("two", "1, 5-5")
         self.assertEqual(design_tables(two)["designs"], [design_tables(self.study)["designs"][i] for i in (0, 4)])
 
@@ -132,7 +133,6 @@ class DesignsTest(ProgramTest):
         self.assertEqual(found, expected)
 
     def test_killed_and_resumed(self):
-        # The two that are refused are known at once
         self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (3, signal.SIGTERM), (4, signal.SIGKILL)))
         # Its processes end with it
         deadline = time.monotonic() + 60
@@ -186,7 +186,9 @@ class DesignsTest(ProgramTest):
         self.assertIn("killed by SIGKILL", rows[1]["reason"])
 
     def test_geometries_that_cannot_be_meshed_are_rows(self):
-        folder = self.run_scene("meshes", *STUDY, "Designs/Variables=Geometry/Pin diameter = 0.052, 0.2")
+        plan = (SOURCE / "geometry" / "disc_pins.geo").read_text(encoding="utf-8")
+        (self.folder / "own.geo").write_text(plan + "\nDefineConstant[ broken = 0 ];\nIf (broken)\n  no plan at all;\nEndIf\n", encoding="utf-8")
+        folder = self.run_scene("meshes", *STUDY, "Geometry/File=own.geo", "Designs/Variables=Geometry/broken = 0, 1")
         rows = read_table(folder / "designs.csv")
         self.assertEqual([row["outcome"] for row in rows], ["solved", "refused"])
         self.assertNotEqual(rows[1]["reason"], "")
@@ -218,13 +220,26 @@ class DesignsTest(ProgramTest):
         shutil.rmtree(self.folder / "former.checkpoint")
 
     def test_designs_that_their_parameters_refuse_need_no_process(self):
-        settings = [word for text in (*STUDY, VARIABLES, "Designs/Processes=1") for word in ("--set", text)]
+        """Values that only together make no sense: contact damping without a load."""
+        variables = "Designs/Variables=Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"
+        settings = [word for text in (*STUDY, variables, "Designs/Processes=1") for word in ("--set", text)]
         process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "refused", *settings], cwd=self.folder, stdout=subprocess.DEVNULL)
         self.addCleanup(process.kill)
         deadline = time.monotonic() + 60
-        while len(self.known_designs("refused")) < 2 and time.monotonic() < deadline:
+        while not self.known_designs("refused") and time.monotonic() < deadline:
             time.sleep(0.01)
-        known = {file.parent.name for file in self.known_designs("refused")}
-        self.assertLessEqual({"design-3", "design-6"}, known)
+        self.assertIn("design-2", {file.parent.name for file in self.known_designs("refused")})
         self.assertEqual(process.wait(timeout=300), 0)
-        self.assertEqual(design_tables(self.folder / "refused"), design_tables(self.study))
+        rows = read_table(self.folder / "refused" / "designs.csv")
+        self.assertEqual([row["outcome"] for row in rows], ["solved", "refused", "solved", "solved"])
+        self.assertIn("Operation/Load per side", rows[1]["reason"])
+        self.assertFalse((self.folder / "refused" / "designs" / "2.prm").exists())
+
+    def test_dry_runs_refuse_what_the_study_would(self):
+        for variables, mentions in (("Real modes/Tolerance = 1e-9, 1e-8", ["Real modes/Tolerance", "changes nothing"]),
+                                    ("Pin material/Poisson ratio = 0.2, 0.7", ["Pin material/Poisson ratio", "0.7", "-1 ... 0.5"]),
+                                    ("Operation/Friction coefficient = 0,3, 0,4", ["decimal", "0.3"])):
+            process = self.call("scene.prm", "--dry-run", "--set", "Study=geometry", "--set", f"Designs/Variables={variables}")
+            self.assertEqual(process.returncode, 1)
+            for word in mentions:
+                self.assertIn(word, process.stderr)

@@ -28,7 +28,7 @@ SCENES = {"stability": ("Output/Mode shapes=unstable",),
           "map": ("Study=sweep", "Operation/Radial dissipation=consistent", "Sweep/Compare dissipation=false", "Sweep/Map parameter=load",
                   "Sweep/Number of map values=3", "Sweep/Map friction coefficients=4", *QUICK),
           # Designs that are solved and refused
-          "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, -1", *QUICK),
+          "designs": ("Study=geometry", "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.9e9, 1", *QUICK),
           "search": ("Study=search", "Designs/Variables=Geometry/Pin diameter = 0.05 to 0.09; Geometry/Pin height = 0.03 to 0.034",
                      "Search/Samples=3", "Search/Evaluations=5", *QUICK),
           # Thresholds with and without derivatives

@@ -12,6 +12,9 @@ namespace Squeal
   {
     std::vector<std::string>              names;   ///< of variables: "Section/Name", "Section/Name[k]", several joined by "+"
     std::vector<std::vector<std::string>> designs; ///< a value of each variable; empty: as the scene has it
+
+    std::string              where_names; ///< parameter, or file and line, for messages
+    std::vector<std::string> where;       ///< of each design of a file; empty: where the names are
   };
 
   /// A parameter that varies: a list of values, or a range.
@@ -39,7 +42,8 @@ namespace Squeal
    * place. Sobol's sequence (I. M. Sobol 1967), with all samples shifted by one random vector modulo 1 (R. Cranley, T. N. L. Patterson
    * 1976) unless the seed is 0. A list of n values is a range of n equal parts.
    *
-   * Throws ParameterError where the variables or the file are not as the section says, FileError if the file cannot be read.
+   * Throws ParameterError where the variables or the file are not as the section says or set a number twice, FileError if the file
+   * cannot be read.
    */
   DesignPlan design_plan(const Parameters &parameters);
 

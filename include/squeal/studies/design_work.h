@@ -52,9 +52,6 @@ namespace Squeal
   /// What studies of designs have in common; parameters that they use differently have rules of their own in front.
   Study study_of_designs(const char *name, void (*run)(Scene &, Run &), std::vector<UsageRule> own_rules);
 
-  /// Throws ParameterError if a variable is no parameter; what a design makes of its value is told in its row.
-  void check_variables(const Parameters &parameters, const std::vector<std::string> &names);
-
   /// Writes the parameter file NAME of a design, a sweep of which that is.
   void write_parameter_file(Parameters design, const std::string &name, const Run &run);
 } // namespace Squeal

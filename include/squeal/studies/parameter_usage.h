@@ -20,7 +20,10 @@ namespace Squeal
    */
   std::vector<UnusedParameter> unused_parameters(const Parameters &parameters);
 
-  /// The same in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
+  /// Those of some parameters that change nothing in the results of the run. Throws MeshError as unused_parameters() does.
+  std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters);
+
+  /// What unused_parameters() finds in one line: "  note: not used here: Operation/Load per side (no contact damping), ..."; empty if there are none.
   std::string unused_parameters_note(const Parameters &parameters);
 
   /// Why the sliding speed damps nothing; null if it does. For studies that do not show it either.

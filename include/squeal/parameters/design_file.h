@@ -1,0 +1,12 @@
+#pragma once
+
+#include <squeal/parameters/design_plan.h>
+
+namespace Squeal
+{
+  /**
+   * The designs of the CSV file that Designs/File names: names of the variables in its first line, a design in each of the others. Throws
+   * FileError if it cannot be read, ParameterError with the line if it is no comma-separated text in UTF-8.
+   */
+  DesignPlan read_design_file(const Parameters &parameters);
+} // namespace Squeal

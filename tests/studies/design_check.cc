@@ -1,0 +1,132 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/studies/design_check.h>
+
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace Squeal;
+
+namespace
+{
+  namespace fs = std::filesystem;
+
+  /// The message with which a study is refused, or "accepted".
+  std::string refusal(const std::string &variables, std::vector<std::string> settings = {})
+  {
+    settings.insert(settings.begin(), {"Study=geometry", "Designs/Variables=" + variables});
+    try
+      {
+        Parameters::read("/dev/null", settings);
+      }
+    catch (const Error &error)
+      {
+        return error.what();
+      }
+    return "accepted";
+  }
+
+  void expect_refusal(const std::vector<std::string> &mentions, const std::string &variables, const std::vector<std::string> &settings = {})
+  {
+    const std::string message = refusal(variables, settings);
+    for (const std::string &word : mentions)
+      EXPECT_NE(message.find(word), std::string::npos) << variables << ": " << message;
+  }
+
+  /// Writes a file that vanishes.
+  struct File
+  {
+    File(const std::string &name, const std::string &content)
+      : path(fs::temp_directory_path() / ("squeal_" + std::to_string(getpid()) + name))
+    {
+      std::ofstream(path.string()) << content;
+    }
+    ~File()
+    {
+      fs::remove(path);
+    }
+    const fs::path path;
+  };
+
+  const std::string changes_nothing = "changes nothing";
+} // namespace
+
+TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
+{
+  const std::string load = "Operation/Load per side = 500, 1000";
+  expect_refusal({changes_nothing, "Operation/Load per side", "no contact damping"}, load);
+  EXPECT_EQ(refusal(load, {"Operation/Radial dissipation=consistent"}), "accepted");
+  // Some designs use it
+  EXPECT_EQ(refusal(load + "; Operation/Radial dissipation = none, consistent"), "accepted");
+
+  for (const char *variable :
+       {"Real modes/Tolerance = 1e-9, 1e-8", "Complex modes/Solver = Krylov, residual iteration", "Sweep/Tolerance = 1e-6, 1e-5",
+        "Linear algebra/Threads = 1, 2", "Output/Mode shapes = none, all", "Geometry/Meshing time limit = 100, 200", "Designs/Seed = 1, 2",
+        "Study = sweep, stability", "Operation/Friction coefficient = 0.2, 0.3", "Search/Samples = 1, 2",
+        "Reduction/POD tolerance = 1e-8, 1e-7"})
+    expect_refusal({changes_nothing, std::string(variable).substr(0, std::string(variable).find(" ="))}, variable);
+  for (const char *variable :
+       {"Geometry/Pin height = 0.03, 0.034", "Disc material/Density = 7000, 7200", "Band/Maximum frequency = 3000, 4000",
+        "Discretization/Element = trilinear, quadratic", "Sweep/Last friction coefficient = 0.3, 0.4", "Geometry/Pin layers = 3, 4",
+        "Mounts/Elastic mounts[3] = 1e10, 2e10"})
+    EXPECT_EQ(refusal(variable), "accepted");
+
+  expect_refusal({changes_nothing, "Geometry/Pin layers", "Accuracy"}, "Geometry/Pin layers = 3, 4", {"Accuracy=1 %"});
+  EXPECT_EQ(refusal("Geometry/Pin height = 0.03, 0.034", {"Accuracy=1 %"}), "accepted");
+
+  // One that acts is enough where several take the same value
+  EXPECT_EQ(refusal("Geometry/Pin height + Operation/Load per side = 0.03, 0.034"), "accepted");
+}
+
+TEST(DesignChecks, SizesOfTheBuiltInPlanChangeNothingInAMesh)
+{
+  const File mesh(".msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n");
+  const std::vector<std::string> own = {"Geometry/File=" + mesh.path.string()};
+  expect_refusal({changes_nothing, "Geometry/Pin height"}, "Geometry/Pin height = 0.03, 0.034", own);
+  expect_refusal({changes_nothing, "Geometry/Pin height"}, "Disc material/Density = 7000, 7200; Geometry/Pin height = 0.03, 0.034", own);
+  EXPECT_EQ(refusal("Disc material/Density = 7000, 7200", own), "accepted");
+  expect_refusal({changes_nothing, "Geometry/Pin height"}, "Geometry/Pin height = 0.03 to 0.034", {own.front(), "Study=search"});
+}
+
+TEST(DesignChecks, ColumnsThatChangeNothingAreRefusedWhereRowsBecomeEqual)
+{
+  const std::string names = "Geometry/Pin height,Operation/Friction coefficient\n";
+  const auto        read  = [](const File &file) { return refusal("", {"Designs/Plan=file", "Designs/File=" + file.path.string()}); };
+  EXPECT_EQ(read(File(".csv", names + "0.03,0.3\n0.035,0.4\n0.03,0.3\n")), "accepted");
+  const std::string message = read(File(".csv", names + "0.03,0.3\n0.03,0.4\n"));
+  EXPECT_NE(message.find("`Operation/Friction coefficient` varies, but changes nothing"), std::string::npos) << message;
+  EXPECT_NE(message.find("line 1"), std::string::npos) << message;
+}
+
+TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
+{
+  expect_refusal({"Pin material/Poisson ratio must lie in -1 ... 0.5, not 25", "design 2"}, "Pin material/Poisson ratio = 0,25");
+  expect_refusal({"Young", "positive", "Pin material/Young modulus = 0"}, "Pin material/Young modulus = 2e9, 0");
+  expect_refusal({"must be >= 0 m, not -0.01", "Geometry/Pin height = -0.01"},
+                 "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
+  expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
+  // With parameters that do not vary
+  expect_refusal({"overlap", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
+  // Samples of a range
+  expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",
+                 {"Designs/Plan=Latin hypercube"});
+  expect_refusal({"Pin material/Poisson ratio must lie in -1 ... 0.5, not 0.8"}, "Pin material/Poisson ratio = 0.2 to 0.8",
+                 {"Study=search"});
+  // Values that only together make no sense are told in their rows
+  EXPECT_EQ(refusal("Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"), "accepted");
+}
+
+TEST(DesignChecks, AFileIsNamedWithTheLine)
+{
+  const File        file(".csv", "Geometry/Pin height\n0.03\n\n-1\n");
+  const std::string message = refusal("", {"Designs/Plan=file", "Designs/File=" + file.path.string()});
+  EXPECT_NE(message.find("line 4"), std::string::npos) << message;
+  EXPECT_NE(message.find("not -1"), std::string::npos) << message;
+  const File        nameless(".csv", "Pin height\n0.03\n");
+  const std::string unknown = refusal("", {"Designs/Plan=file", "Designs/File=" + nameless.path.string()});
+  EXPECT_NE(unknown.find("line 1"), std::string::npos) << unknown;
+  EXPECT_NE(unknown.find("`Geometry/Pin height`"), std::string::npos) << unknown;
+}
