@@ -78,7 +78,7 @@ namespace Squeal
                                 const double               largest_circular_frequency,
                                 const FactorizationLibrary library)
   {
-    return {system.stiffness,           system.mass, free_disc_motions(model, system, largest_circular_frequency),
+    return {system.stiffness,           system.mass, free_disc_motions(model, system),
             largest_circular_frequency, library,     "stiffness of disc and pins without contact"};
   }
 

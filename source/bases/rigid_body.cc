@@ -3,6 +3,7 @@
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/rounding.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -12,8 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    /// Far above rounding errors, far below the stiffness of any mount in use.
-    const Decision elastic_resistance("square of the frequency of a rigid-body motion / end of the band", zero_frequency *zero_frequency);
+    const Decision elastic_resistance("square of the frequency of a rigid-body motion / what rounding hides", 1.);
     const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
 
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
@@ -78,12 +78,12 @@ namespace Squeal
     return result;
   }
 
-  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, const double largest_circular_frequency)
+  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system)
   {
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
-    const double limit              = largest_circular_frequency * largest_circular_frequency;
+    const double hidden             = unresolved_square(*system.stiffness, *system.mass);
     const int    n_free             = std::count_if(eigenvalues.begin(), eigenvalues.end(),
-                                                    [limit](const double value) { return !elastic_resistance.exceeded_by(value / limit); });
+                                                    [hidden](const double value) { return !elastic_resistance.exceeded_by(value / hidden); });
     if (n_free == 0)
       return {};
     return view(modes, 0, n_free);

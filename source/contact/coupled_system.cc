@@ -1,4 +1,5 @@
 #include <squeal/contact/coupled_system.h>
+#include <squeal/linear_algebra/rounding.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -75,6 +76,7 @@ namespace Squeal
     for (const Term &term : result.terms)
       if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
         (term.power == 0 ? result.stiffness : result.mass) = term.matrix;
+    result.hidden_square = unresolved_square(*result.stiffness, *result.mass);
     return result;
   }
 

@@ -1,4 +1,5 @@
 #include <squeal/contact/system_family.h>
+#include <squeal/linear_algebra/rounding.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -45,8 +46,9 @@ namespace Squeal
     for (const Term &term : result.terms)
       if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
         (term.power == 0 ? stiffness : mass).emplace_back(term.coefficient.at(result.values), term.matrix);
-    result.mass      = sum(mass);
-    result.stiffness = sum(stiffness);
+    result.mass          = sum(mass);
+    result.stiffness     = sum(stiffness);
+    result.hidden_square = unresolved_square(*result.stiffness, *result.mass);
     return result;
   }
 
@@ -78,6 +80,7 @@ namespace Squeal
         if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
           (term.power == 0 ? result.system.stiffness : result.system.mass) = term.matrix;
       }
+    result.system.hidden_square = unresolved_square(*result.system.stiffness, *result.system.mass);
     return result;
   }
 } // namespace Squeal

@@ -22,6 +22,8 @@ namespace Squeal
       , inverse(inverse)
       , s(options.shift)
       , degree(pencil.damping != nullptr ? 2 : 1)
+      , zero_square(options.zero_modulus > 0. ? options.zero_modulus * options.zero_modulus :
+                                                std::pow(zero_frequency * options.largest_circular_frequency, 2))
     {
       // The discs |λ - s| ≤ radius and |λ² - s²| ≤ radius² hold every wanted λ. Of degree one the last to be reached is the
       // corner with the largest Im λ, of degree two it is -ρ.
@@ -83,19 +85,24 @@ namespace Squeal
     double residual_estimate(const std::complex<double> nu, const double epsilon) const
     {
       const double theta  = 1. / std::max(std::abs(nu), std::numeric_limits<double>::min());
-      const double lambda = std::abs(value(nu)) / radius;
-      if (lambda < zero_frequency)
-        return epsilon * theta;
+      const double square = std::norm(value(nu)), lambda = std::sqrt(square) / radius;
+      // The error of λ² must leave a zero a zero
+      if (square < zero_square)
+        return std::max(1., theta * radius * radius * zero_margin / zero_square) * epsilon * theta;
       if (degree == 1)
         return epsilon * theta * theta / (lambda * lambda);
       return epsilon * theta * theta / (lambda * lambda) * (1. + theta + 2. * s / radius) * std::hypot(1., theta);
     }
+
+    /// Tolerances of 10⁻⁹ leave 10⁻² of what counts as zero.
+    static constexpr double zero_margin = 1e-7;
 
     const QuadraticPencil &pencil;
     const LinearOperator  &inverse;
     double                 s, radius;
     double                 largest_modulus; ///< ρ: of the wanted λ
     int                    degree;
+    double                 zero_square; ///< |λ|² up to this is zero
     mutable int            n_solves = 0;
   };
 } // namespace Squeal

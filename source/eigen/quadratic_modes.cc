@@ -20,7 +20,9 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    const Decision nonzero("|lambda| of a mode / end of the band", zero_frequency);
+    const Decision nonzero("square of |lambda| of a mode / what rounding hides", 1.);
+    /// Real λ below this part of the band's end creep: they count with the zeros.
+    const Decision listed_real("|lambda| of a real eigenvalue / end of the band", zero_frequency);
     /// λ oscillates; below, it is real.
     const Decision oscillating("Im / modulus of lambda of a mode", 1e-7);
     /// Values beyond the radius that have to converge, so that none inside can still be on its way.
@@ -101,9 +103,11 @@ namespace Squeal
           const bool    pair   = nu.imag() != 0.;
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
-          if (!nonzero.exceeded_by(std::abs(lambda) / options.largest_circular_frequency))
+          const bool is_real = !oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda));
+          if (!nonzero.exceeded_by(std::norm(lambda) / transformation.zero_square) ||
+              (is_real && !listed_real.exceeded_by(std::abs(lambda) / options.largest_circular_frequency)))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
-          else if (!oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
+          else if (is_real)
             {
               modes.real_values.push_back(lambda.real());
               if (transformation.degree == 1)

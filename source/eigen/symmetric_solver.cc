@@ -6,6 +6,7 @@
 #include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/linear_algebra/rounding.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,9 +17,10 @@ namespace Squeal
 {
   namespace
   {
-    /// Eigenvalues below this fraction of the limit belong to rigid-body modes.
-    constexpr double rigid_body_threshold = zero_frequency * zero_frequency;
-    const Decision   elastic("eigenvalue of the symmetric problem / largest wanted one", rigid_body_threshold);
+    const Decision elastic("eigenvalue of the symmetric problem / what rounding hides", 1.);
+
+    /// Residual of a rigid-body mode, beside the largest eigenvalue wanted, that is accepted.
+    constexpr double largest_rigid_residual = 1e-8;
 
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_fruitless_starts = 4;
@@ -34,6 +36,7 @@ namespace Squeal
     , count(options.count ? *options.count :
             counted       ? count_below(K, M, limit, options.what) :
                             ModeCount{0, limit})
+    , hidden_square(unresolved_square(K, M))
   {}
 
   bool SymmetricSolver::is_dense() const
@@ -267,12 +270,11 @@ namespace Squeal
     Residuals residuals;
     for (int j = 0; j < n_modes; ++j)
       {
-        // Where a soft mount holds the body, ω² = 0 leaves the residual ω² / limit
         const bool   rigid    = is_rigid(pairs.values[j]);
         const double scale    = rigid ? count.limit * norm_MV[j] : norm_KV[j];
         const double rounding = 10. * std::numeric_limits<double>::epsilon() * norm_K * norm_V[j] / scale;
         residuals.values.push_back(norm_R[j] / scale);
-        const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? rigid_body_threshold : 0.});
+        const double excess = residuals.values[j] / std::max({options.tolerance, rounding, rigid ? largest_rigid_residual : 0.});
         // Written so that NaN is the worst.
         if (!(excess <= residuals.excess))
           {
@@ -285,6 +287,9 @@ namespace Squeal
 
   SymmetricSolver::Residuals SymmetricSolver::refine(RitzPairs &pairs)
   {
+    // LAPACK's errors are those of the largest eigenvalue of all, by which zero must not be decided
+    if (is_dense())
+      pairs = rayleigh_ritz(*pairs.vectors);
     Residuals result = residuals(pairs);
     for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
       {
@@ -313,7 +318,7 @@ namespace Squeal
     };
     if (static_cast<int>(pairs.values.size()) != count.n_modes || !(pairs.values.back() <= count.limit * (1. + 1e-8)))
       fail_incomplete(std::upper_bound(pairs.values.begin(), pairs.values.end(), count.limit) - pairs.values.begin());
-    if (pairs.values.front() < -rigid_body_threshold * count.limit)
+    if (pairs.values.front() < -hidden_square)
       fail("the stiffness is not positive semidefinite: there is an eigenvalue of " + std::to_string(pairs.values.front()) + " rad²/s²");
     if (!(result.excess <= 1.))
       {
@@ -345,6 +350,6 @@ namespace Squeal
 
   bool SymmetricSolver::is_rigid(const double value) const
   {
-    return !elastic.exceeded_by(value / count.limit);
+    return !elastic.exceeded_by(value / hidden_square);
   }
 } // namespace Squeal

@@ -95,6 +95,7 @@ namespace Squeal
     std::shared_future<FactorBeside> early; ///< while modes are counted
     const bool                       counted;
     ModeCount                        count;
+    const double                     hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
     bool                             lifted          = false;
     bool                             keeps_to_itself = false;
     std::unique_ptr<Factorization>   factorization;

@@ -6,6 +6,7 @@
 #include <squeal/modes/krylov_modes.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace Squeal
 {
@@ -95,6 +96,7 @@ namespace Squeal
     options.shift                      = shift;
     options.largest_circular_frequency = largest_circular_frequency;
     options.largest_damping            = largest_rate_of_band;
+    options.zero_modulus               = std::sqrt(system.hidden_square);
     options.expected                   = n_expected;
     options.close_vectors              = real_modes;
     options.tolerance                  = parameters.complex_tolerance;

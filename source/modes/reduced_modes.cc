@@ -15,7 +15,9 @@ namespace Squeal
     using Complex = std::complex<double>;
 
     /// A defective double zero splits into ± √(rounding).
-    const Decision nonzero("|lambda| of a reduced mode / end of the band", zero_frequency);
+    const Decision nonzero("square of |lambda| of a reduced mode / what rounding hides", 1.);
+    /// Real λ below this part of the band's end creep: they count with the zeros.
+    const Decision listed_real("|lambda| of a real reduced eigenvalue / end of the band", zero_frequency);
     /// A multiple real λ splits into pairs by rounding.
     const Decision oscillating_in_band("Im lambda of a reduced mode / end of the band", 1e-7);
 
@@ -27,16 +29,25 @@ namespace Squeal
       return !oscillating_in_band.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
     }
 
+    /// |λ|² up to this is zero: rounding errors of K_c or of the stiffest vector of the basis.
+    double hidden_square(const ReducedModel &model)
+    {
+      constexpr double rounding = 100. * std::numeric_limits<double>::epsilon();
+      const double stiffest = model.size() > 0 ? (model.stiffness().diagonal().array() / model.mass().diagonal().array()).maxCoeff() : 0.;
+      return std::max(model.full_order().hidden_square, rounding * stiffest);
+    }
+
     /**
      * Leaves only oscillating modes: real values of rounding join the others
      * of their kind, zeros, those of rigid-body motions, are counted.
      */
-    void separate_real(ReducedModes &modes, const double largest_circular_frequency)
+    void separate_real(ReducedModes &modes, const ReducedModel &model, const double largest_circular_frequency)
     {
+      const double hidden = hidden_square(model);
       // What holds for an oscillating value holds for its conjugate, too
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        if (const Complex l = modes.lambda[j]; !nonzero.exceeded_by(std::abs(l) / largest_circular_frequency))
+        if (const Complex l = modes.lambda[j]; !nonzero.exceeded_by(std::norm(l) / hidden))
           modes.n_zeros += 2;
         else if (is_real(l, largest_circular_frequency))
           modes.real_values.insert(modes.real_values.end(), 2, l.real());
@@ -47,7 +58,7 @@ namespace Squeal
 
       auto      &values = modes.real_values;
       const auto end    = std::remove_if(values.begin(), values.end(),
-                                         [&](const double l) { return !nonzero.exceeded_by(std::abs(l) / largest_circular_frequency); });
+                                         [&](const double l) { return !listed_real.exceeded_by(std::abs(l) / largest_circular_frequency); });
       modes.n_zeros += static_cast<int>(values.end() - end);
       values.erase(end, values.end());
       std::sort(values.begin(), values.end());
@@ -139,7 +150,7 @@ namespace Squeal
                                          const BandEnd          end)
   {
     ReducedModes modes = all_modes(model, values, band_limit(largest_circular_frequency, end), RealVectors::none);
-    separate_real(modes, largest_circular_frequency);
+    separate_real(modes, model, largest_circular_frequency);
     return modes;
   }
 
@@ -157,7 +168,7 @@ namespace Squeal
     if (!found)
       return {};
     take(modes, std::move(*found));
-    separate_real(modes, largest_circular_frequency);
+    separate_real(modes, model, largest_circular_frequency);
     return modes;
   }
 
@@ -191,10 +202,10 @@ namespace Squeal
     modes.pencil    = {modes.mass, DenseMatrix(), modes.stiffness, false};
 
     const auto [squares, vectors] = symmetric_eigenpairs(modes.stiffness, modes.mass);
-    const double     limit        = band_limit(largest_circular_frequency, end);
+    const double     limit = band_limit(largest_circular_frequency, end), hidden = hidden_square(model);
     std::vector<int> kept;
     for (std::size_t j = 0; j < squares.size(); ++j)
-      if (!nonzero.exceeded_by(std::sqrt(std::max(squares[j], 0.)) / largest_circular_frequency))
+      if (!nonzero.exceeded_by(squares[j] / hidden))
         modes.n_zeros += 2;
       else if (squares[j] <= limit * limit)
         {

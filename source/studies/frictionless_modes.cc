@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/near_null_space.h>
 #include <squeal/bases/rigid_body.h>
@@ -15,6 +16,26 @@ namespace Squeal
   {
     /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
     constexpr double label_band = 1.2;
+
+    const Decision held("work of a mount in its units / displacements of a motion of zero frequency", 1e-12);
+
+    /// Warns where motions count as those of a free body although a mount holds them.
+    void warn_of_hidden_mounts(const FrictionlessModes &modes, Run &run)
+    {
+      const CoupledSystem &coupled = modes.linearisation.coupled;
+      const int            n       = modes.real.n_rigid_body;
+      const auto          &mounts  = modes.linearisation.scene->mounts;
+      if (n == 0 || mounts == nullptr)
+        return;
+      const MultiVector U      = *coupled.kernel * view(*modes.real.vectors, 0, n);
+      const auto        work   = symmetric_eigenpairs(gram(U, *mounts * U), gram(U, U)).values;
+      const auto        n_held = std::count_if(work.begin(), work.end(), [](const double value) { return held.exceeded_by(value); });
+      if (n_held > 0)
+        run.warn(text(n_held, " of the ", n, " modes of zero frequency ", n_held == 1 ? "is" : "are",
+                      " held by mounts that are too soft: rounding errors of the stiffness hide frequencies below ",
+                      decimal_text(hertz(std::sqrt(coupled.hidden_square))),
+                      " Hz. Raise Mounts/Elastic mounts, or leave the directions out if the body is meant to be free"));
+    }
 
     /**
      * Refuses a speed beyond a critical one, at which K − Ω² ρ N has negative eigenvalues: the disc cannot keep its shape in the fixed
@@ -294,6 +315,7 @@ namespace Squeal
                                n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                                result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
+    warn_of_hidden_mounts(result, run);
     result.labels = result.identify(*result.real.vectors, nullptr);
     for (int j = 0; j < result.real.n_rigid_body; ++j)
       result.labels[j] = {ModeFamily::rigid_body, 0, 0, 0, DoubletSign::none, result.labels[j].participation};

@@ -375,3 +375,24 @@ TEST_P(SymmetricModesBy, LargeBlocksInASmallSystem)
   check_modes(*K, *M, 7.5, modes);
   EXPECT_EQ(modes.eigenvalues.size(), 84u);
 }
+
+TEST(SymmetricModes, CallZeroWhatRoundingHidesWhateverTheBand)
+{
+  // A chain of masses of one, held at one end by a spring much softer than its own of stiffness one: ω² = k / n
+  for (const int n : {40, 400}) // dense, and by Lanczos' method
+    for (const double stiffness : {0., 1e-7, 1e-3})
+      for (const double limit : {1e-2, 0.3, 3.})
+        {
+          const auto           K     = sparse(rows(n), rows(n), [&](const int i) {
+            Row row = {{i, (i > 0) + (i + 1 < n) + (i == 0 ? stiffness : 0.)}};
+            if (i > 0)
+              row[i - 1] = -1.;
+            if (i + 1 < n)
+              row[i + 1] = -1.;
+            return row;
+          });
+          const SymmetricModes modes = symmetric_modes(*K, *diagonal(K->rows(), [](int) { return 1.; }), limit);
+          EXPECT_EQ(modes.n_rigid_body, stiffness == 0. ? 1 : 0) << n << ", " << stiffness << ", " << limit;
+          EXPECT_NEAR(modes.eigenvalues.front(), stiffness / n, 0.2 * stiffness / n) << n << ", " << stiffness << ", " << limit;
+        }
+}

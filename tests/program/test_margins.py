@@ -35,7 +35,7 @@ class MarginsTest(unittest.TestCase):
             self.assertGreater(len(found), 4, file)
             measure_margins.add_margins(margins, found, file.stem)
         # The scenes reach both sides of what matters most
-        elastic = margins["eigenvalue of the symmetric problem / largest wanted one"]
+        elastic = margins["eigenvalue of the symmetric problem / what rounding hides"]
         self.assertLess(elastic.below, 15)
         self.assertLess(elastic.above, 15)
         self.assertEqual(measure_margins.small_margins(margins), [], margins)

@@ -75,7 +75,7 @@ TEST(ContactMotions, OfALevelDisc)
   // Three motions press the pins, three slide past them, whatever the basis in which they are given
   const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 1, 1}};
   const Scene                 s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({}), operating());
-  const auto                  N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
+  const auto                  N = free_disc_motions(s.model, s.system);
   ASSERT_TRUE(N);
   ASSERT_EQ(N->n_columns(), 6);
   std::mt19937                           generator(1);
@@ -101,7 +101,7 @@ TEST(ContactMotions, OfADiscThatOnlyTurns)
   // All free motions slide: nothing but rounding is left along the normals
   const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}};
   const Scene s(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted({{"disc_bore", 1e10, 0., 1e10}}), operating());
-  const auto  N = free_disc_motions(s.model, s.system, 2. * M_PI * 5000.);
+  const auto  N = free_disc_motions(s.model, s.system);
   ASSERT_TRUE(N);
   ASSERT_EQ(N->n_columns(), 1);
   const auto motions = contact_motions(*s.contact.normal, *N);

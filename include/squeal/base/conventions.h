@@ -23,7 +23,7 @@ namespace Squeal
     return std::hypot(1., largest_rate_of_band) * largest_circular_frequency;
   }
 
-  /// Frequencies below this part of the band's end count as zero: those of a body that can move freely [-].
+  /// Real eigenvalues below this part of the band's end creep, and are not listed [-].
   inline constexpr double zero_frequency = 1e-4;
 
   /// Circular frequency [rad/s] of a frequency in Hz.

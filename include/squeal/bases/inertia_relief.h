@@ -57,8 +57,7 @@ namespace Squeal
    * disc and pins together (section 5.1 of the paper). K consists of one block for each component, so that one factorisation
    * is that of every component.
    *
-   * @param largest_circular_frequency end of the band [rad/s]: a rigid-body motion whose frequency is below 10⁻⁴ of it counts
-   *                                   as free
+   * @param largest_circular_frequency end of the band [rad/s], for the shift of a disc that can move freely
    *
    * Throws SolverError if K (or K + s² M) is not positive definite.
    */

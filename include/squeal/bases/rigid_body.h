@@ -22,9 +22,9 @@ namespace Squeal
 
   /**
    * Rigid-body motions of the uncoupled disc that its mounts leave free
-   * (frequency below 10⁻⁴ of the band's end), M-orthonormal; nothing if they hold it.
+   * (up to rounding errors of K), M-orthonormal; nothing if they hold it.
    */
-  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system, double largest_circular_frequency);
+  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system);
 
   /// Combinations of rigid-body motions, M-orthonormal as these are, by what they do to the contact nodes.
   struct ContactMotions

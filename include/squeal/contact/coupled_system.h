@@ -50,11 +50,12 @@ namespace Squeal
   struct CoupledSystem
   {
     std::vector<Term>                    terms;
-    ParameterValues                      values;          ///< of all parameters, with μ = 0
-    std::shared_ptr<const SparseMatrix>  mass, stiffness; ///< M_c and K_c, n × n: the symmetric terms without friction
-    std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
-    std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
-    std::shared_ptr<const NearNullSpace> near_null_space; ///< of K_c, for multigrid; null where nobody has asked for it
+    ParameterValues                      values;             ///< of all parameters, with μ = 0
+    std::shared_ptr<const SparseMatrix>  mass, stiffness;    ///< M_c and K_c, n × n: the symmetric terms without friction
+    double                               hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c (rounding.h) [rad²/s²]
+    std::shared_ptr<const LowRankFactor> friction_forces;    ///< A, n × n_c
+    std::shared_ptr<const SparseMatrix>  kernel;             ///< T_c, n_uncoupled × n
+    std::shared_ptr<const NearNullSpace> near_null_space;    ///< of K_c, for multigrid; null where nobody has asked for it
 
     /// Distribution of the coupled dofs.
     const RowMap &map() const;

@@ -27,6 +27,8 @@ namespace Squeal
     /// ... that have |λ| ≤ ρ = hypot(1, this) largest_circular_frequency, among them all with |Re λ| ≤ this times largest_circular_frequency [-].
     double largest_damping = 0.1;
 
+    double zero_modulus = 0.; ///< |λ| up to this is zero [rad/s]; 0: the 10⁻⁴th part of the largest frequency
+
     int    expected  = 0;    ///< guess of the number of modes, e.g. of the real modes below the same frequency
     double tolerance = 1e-9; ///< largest ‖Q(λ)φ‖₂ / ‖Kφ‖₂ [-]
 

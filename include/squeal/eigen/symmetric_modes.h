@@ -86,7 +86,7 @@ namespace Squeal
     /// ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]; for rigid-body modes ‖Kφ‖ / (largest eigenvalue · ‖Mφ‖).
     std::vector<double> residuals;
 
-    /// Eigenvalues below 1e-8 of the largest wanted one, frequencies below 1e-4: those of rigid-body motions.
+    /// Eigenvalues that rounding errors of K hide (linear_algebra/rounding.h), whatever the band: those of rigid-body motions.
     int n_rigid_body = 0;
 
     /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found. not_counted where nobody counted.

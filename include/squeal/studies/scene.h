@@ -23,6 +23,9 @@ namespace Squeal
     SecondOrderSystem      system;              ///< M, C, K: their sum
     double                 expected_modes = 0.; ///< of the coupled system in the band, by the sizes of the bodies
 
+    /// Sum of the mounts' stiffnesses on the uncoupled dofs, each in units of its largest entry; null: none.
+    std::shared_ptr<const SparseMatrix> mounts;
+
     unsigned int n_pins() const
     {
       return mesh.volume_names.size() - 1;
