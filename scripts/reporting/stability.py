@@ -27,7 +27,7 @@ def verdict(results):
     if static:
         text += f" {len(static)} {'eigenvalues grow' if len(static) > 1 else 'eigenvalue grows'} without oscillating: static divergence."
     if undecided:
-        text += f" With the error of the mesh {len(undecided)} modes are undecided."
+        text += f" {len(undecided)} {'modes are' if len(undecided) > 1 else 'mode is'} undecided within the estimated errors."
     return ("unstable" if growing or static else "undecided" if undecided else "stable"), text
 
 

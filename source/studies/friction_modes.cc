@@ -18,18 +18,37 @@ namespace Squeal
     /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /**
-     * Modes that grow beyond their uncertainty. The largest of
-     * the estimated errors counts for all: that of a single mode can be much too
-     * small by chance.
-     */
-    std::vector<bool> unstable_modes(const ComplexModes &modes)
+    /// |λ|² up to this many times what rounding hides: a slow mode, whose digits cancellation takes [-].
+    constexpr double slow_square = 1e4;
+
+    bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda)
     {
-      const auto       &errors  = modes.estimated_errors;
-      const double      largest = errors.empty() ? 0. : *std::max_element(errors.begin(), errors.end());
-      std::vector<bool> result;
-      for (const auto &lambda : modes.lambda)
-        result.push_back(verdict_of(lambda, largest * std::abs(lambda)) == Verdict::unstable);
+      return std::norm(lambda) <= slow_square * system.hidden_square;
+    }
+
+    /// Largest error of the modes that are not slow.
+    double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
+    {
+      double result = 0.;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        if (!is_slow(system, modes.lambda[j]))
+          result = std::max(result, conditioning.errors[j]);
+      return result;
+    }
+
+    /// Verdicts with these relative errors. Without damping growth needs a second mode within reach of the errors.
+    std::vector<Verdict> verdicts_of(const ComplexModes &modes, const std::vector<double> &errors, const bool has_damping)
+    {
+      const auto          &lambda = modes.lambda;
+      const auto           error  = [&](const std::size_t j) { return errors[j] * std::abs(lambda[j]); };
+      std::vector<Verdict> result;
+      for (std::size_t i = 0; i < lambda.size(); ++i)
+        {
+          bool alone = true;
+          for (std::size_t j = 0; j < lambda.size(); ++j)
+            alone = alone && (j == i || std::abs(lambda[i] - lambda[j]) > error_safety * (error(i) + error(j)));
+          result.push_back(verdict_of(lambda[i], error(i), alone && !has_damping));
+        }
       return result;
     }
 
@@ -45,7 +64,12 @@ namespace Squeal
 
   std::size_t FrictionModes::n_unstable() const
   {
-    return std::count(unstable.begin(), unstable.end(), true);
+    return n_of(Verdict::unstable);
+  }
+
+  std::size_t FrictionModes::n_of(const Verdict verdict) const
+  {
+    return std::count(verdicts.begin(), verdicts.end(), verdict);
   }
 
   std::size_t FrictionModes::n_growing_real() const
@@ -53,15 +77,30 @@ namespace Squeal
     return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
   }
 
+  std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
+  {
+    const double        largest = largest_error(system, modes, conditioning);
+    std::vector<double> result  = conditioning.errors;
+    for (std::size_t j = 0; j < result.size(); ++j)
+      if (!is_slow(system, modes.lambda[j]))
+        result[j] = largest;
+    return result;
+  }
+
   FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes)
   {
-    FrictionModes result;
+    const CoupledSystem &coupled = frictionless.linearisation.coupled;
+    FrictionModes        result;
     result.modes = std::move(modes);
+    result.conditioning =
+      estimate_conditioning(coupled, *frictionless.inverse, frictionless.shift, result.modes, modal_products(coupled, result.modes));
     // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
     result.n_slow             = std::max(0, result.modes.n_rigid_body - frictionless.real.n_rigid_body);
     result.modes.n_rigid_body = frictionless.real.n_rigid_body;
-    result.unstable           = unstable_modes(result.modes);
-    result.labels             = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
+    result.verdicts           = verdicts_of(result.modes, uncertainties(coupled, result.modes, result.conditioning), coupled.has_damping());
+    for (const Verdict one : result.verdicts)
+      result.unstable.push_back(one == Verdict::unstable);
+    result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
     mark_doublets(result.labels, growth_rates(result));
     return result;
   }
@@ -138,6 +177,9 @@ namespace Squeal
                            exact_text(mu), ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
       lines.push_back(squeal(friction, mu));
+    if (const std::size_t n = friction.n_of(Verdict::undecided); n > 0)
+      lines.push_back(text("  undecided: ", n, n == 1 ? " mode grows or decays" : " modes grow or decay", " at mu = ", exact_text(mu),
+                           " by less than the estimated error of the eigenvalue"));
     if (lines.empty())
       lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz at mu = ", exact_text(mu)));
     return lines;
@@ -154,20 +196,27 @@ namespace Squeal
     if (n_values > 0)
       rest = text(n_values, " real eigenvalues stand for modes that do not oscillate");
     if (friction.n_slow > 0)
-      rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, count as zero");
+      rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, are not listed");
     if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
       rest += text(rest.empty() ? "" : ", and ", "with friction modes crossed its end");
     return counts + rest;
   }
 
-  void record_conditioning(const FrictionlessModes &frictionless,
-                           const ComplexModes      &modes,
-                           const ModalProducts     &products,
-                           const double             tolerance,
-                           Run                     &run)
+  std::string note_on_weak_damping(const CoupledSystem &system, const FrictionModes &friction)
   {
-    const Conditioning conditioning =
-      estimate_conditioning(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift, modes, products);
+    const std::size_t n = system.has_damping() ? friction.n_of(Verdict::neutral) : 0;
+    if (n == 0)
+      return "";
+    return text("  note: ", n, " of ", friction.verdicts.size(), " modes grow or decay by less than ", 100. * negligible_divergence,
+                " % of omega, which rounding errors hide: the damping is too weak to tell, and they count as stable");
+  }
+
+  void record_conditioning(const CoupledSystem &system,
+                           const ComplexModes  &modes,
+                           const Conditioning  &conditioning,
+                           const double         tolerance,
+                           Run                 &run)
+  {
     const double kappa = std::accumulate(conditioning.modes.begin(), conditioning.modes.end(), 1.,
                                          [](const double a, const double b) { return std::max(a, b); });
     run.measure("condition number of the stiffness [-]", conditioning.stiffness);
@@ -177,11 +226,18 @@ namespace Squeal
     run.measure("largest cancellation in the stiffness [-]", conditioning.largest_cancellation);
     run.measure("largest root of eps_res [-]", conditioning.largest_residual);
     run.measure("digits of the eigenvalues [-]", conditioning.digits());
+    const auto slowest =
+      std::count_if(modes.lambda.begin(), modes.lambda.end(), [&](const auto &lambda) { return is_slow(system, lambda); });
     if (conditioning.largest_error() > tolerance)
       run.warn(text("the eigenvalues keep some ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
-                    100. * conditioning.largest_error(), " % of omega are not told from zero (condition numbers: stiffness ",
-                    conditioning.stiffness, ", eigenvalues up to ", kappa, "; cancellation in the stiffness ",
-                    conditioning.largest_cancellation, "; energy of the residuals up to ", conditioning.largest_residual, ")"));
+                    100. * largest_error(system, modes, conditioning), " % of omega are not told from zero",
+                    slowest > 0 ? text(", of ", slowest, slowest == 1 ? " mode" : " modes", " below ",
+                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz those below ",
+                                       100. * conditioning.largest_error(), " %") :
+                                  "",
+                    " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa,
+                    "; cancellation in the stiffness ", conditioning.largest_cancellation, "; energy of the residuals up to ",
+                    conditioning.largest_residual, ")"));
   }
 
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,

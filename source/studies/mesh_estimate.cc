@@ -69,8 +69,13 @@ namespace Squeal
                                                const FrictionModes     &friction,
                                                const AccuracyGoal       goal)
   {
-    return discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
-                                 friction.modes.estimated_errors);
+    auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
+                                        friction.modes.estimated_errors);
+    // What the arithmetic leaves open no mesh decides
+    for (std::size_t j = 0; j < result.size(); ++j)
+      if (friction.verdicts[j] == Verdict::undecided)
+        result[j].verdict = Verdict::undecided;
+    return result;
   }
 
   void report_mesh_errors(const std::vector<DiscretisationError> &errors, const FrictionModes &friction, Run &run)

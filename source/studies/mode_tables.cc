@@ -63,6 +63,8 @@ namespace Squeal
                             {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     if (!modes.estimated_errors.empty())
       columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
+    if (more.empty()) // else the error of the mesh is in the verdict
+      columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
     columns.insert(columns.end(), more.begin(), more.end());
     return Table(columns, boost::irange<int>(0, friction.labels.size()));
   }

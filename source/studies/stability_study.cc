@@ -134,6 +134,8 @@ namespace Squeal
       run.screen << '\n';
       if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
         run.progress.note(note);
+      if (const std::string note = note_on_weak_damping(frictionless.linearisation.coupled, friction); !note.empty())
+        run.progress.note(note);
     }
   } // namespace
 
@@ -167,10 +169,11 @@ namespace Squeal
     const Linearisation               &linearisation = frictionless.linearisation;
     const std::optional<SlidingState> &sliding       = linearisation.sliding;
     const SolverParameters            &solvers       = parameters.solvers;
-    record_conditioning(frictionless, friction.modes, modal_products(frictionless.linearisation.coupled, friction.modes),
+    record_conditioning(frictionless.linearisation.coupled, friction.modes, friction.conditioning,
                         solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
     run.count("complex modes", friction.modes.lambda.size());
     run.count("unstable modes", friction.n_unstable());
+    run.count("undecided modes", friction.n_of(Verdict::undecided));
     run.count("real eigenvalues", friction.modes.real_values.size());
     run.count("growing real eigenvalues", friction.n_growing_real());
     if (friction.n_growing_real() > 0)

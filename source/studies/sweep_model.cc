@@ -205,7 +205,10 @@ namespace Squeal
     if (last != sweep.points.rend())
       {
         const auto [modes, products] = modes_in_band(model, **last);
-        record_conditioning(model.frictionless, modes, products, 2. * options.tolerance, run);
+        const CoupledSystem &coupled = model.frictionless.linearisation.coupled;
+        record_conditioning(coupled, modes,
+                            estimate_conditioning(coupled, *model.frictionless.inverse, model.frictionless.shift, modes, products),
+                            2. * options.tolerance, run);
       }
     if (!sweep.why_stopped.empty())
       run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,

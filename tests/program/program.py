@@ -35,7 +35,7 @@ end
 """
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
-                   "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]"]
+                   "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]", "verdict"]
 
 # Of the same eigenvalue found in another way [-]
 SAME = 1e-9

@@ -2,6 +2,7 @@
 
 #include <squeal/estimates/conditioning.h>
 #include <squeal/modes/complex_modes.h>
+#include <squeal/modes/verdict.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/frictionless_modes.h>
 
@@ -16,11 +17,16 @@ namespace Squeal
   {
     ComplexModes           modes;
     std::vector<ModeLabel> labels;
+    std::vector<Verdict>   verdicts; ///< with the uncertainty of λ
     std::vector<bool>      unstable; ///< beyond their uncertainty
+    Conditioning           conditioning;
     int  n_slow = 0; ///< pairs of λ that count as zero but belong to no rigid body, such as slow decay against strong dampers
     Cost cost;       ///< of the solution
 
     std::size_t n_unstable() const;
+
+    /// Modes of this verdict.
+    std::size_t n_of(Verdict verdict) const;
 
     /// Real eigenvalues λ > 0: static divergence.
     std::size_t n_growing_real() const;
@@ -33,16 +39,20 @@ namespace Squeal
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
 
   /**
+   * Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much
+   * too small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
+   */
+  std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
+
+  /**
    * Keeps condition numbers and the digits that the eigenvalues of @p modes keep (estimates/conditioning.h) in the run record, and warns
    * where they are fewer than @p tolerance asks for, the relative error of eigenvalues that the parameters allow.
-   *
-   * @param products of the modes with K_c and M_c
    */
-  void record_conditioning(const FrictionlessModes &frictionless,
-                           const ComplexModes      &modes,
-                           const ModalProducts     &products,
-                           double                   tolerance,
-                           Run                     &run);
+  void record_conditioning(const CoupledSystem &system,
+                           const ComplexModes  &modes,
+                           const Conditioning  &conditioning,
+                           double               tolerance,
+                           Run                 &run);
 
   /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
@@ -67,4 +77,7 @@ namespace Squeal
    * eigenvalues stand for one mode that has stopped oscillating.
    */
   std::string note_on_count(const FrictionModes &modes, std::size_t n_real_modes);
+
+  /// How many modes neither grow nor decay by more than rounding errors although there is damping; empty where all do, or none is damped.
+  std::string note_on_weak_damping(const CoupledSystem &system, const FrictionModes &modes);
 } // namespace Squeal

@@ -1,0 +1,140 @@
+"""What counts as zero does not depend on the band, and a verdict knows how many digits an eigenvalue keeps."""
+
+import json
+import math
+import os
+import re
+import sys
+import unittest
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from program import SOURCE, ProgramTest, read_table
+
+try:
+    import numpy as np
+except ImportError:
+    raise unittest.SkipTest("NumPy is missing") from None
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+import exported_matrices
+
+STIFFNESS = 1e4  # of a very soft mount [N/m³]
+BANDS = (1000, 2000, 5000)
+FREE = "Mounts/Elastic mounts="
+
+
+def soft(stiffness=STIFFNESS):
+    return f"Mounts/Elastic mounts=disc_bore: {stiffness!r}, {stiffness!r}, {stiffness!r}"
+
+
+def frequencies(folder, table):
+    return [float(row["frequency [Hz]"]) for row in read_table(folder / f"{table}.csv")]
+
+
+def record(folder):
+    return json.loads((folder / "run.json").read_text(encoding="utf-8"))
+
+
+def warnings(folder):
+    return " ".join(record(folder)["warnings"])
+
+
+def of_a_rigid_disc(folder, stiffness):
+    """Frequencies of a rigid disc on its bore [Hz], which slides on the pins: along x and y ω² = k A / m, about z ω² = k A a² / J."""
+    nodes = [row for row in read_table(folder / "matrices" / "nodes.csv") if row["component"] == "disc"]
+    points = np.array([[float(row[f"{axis} [m]"]) for axis in "xyz"] for row in nodes])
+    bore, height = np.hypot(points[:, 0], points[:, 1]).min(), np.ptp(points[:, 2])
+    mass = exported_matrices.read_matrices(folder)["M"].tocsr()
+    x, z = (np.zeros(mass.shape[0]) for _ in range(2))
+    for row, point in zip(nodes, points):
+        places = [int(row[f"row {axis}"]) - 1 for axis in "xyz"]
+        x[places[0]] = 1
+        z[places[0]], z[places[1]] = -point[1], point[0]
+    area = 2 * math.pi * bore * height
+    squares = stiffness * area / (x @ mass @ x), stiffness * area * bore**2 / (z @ mass @ z)
+    return sorted(math.sqrt(square) / (2 * math.pi) for square in (squares[0], squares[0], squares[1]))
+
+
+class SoftMount(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.runs = {band: cls.run_scene(f"band-{band}", soft(), f"Band/Maximum frequency={band}", "Output/Write matrices=true")
+                    for band in BANDS}
+
+    def test_has_the_frequencies_of_a_rigid_disc_in_every_band(self):
+        for band, folder in self.runs.items():
+            expected = of_a_rigid_disc(folder, STIFFNESS)
+            for table in ("real_modes", "complex_modes"):
+                with self.subTest(band=band, table=table):
+                    np.testing.assert_allclose(frequencies(folder, table)[:3], expected, rtol=1e-2)  # the bore is a polygon
+
+    def test_lists_the_same_modes_in_every_band(self):
+        for table in ("real_modes", "complex_modes"):
+            widest = np.array(frequencies(self.runs[BANDS[-1]], table))
+            for band in BANDS[:-1]:
+                found = frequencies(self.runs[band], table)
+                np.testing.assert_allclose(found, widest[widest <= band], rtol=1e-4)
+        for folder in self.runs.values():
+            self.assertEqual(record(folder)["counts"]["rigid-body modes"], 0)
+
+    def test_leaves_growth_open_that_digits_do_not_show(self):
+        for band, folder in self.runs.items():
+            with self.subTest(band=band):
+                rows = read_table(folder / "complex_modes.csv")
+                # Of all modes, and of the slow ones
+                limits = [float(text) for text in re.findall(r"below ([-+.e0-9]+) %", warnings(folder))]
+                self.assertEqual(len(limits), 2, warnings(folder))
+                for row in rows:
+                    rate, is_slow = float(row["divergence rate [%]"]), float(row["frequency [Hz]"]) < 1
+                    if abs(rate) < limits[is_slow]:
+                        self.assertNotEqual(row["verdict"], "unstable")
+                    self.assertEqual(row["unstable [-]"], str(int(row["verdict"] == "unstable")))
+                counts = record(folder)["counts"]
+                for verdict in ("unstable", "undecided"):
+                    self.assertEqual(counts[f"{verdict} modes"], sum(row["verdict"] == verdict for row in rows))
+                # The mode that turns about the axis has neighbours along x and y, or not; along x and y there are two of one frequency
+                self.assertGreater(counts["undecided modes"], 0)
+
+
+class HiddenMount(ProgramTest):
+    def test_is_named(self):
+        folder = self.run_scene("hidden", soft(1e-3), "Band/Maximum frequency=1000")
+        self.assertEqual(record(folder)["counts"]["rigid-body modes"], 3)
+        self.assertRegex(warnings(folder), r"3 of the 3 modes .* Hz.*Mounts/Elastic mounts")
+
+    def test_is_not_meant_where_the_disc_is_free(self):
+        for band in BANDS:
+            folder = self.run_scene(f"free-{band}", FREE, f"Band/Maximum frequency={band}")
+            self.assertEqual(record(folder)["counts"]["rigid-body modes"], 3)
+            self.assertNotIn("Mounts/Elastic mounts", warnings(folder))
+            self.assertEqual(frequencies(folder, "real_modes")[:3], [0, 0, 0])
+            self.assertGreater(frequencies(folder, "complex_modes")[0], 1)
+
+    def test_is_turned_by_nothing(self):
+        """A mount that holds the disc but for its rotation leaves one mode of zero frequency, and that is no doubt."""
+        folder = self.run_scene("turning", "Mounts/Elastic mounts=disc_bore: 1e11, 0, 1e11", "Band/Maximum frequency=2000")
+        self.assertEqual(record(folder)["counts"]["rigid-body modes"], 1)
+        self.assertNotIn("Mounts/Elastic mounts", warnings(folder))
+
+
+class WeakDamping(ProgramTest):
+    def test_names_the_number_of_modes_that_it_does_not_decide(self):
+        betas = ["Disc material/Rayleigh beta=1e-14", "Pin material/Rayleigh beta=1e-14"]
+        process = self.call("scene.prm", "--output", "weak", *(word for beta in betas for word in ("--set", beta)))
+        self.assertEqual(process.returncode, 0, process.stderr)
+        rows = read_table(self.folder / "weak" / "complex_modes.csv")
+        neutral = [row for row in rows if abs(float(row["divergence rate [%]"])) <= 1e-6 and row["verdict"] == "stable"]
+        self.assertGreater(len(neutral), 0)
+        self.assertRegex(process.stdout, rf"\b{len(neutral)} of {len(rows)} modes\b.* damping")
+
+    def test_says_nothing_without_damping_or_with_enough(self):
+        for values in ([], ["--set", "Disc material/Rayleigh alpha=1", "--set", "Pin material/Rayleigh alpha=1"]):
+            process = self.call("scene.prm", "--output", f"damped-{len(values)}", *values, "--set", "Band/Maximum frequency=2000")
+            self.assertEqual(process.returncode, 0, process.stderr)
+            self.assertNotIn("too weak", process.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main()
