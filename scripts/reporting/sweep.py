@@ -2,7 +2,7 @@
 
 from reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, short
 
-TITLES = {"thresholds": "Where modes begin and cease to grow"}
+TITLES = {"onsets": "Where squeal begins", "thresholds": "Where modes begin and cease to grow"}
 REPLACED = ("complex_plane", "overview")
 COLOURS = ("#b2182b", "#2166ac", "#1b7837", "#762a83", "#bf812d", "#01665e", "#c51b7d", "#4d4d4d")
 
@@ -14,15 +14,16 @@ def is_of(results):
 def verdict(results):
     table = results.table("branches")
     rates, mus = table.numbers(RATE), table.numbers("mu [-]")
-    strong = [(mu, row) for mu, rate, row in zip(mus, rates, table.rows) if rate > WEAK]
+    strong = [row for rate, row in zip(rates, table.rows) if rate > WEAK]
+    first = [row for row in results.table("onsets").rows if number(row["divergence rate beyond [%]"]) == WEAK] if results.has("onsets") else []
     span = f"from μ = {min(mus):g} to {max(mus):g}, up to {end_of_band(results)}"
-    if not strong:
+    if not first:
         weak = any(row["growing [-]"] not in ("", "0") for row in table.rows)
         return "stable", f"No mode grows {span}" + (f" by more than a divergence rate of {WEAK} %." if weak else ".")
-    first = min(strong, key=lambda entry: entry[0])
-    worst = max(strong, key=lambda entry: number(entry[1][RATE]))[1]
-    return "unstable", (f"{len({row['branch [-]'] for _, row in strong})} modes grow by more than {WEAK} % {span}: {first[1]['label']} at "
-                        f"{number(first[1][FREQUENCY]):.0f} Hz from μ = {first[0]:.3g} on; {worst['label']} at {number(worst[FREQUENCY]):.0f} Hz "
+    worst = max(strong, key=lambda row: number(row[RATE]))
+    return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes grow by more than {WEAK} % {span}: {first[0]['label']} at "
+                        f"{number(first[0][FREQUENCY]):.0f} Hz from μ = {number(first[0]['mu [-]']):.3g} on; {worst['label']} at "
+                        f"{number(worst[FREQUENCY]):.0f} Hz "
                         f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at μ = {number(worst['mu [-]']):g}.")
 
 

@@ -4,8 +4,6 @@
 #include <squeal/studies/design_solution.h>
 #include <squeal/studies/sweep_charts.h>
 
-#include <boost/math/tools/roots.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -54,47 +52,14 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * Where the largest divergence rate of the band first exceeds weak_divergence: between two points of the chart, by the modes at
-     * points between.
-     */
-    boost::optional<DesignGrowth> weak_onset(SweepModel &model, const StabilityChart &chart, const std::vector<std::string> &labels)
+    /// The first of the onsets of several charts: @p found becomes that of one more chart if it is earlier.
+    void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
     {
-      const auto excess = [&](const ChartPoint &point) {
-        const int leading = model.leading_mode(point);
-        return leading < 0 ? -weak_divergence : modal_quantities(point.lambda[leading]).divergence_rate - weak_divergence;
-      };
-      const auto first =
-        std::find_if(chart.points.begin(), chart.points.end(), [&](const ChartPoint &point) { return excess(point) > 0.; });
-      if (first == chart.points.end())
-        return {};
-      // The label is that of the branch that grows most at the point behind
-      const int   leading = model.leading_mode(*first);
-      const auto  at      = first - chart.points.begin();
-      std::string label;
-      for (std::size_t b = 0; b < chart.branches.size(); ++b)
-        if (chart.branches[b].modes[at] == leading)
-          label = labels[b];
-      DesignGrowth result = growth_at(*first, leading, label);
-      if (first == chart.points.begin())
-        return result;
-
-      double         left = std::prev(first)->friction_coefficient, right = first->friction_coefficient;
-      const double   tolerance = model.run.parameters.sweep.threshold_tolerance;
-      std::uintmax_t n_steps   = 60;
-      const auto     value     = [&](const double mu) { return excess(model.evaluate(0, {mu}).front()); };
-      const auto     is_close  = [&](const double a, const double b) { return std::abs(b - a) <= tolerance; };
-      const auto     bracket =
-        boost::math::tools::toms748_solve(value, left, right, excess(*std::prev(first)), excess(*first), is_close, n_steps);
-      const ChartPoint point = model.evaluate(0, {bracket.second}).front();
-      const int        mode  = model.leading_mode(point);
-      // Growth by √(μ − μ_c) or by its slope: what an error of λ moves it, by the slope across the bracket or a short step behind it
-      const double step   = std::max(bracket.second - bracket.first, 1e-3 * (right - left));
-      const double behind = std::min(right, bracket.second + step);
-      const double slope  = (value(behind) - excess(point)) / std::max(behind - bracket.second, 1e-300);
-      result              = growth_at(point, mode, label);
-      result.uncertainty  = bracket.second - bracket.first + (slope > 0. ? error_safety * point.errors[mode] / slope : 0.);
-      return result;
+      if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
+        return;
+      const ModalQuantities quantities = modal_quantities(onset->lambda);
+      found                            = DesignGrowth{onset->friction_coefficient, onset->uncertainty,         labels[onset->branch],
+                           quantities.frequency,        quantities.divergence_rate, 0.};
     }
 
     boost::optional<double> overlap(const ReferenceName &name)
@@ -115,9 +80,8 @@ namespace Squeal
       for (std::size_t b = 0; b < names.size(); ++b)
         labels.push_back(names[b].name.empty() ? to_string(sweep.labels[b]) : names[b].name);
 
-      const auto weak = weak_onset(model, chart, labels);
-      if (weak && (!result.weak_onset || weak->friction_coefficient < result.weak_onset->friction_coefficient))
-        result.weak_onset = weak;
+      keep_first(sweep.onset, labels, result.onset);
+      keep_first(sweep.weak_onset, labels, result.weak_onset);
       for (const Threshold &threshold : chart.thresholds)
         {
           const int b = threshold.branch;
@@ -200,17 +164,10 @@ namespace Squeal
       return result;
     }
 
-    void finish(DesignResult &result)
+    void sort_thresholds(DesignResult &result)
     {
       std::stable_sort(result.thresholds.begin(), result.thresholds.end(),
                        [](const DesignThreshold &a, const DesignThreshold &b) { return a.friction_coefficient < b.friction_coefficient; });
-      for (const DesignThreshold &threshold : result.thresholds)
-        if (threshold.event == to_string(ThresholdEvent::onset))
-          {
-            result.onset =
-              DesignGrowth{threshold.friction_coefficient, threshold.uncertainty, threshold.label, threshold.frequency, 0., 0.};
-            break;
-          }
     }
   } // namespace
 
@@ -236,7 +193,7 @@ namespace Squeal
     DesignResult               result     = begun_result(family.shared_scene());
     take_over(*member.model, member.chart, reference, largest_mu, result);
     compare_counts(*member.model, member.chart, member.n_counted, result);
-    finish(result);
+    sort_thresholds(result);
     result.seconds = stopwatch.cost().seconds;
     return result;
   }
@@ -276,7 +233,7 @@ namespace Squeal
               }
           }
       }
-    finish(result);
+    sort_thresholds(result);
     checkpoint.remove();
     result.seconds = stopwatch.cost().seconds;
     return result;

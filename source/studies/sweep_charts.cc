@@ -99,6 +99,18 @@ namespace Squeal
       return result;
     }
 
+    /// The largest friction coefficient of a line below a stretch at which modes are known, with this contact set or another one; 0: none.
+    double value_before(const SweepModel &model, const int line, const double first)
+    {
+      double result = 0.;
+      for (const ContactRegime &regime : model.plan.regimes)
+        for (const OperatingPoint &point : regime.points)
+          if (const double mu = point.friction_coefficient;
+              point.line == line && mu < first && (&regime != &model.regime || model.known.count({line, mu}) > 0))
+            result = std::max(result, mu);
+      return result;
+    }
+
     /// Without friction as many modes as inertia counts.
     void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
     {
@@ -162,9 +174,12 @@ namespace Squeal
       const auto same = dealii::Utilities::MPI::broadcast(run.communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
       return same.empty() ? std::nullopt : std::optional(same.front());
     };
-    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}};
-    const StabilityChart &chart = result.chart;
-    result.labels               = branch_labels(model, chart);
+    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}, {}, {}};
+    const StabilityChart &chart  = result.chart;
+    const double          before = grid.empty() ? 0. : value_before(model, line, grid.front());
+    result.labels                = branch_labels(model, chart);
+    result.onset                 = first_onset(chart, options.largest_circular_frequency, before);
+    result.weak_onset            = onset_beyond(weak_divergence, chart, evaluate, options, before);
     run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
                              " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
     if (chart.n_doubtful_steps > 0)
@@ -191,38 +206,57 @@ namespace Squeal
           }
   }
 
+  std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts)
+  {
+    std::vector<SquealOnset> result;
+    for (const auto &[rate, onset] : {std::make_pair(0., &SweepChart::onset), {weak_divergence, &SweepChart::weak_onset}})
+      {
+        const SweepChart *first = nullptr;
+        for (const SweepChart &chart : charts)
+          if (chart.*onset && (!first || (chart.*onset)->friction_coefficient < (first->*onset)->friction_coefficient))
+            first = &chart;
+        if (first)
+          result.push_back({rate, *(first->*onset), first->labels[(first->*onset)->branch]});
+      }
+    return result;
+  }
+
   std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
   {
-    struct Growing
-    {
-      double          friction_coefficient;
-      ModalQuantities mode;
-      std::string     label;
-    };
-    std::vector<Growing> growing;     // in the band, by friction coefficient
-    std::size_t          n_known = 0; // of the values asked for
-    for (const auto &[chart, labels] : charts)
+    double          at = 0.; // the friction coefficient at which a mode grows most
+    ModalQuantities most{};
+    std::string     label;
+    std::size_t     n_known = 0; // of the values asked for
+    for (const SweepChart &line : charts)
       {
+        const StabilityChart &chart = line.chart;
         n_known += std::count(chart.is_refinement.begin(), chart.is_refinement.end(), false);
         for (std::size_t i = 0; i < chart.points.size(); ++i)
-          for (std::size_t b = 0; b < labels.size(); ++b)
+          for (std::size_t b = 0; b < line.labels.size(); ++b)
             if (const ChartPoint &point = chart.points[i]; chart.branches[b].modes[i] >= 0)
               if (const int j = chart.branches[b].modes[i];
                   point.lambda[j].imag() <= largest_circular_frequency && point.verdicts[j] == Verdict::unstable)
-                growing.push_back({point.friction_coefficient, modal_quantities(point.lambda[j]), to_string(labels[b])});
+                if (const auto mode = modal_quantities(point.lambda[j]); label.empty() || mode.divergence_rate > most.divergence_rate)
+                  {
+                    at    = point.friction_coefficient;
+                    most  = mode;
+                    label = to_string(line.labels[b]);
+                  }
       }
-    if (growing.empty())
+    const std::vector<SquealOnset> onsets = squeal_onsets(charts);
+    if (onsets.empty())
       return n_known == n_asked ?
                "  stable: no mode of the band grows at any friction coefficient of the sweep" :
                text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
-    const auto rate   = [](const Growing &mode) { return mode.mode.divergence_rate; };
-    const auto strong = std::find_if(growing.begin(), growing.end(), [&](const Growing &mode) { return rate(mode) > weak_divergence; });
-    const auto strongest =
-      *std::max_element(growing.begin(), growing.end(), [&](const Growing &a, const Growing &b) { return rate(a) < rate(b); });
-    const auto from = [](const Growing &mode) { return text("from mu = ", mode.friction_coefficient, " on (", mode.label, ")"); };
-    return text("  squeal ", from(growing.front()),
-                strong != growing.end() ? text(", beyond ", 100. * weak_divergence, " % ", from(*strong)) : "",
-                "; most at mu = ", strongest.friction_coefficient, ": ", strongest.label, " at ", decimal_text(strongest.mode.frequency),
-                " Hz with ", decimal_text(100. * rate(strongest)), " %");
+    std::string result = "  squeal";
+    for (const auto &[rate, onset, of_onset] : onsets)
+      {
+        // What the digits shown do not hide
+        const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
+        result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from mu = ", onset.friction_coefficient,
+                       is_uncertain ? text(" +- ", onset.uncertainty) : "", " on (", to_string(of_onset), ")");
+      }
+    return text(result, "; most at mu = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
+                decimal_text(100. * most.divergence_rate), " %");
   }
 } // namespace Squeal

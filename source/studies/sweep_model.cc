@@ -131,16 +131,6 @@ namespace Squeal
     return result;
   }
 
-  int SweepModel::leading_mode(const ChartPoint &point) const
-  {
-    const auto rate   = [&](const int mode) { return modal_quantities(point.lambda[mode]).divergence_rate; };
-    int        result = -1;
-    for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
-      if (is_in_band(point.lambda[j]) && (result < 0 || rate(j) > rate(result)))
-        result = j;
-    return result;
-  }
-
   namespace
   {
     /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.

@@ -2,6 +2,7 @@
 #include <squeal/studies/friction_modes.h>
 #include <squeal/studies/mode_shapes.h>
 #include <squeal/studies/sweep_results.h>
+#include <squeal/tracking/growth_onset.h>
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +61,7 @@ namespace Squeal
           continue;
         MapCell          &cell  = cells.back();
         const ChartPoint &point = found->second;
-        if (const int mode = model.leading_mode(point); mode >= 0)
+        if (const int mode = leading_mode(point, model.largest_circular_frequency); mode >= 0)
           {
             cell.leading = modal_quantities(point.lambda[mode]);
             if (main)
@@ -148,7 +149,7 @@ namespace Squeal
         if (model.plan.closed_at(mu) != model.regime.closed)
           continue;
         const ChartPoint point = modes_at(model, mu);
-        const int        mode  = model.leading_mode(point);
+        const int        mode  = leading_mode(point, model.largest_circular_frequency);
         if (mode < 0 || verdict_of(point.lambda[mode]) != Verdict::unstable)
           {
             run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));

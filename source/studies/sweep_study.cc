@@ -107,6 +107,19 @@ namespace Squeal
                    line.chart.thresholds);
     }
 
+    /// Where squeal begins, and from where on it is more than weak.
+    Table onset_table(const std::vector<SquealOnset> &onsets)
+    {
+      using Row     = SquealOnset;
+      const auto of = [](auto GrowthOnset::*member) { return [member](const Row &row) { return row.onset.*member; }; };
+      return Table(Columns<Row>{{"divergence rate beyond", "%", [](const Row &row) { return 100. * row.divergence_rate; }, 4},
+                                {"mu", "-", of(&GrowthOnset::friction_coefficient), 6},
+                                {"uncertainty", "-", of(&GrowthOnset::uncertainty), 1, true},
+                                {"label", "", &Row::label},
+                                {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.onset.lambda).frequency; }, 3}},
+                   onsets);
+    }
+
     /// Where branches enter or leave the band.
     Table crossing_table(const SweepChart &line)
     {
@@ -267,7 +280,10 @@ namespace Squeal
     note_unknown_contact(plan, run);
 
     if (!main.empty())
-      run.progress.note("\n" + verdict(main, plan.lines[0].friction_coefficients.size(), omega_max));
+      {
+        run.progress.note("\n" + verdict(main, plan.lines[0].friction_coefficients.size(), omega_max));
+        run.store_table("onsets", onset_table(squeal_onsets(main)));
+      }
     write_charts(plan, charts, omega_max, run);
     if (!plane.empty())
       run.store_table("complex_plane", plane_table(plane));

@@ -116,7 +116,8 @@ class Reports(ProgramTest):
         rows = [row for row in self.rows("sweep", "branches") if float(row[RATE]) > 0.01]
         words = self.verdict("sweep")
         self.assertTrue(words.startswith(f"{len({row['branch [-]'] for row in rows})} modes grow by more than 0.01 %"), words)
-        self.assertIn(f"from μ = {min(float(row['mu [-]']) for row in rows):.3g} on", words)
+        onset, = [row for row in self.rows("sweep", "onsets") if float(row["divergence rate beyond [%]"]) == 0.01]
+        self.assertIn(f"from μ = {float(onset['mu [-]']):.3g} on", words)
 
     def test_charts(self):
         """As many curves as branches, as many marks as modes."""

@@ -137,7 +137,7 @@ class Sweep(SweepTest):
         names = {path.name for path in self.results.iterdir()}
         tables = {f"{name}{suffix}.csv" for name in ("branches", "thresholds", "counts", "band_crossings")
                   for suffix in ("", "_without_dissipation")}
-        self.assertEqual(names, tables | {"complex_plane.csv", "argument_counts.csv", "map.csv", "modes", "animations", "parameters.prm",
+        self.assertEqual(names, tables | {"onsets.csv", "complex_plane.csv", "argument_counts.csv", "map.csv", "modes", "animations", "parameters.prm",
                                           "run.json"})
         self.assertFalse((self.folder / "results.checkpoint").exists())
         for suffix in ("", "_without_dissipation"):
@@ -309,6 +309,55 @@ class Sweep(SweepTest):
             growth = max(float(other["divergence rate [%]"]) for other in rows)
             self.assertAlmostEqual(float(row["divergence rate [%]"]), growth, delta=100 * DEFAULT_ACCURACY)
             self.assertEqual(int(row["unstable modes [-]"]), sum(other["verdict"] == "unstable" for other in rows))
+
+
+class Onsets(SweepTest):
+    """Where squeal begins, of materials with unequal damping: the same in the summary, all tables and runs at single friction coefficients."""
+
+    DAMPED = ["Disc material/Rayleigh beta=1.8e-8", "Pin material/Rayleigh beta=4.5e-7"]
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        settings = [word for override in (SWEEP, *GRID, *cls.DAMPED) for word in ("--set", override)]
+        cls.screen = cls.call("scene.prm", "--output", "coarse", *settings).stdout
+        cls.coarse = cls.folder / "coarse"
+        cls.growth, cls.weak = ((float(row["mu [-]"]), float(row["uncertainty [-]"]), row["label"]) for row in read_table(cls.coarse / "onsets.csv"))
+
+    def assert_same_onset(self, row, mu, uncertainty, expected):
+        self.assertLessEqual(abs(float(row[mu]) - expected[0]), float(row[uncertainty]) + expected[1])
+
+    def test_summary_and_thresholds(self):
+        self.assertEqual([row["divergence rate beyond [%]"] for row in read_table(self.coarse / "onsets.csv")], ["0", "0.01"])
+        self.assertEqual(re.search(r"squeal from mu = (\S+) on \((.*?)\), beyond 0.01 % from mu = (\S+) on \((.*?)\)", self.screen).groups(),
+                         (f"{self.growth[0]:.4g}", self.growth[2], f"{self.weak[0]:.4g}", self.weak[2]))
+        first = thresholds(self.coarse)[0]
+        self.assertEqual((first["mu [-]"], first["uncertainty [-]"], first["label"]), self.growth)
+        self.assertLess(self.growth[0], self.weak[0])
+
+    def test_other_values_of_the_sweep(self):
+        fine = read_table(self.sweep("fine", *self.DAMPED, "Sweep/Number of friction coefficients=31") / "onsets.csv")
+        for row, expected in zip(fine, (self.growth, self.weak)):
+            self.assert_same_onset(row, "mu [-]", "uncertainty [-]", expected)
+
+    def test_list_of_designs(self):
+        folder = self.run_scene("designs", "Study=geometry", *GRID, *self.DAMPED, "Designs/Variables=Disc material/Rayleigh beta = 1.8e-8")
+        row, = read_table(folder / "designs.csv")
+        self.assert_same_onset(row, "first onset [-]", "uncertainty of first onset [-]", self.growth)
+        self.assert_same_onset(row, "mu of 0.01 % [-]", "uncertainty of mu of 0.01 % [-]", self.weak)
+
+    def test_single_runs_on_both_sides(self):
+        for (mu, uncertainty, _), level in ((self.growth, 0.0), (self.weak, 1e-4)):
+            self.assertLess(uncertainty, 1e-5)
+            below, above = (max(divergence(value) for value in self.modes_at(mu + sign * uncertainty, *self.DAMPED)) for sign in (-1, 1))
+            self.assertLess(below, level)
+            self.assertGreater(above, level)
+
+    def test_growth_at_the_first_value(self):
+        """It began below: the uncertainty says so, and so does the summary."""
+        results = self.sweep("late", *self.DAMPED, "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=2")
+        for row in read_table(results / "onsets.csv"):
+            self.assertEqual((row["mu [-]"], row["uncertainty [-]"]), ("0.4", "0.4"))
 
 
 class OtherProcessors(SweepTest):

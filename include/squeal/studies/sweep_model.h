@@ -42,9 +42,6 @@ namespace Squeal
       return lambda.imag() <= largest_circular_frequency;
     }
 
-    /// The mode of the band that grows most, or is damped least; -1: none.
-    int leading_mode(const ChartPoint &point) const;
-
     const SweepPlan                             &plan;
     const ContactRegime                         &regime;
     Run                                         &run;
