@@ -18,6 +18,8 @@ import sys
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
+from parameter_file import read_parameters
+
 FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate [%]"
 ESTIMATED_FREQUENCY, ESTIMATED_DIVERGENCE = ("estimated frequency error by the mesh [%]", "estimated divergence rate error by the mesh [%]")
 OTHER_KIND = 0.002  # of the frequency: where disc and pins take part alike, a mode's name may change from mesh to mesh
@@ -30,10 +32,10 @@ def read(folder):
 
 def accuracy(folder):
     """What RUN was asked for [%]."""
-    for line in (pathlib.Path(folder) / "parameters.prm").read_text(encoding="utf-8").splitlines():
-        if line.split("=")[0].split() == ["set", "Accuracy"]:
-            return float(line.split("=")[1].replace("%", ""))
-    sys.exit(f"error: {folder} was run without `set Accuracy`")
+    goal = read_parameters(pathlib.Path(folder) / "parameters.prm").get("Accuracy", "as given")
+    if goal == "as given":
+        sys.exit(f"error: {folder} was run without `set Accuracy`")
+    return float(goal.replace("%", ""))
 
 
 def kind(mode):

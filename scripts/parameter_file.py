@@ -3,16 +3,27 @@
 import pathlib
 import re
 
+BLANKS = " \t\r\n\v\f"
+
+
+def read_value(text):
+    """What stands behind `=`: the text in double quotes, or what comes before a comment."""
+    text = text.strip(BLANKS)
+    if quoted := re.match(r'"((?:[^"\\]|\\.)*)"', text):
+        return re.sub(r"\\(.)", lambda escaped: "\n" if escaped[1] == "n" else escaped[1], quoted[1])
+    return text.split("#", 1)[0].strip(BLANKS)
+
 
 def read_parameters(path):
-    """Values of a parameter file as a dictionary "Section/Name" -> text."""
+    """Values of a parameter file as a dictionary "Section/Name" -> text. Names of files need not be UTF-8."""
     values, sections = {}, []
-    for line in pathlib.Path(path).read_text(encoding="utf-8").splitlines():
-        line = line.split("#", 1)[0].strip()
-        if match := re.fullmatch(r"subsection\s+(.+)", line):
+    for line in pathlib.Path(path).read_text(encoding="utf-8", errors="surrogateescape").split("\n"):
+        line = line.strip(BLANKS)
+        statement = line.split("#", 1)[0].strip(BLANKS)
+        if match := re.fullmatch(r"subsection\s+(.+)", statement):
             sections.append(match[1])
-        elif line == "end":
+        elif statement == "end":
             sections.pop()
-        elif match := re.fullmatch(r"set\s+(.+?)\s*=\s*(.*)", line):
-            values["/".join([*sections, match[1]])] = match[2]
+        elif match := re.fullmatch(r"set\s+([^#]+?)\s*=(.*)", line):
+            values["/".join([*sections, match[1]])] = read_value(match[2])
     return values

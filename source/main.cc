@@ -15,6 +15,7 @@
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -76,7 +77,7 @@ Decides whether a disc rubbed by friction pins squeals.
     options.revision = revision;
     options.output   = line.output.value_or("results/" + std::filesystem::path(line.parameter_file).stem().string());
     options.dry_run  = line.dry_run;
-    options.again    = {line.parameter_file};
+    options.again    = {(std::filesystem::path(".") / line.parameter_file).string()}; // a name that begins with `-` is no option there
     for (const std::string &text : line.overrides)
       options.again.push_back("--set=" + text);
     options.designs = line.designs;
@@ -94,6 +95,14 @@ Decides whether a disc rubbed by friction pins squeals.
     // TBB throws the text alone
     return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
            std::string(error.what()).find(std::strerror(EAGAIN)) != std::string::npos;
+  }
+
+  /// Closed standard streams become /dev/null: files and pipes opened later would take their numbers, and what is printed.
+  void open_closed_streams()
+  {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+      if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", O_RDWR) != stream) // it takes the lowest free number
+        return;
   }
 
   /// The message of a failed run; rethrows what is being handled.
@@ -156,6 +165,7 @@ Decides whether a disc rubbed by friction pins squeals.
 int main(int argc, char **argv)
 try
   {
+    open_closed_streams();
     Squeal::return_freed_blocks();
     Squeal::ignore_again(); // before the program starts itself again, perhaps
     Squeal::use_native_blas_kernels(argv);

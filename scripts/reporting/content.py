@@ -71,7 +71,7 @@ def repeat(results):
     record = results.record
     return {"command": record.get("command", ""), "finished": record.get("finished", ""), "time": f"{record.get('wall time [s]', math.nan):.1f} s",
             "versions": ", ".join(f"{name} {version}" for name, version in record.get("versions", {}).items()),
-            "warnings": record.get("warnings", []), "parameters": (results.folder / "parameters.prm").read_text(encoding="utf-8")}
+            "warnings": record.get("warnings", []), "parameters": (results.folder / "parameters.prm").read_text(encoding="utf-8", errors="replace")}
 
 
 def content(results):

@@ -62,7 +62,7 @@ namespace Squeal
               refuse("an option lacks its value", word);
           }
         else
-          refuse("unknown option", word);
+          refuse("unknown option", word, "squeal --help lists the options; write ./NAME for a file whose name begins with `-`");
       }
     if (files.size() > 1)
       refuse("more than one parameter file", files[1], "give one; scripts/run.sh runs several in turn");

@@ -15,6 +15,16 @@
 
 namespace Squeal
 {
+  std::string designs_file(const Parameters &parameters)
+  {
+    namespace fs            = std::filesystem;
+    const std::string &name = parameters.designs.file;
+    if (parameters.designs.choice != DesignChoice::file || name.empty())
+      return "";
+    const fs::path beside = fs::path(parameters.geometry.directory) / name;
+    return fs::exists(beside) || !fs::exists(name) ? beside.string() : name;
+  }
+
   namespace
   {
     using dealii::Utilities::trim;
@@ -29,18 +39,16 @@ namespace Squeal
     /// Path and content of the file, without the mark of UTF-8.
     std::pair<std::string, std::string> read_file(const Parameters &parameters)
     {
-      namespace fs            = std::filesystem;
-      const std::string &name = parameters.designs.file;
-      if (name.empty())
+      const std::string file = designs_file(parameters);
+      if (file.empty())
         throw ParameterError("no file of designs is named", "parameter Designs/File", "name a CSV file, or choose another Designs/Plan");
-      const fs::path beside = fs::path(parameters.geometry.directory) / name, file = fs::exists(beside) ? beside : fs::path(name);
-      std::ifstream  stream(file, std::ios::binary);
-      std::string    content{std::istreambuf_iterator<char>(stream), {}};
-      if (!stream.is_open() || stream.bad() || fs::is_directory(file))
-        throw FileError("the file of designs cannot be read", "file " + beside.string() + ", parameter Designs/File",
+      std::ifstream     stream(file, std::ios::binary);
+      const std::string content{std::istreambuf_iterator<char>(stream), {}};
+      if (!stream.is_open() || stream.bad() || std::filesystem::is_directory(file))
+        throw FileError("the file of designs cannot be read", "file " + file + ", parameter Designs/File",
                         "check its name and permissions");
       constexpr const char *utf8_mark = "\xEF\xBB\xBF";
-      return {file.string(), content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content};
+      return {file, content.rfind(utf8_mark, 0) == 0 ? content.substr(3) : content};
     }
 
     /// Refuses encodings and line ends that hide the lines of a file.

@@ -3,9 +3,11 @@
 #include <squeal/parameters/parameter_file.h>
 
 #include <boost/algorithm/string/predicate.hpp>
+#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -55,6 +57,30 @@ namespace Squeal
                              "give a text file in UTF-8");
       constexpr const char *byte_order_mark = "\xEF\xBB\xBF";
       return starts_with(text, byte_order_mark) ? text.substr(3) : text;
+    }
+
+    constexpr const char *how_to_quote =
+      R"(write it between double quotes, with \" for a quote in it, \\ for a backslash, \n for a line break)";
+
+    /// Position of the quote that closes a text which begins with one; the end of the text where there is none.
+    std::size_t closing_quote(const std::string &text)
+    {
+      std::size_t i = 1;
+      while (i < text.size() && text[i] != '"')
+        i += text[i] == '\\' ? 2 : 1;
+      return std::min(i, text.size());
+    }
+
+    /// The value on a line, whose comment begins at the first `#` outside quotes.
+    std::string value_before_comment(const std::string &text, const std::string &where)
+    {
+      const std::string whole   = trim_copy(text);
+      const std::size_t comment = whole.find('#', starts_with(whole, "\"") ? closing_quote(whole) : 0);
+      const auto        is_word = [&](const std::size_t i) { return i < whole.size() && std::strchr(blanks, whole[i]) == nullptr; };
+      if (comment != std::string::npos && comment > 0 && whole[0] != '"' && is_word(comment - 1) && is_word(comment + 1))
+        throw ParameterError("`#` begins a comment, and cuts the value " + in_quotes(whole) + " short", where,
+                             "put the value between double quotes, or a blank before the comment");
+      return read_value(whole.substr(0, comment), where);
     }
 
     /// Reads a file and those that it includes.
@@ -150,13 +176,15 @@ namespace Squeal
             const auto equal = rest.find('=');
             if (equal == std::string::npos)
               throw ParameterError(in_quotes(text) + " has no `=`", where, "write set NAME = VALUE");
-            statements.push_back({path(single_spaced(rest.substr(0, equal))), trim_copy(rest.substr(equal + 1)), where});
+            const std::string value = value_before_comment(line.substr(line.find('=') + 1), where);
+            statements.push_back({path(single_spaced(rest.substr(0, equal))), value, where});
           }
         else if ((key == "include" || key == "INCLUDE") && !rest.empty())
           {
-            std::error_code ignored;
-            const fs::path  beside = fs::path(file).parent_path() / rest;
-            read(fs::exists(beside, ignored) ? beside.string() : rest, where + ", which includes " + in_quotes(rest));
+            std::error_code   ignored;
+            const std::string name   = value_before_comment(line.substr(line.find(key) + key.size()), where);
+            const fs::path    beside = fs::path(file).parent_path() / name;
+            read(fs::exists(beside, ignored) ? beside.string() : name, where + ", which includes " + in_quotes(name));
           }
         else
           throw ParameterError(in_quotes(text) + " is no line of a parameter file", where,
@@ -179,5 +207,39 @@ namespace Squeal
     Reader reader;
     reader.read(file, "file " + legible(file));
     return std::move(reader.statements);
+  }
+
+  std::string written_value(const std::string &value)
+  {
+    const bool is_plain = value == trim_copy(value) && value.find_first_of("#\n") == std::string::npos && !starts_with(value, "\"") &&
+                          !boost::ends_with(value, "\\");
+    if (is_plain)
+      return value;
+    std::string result = value;
+    for (const auto &[character, written] : {std::pair("\\", R"(\\)"), std::pair("\"", R"(\")"), std::pair("\n", R"(\n)")})
+      boost::replace_all(result, character, written);
+    return '"' + result + '"';
+  }
+
+  std::string read_value(const std::string &text, const std::string &where)
+  {
+    const std::string whole = trim_copy(text);
+    if (!starts_with(whole, "\""))
+      return whole;
+    const std::size_t end = closing_quote(whole);
+    if (end + 1 != whole.size())
+      throw ParameterError(
+        "the value " + in_quotes(whole) +
+          (end == whole.size() ? " does not end with the quote that it begins with" : " goes on behind its closing quote"),
+        where, how_to_quote);
+    std::string result;
+    for (std::size_t i = 1; i < end; ++i)
+      if (whole[i] != '\\')
+        result += whole[i];
+      else if (const char escaped = whole[++i]; std::strchr(R"("\n)", escaped) != nullptr)
+        result += escaped == 'n' ? '\n' : escaped;
+      else
+        throw ParameterError("the value " + in_quotes(whole) + " holds " + in_quotes(whole.substr(i - 1, 2)), where, how_to_quote);
+    return result;
   }
 } // namespace Squeal

@@ -140,7 +140,7 @@ namespace Squeal
       const std::string where = "--set \"" + legible(text) + "\"";
       if (equal == std::string::npos)
         throw ParameterError("an override has no `=`", where, "write --set \"Section/Name=value\"");
-      return {single_spaced(text.substr(0, equal)), dealii::Utilities::trim(text.substr(equal + 1)), where};
+      return {single_spaced(text.substr(0, equal)), read_value(text.substr(equal + 1), where), where};
     }
 
     /// Declares the parameter that names the study.
@@ -253,7 +253,7 @@ namespace Squeal
         const auto slash = path.find('/');
         if (slash != std::string::npos)
           prm.enter_subsection(path.substr(0, slash));
-        prm.declare_entry(path.substr(slash + 1), value(), dealii::Patterns::Anything(),
+        prm.declare_entry(path.substr(slash + 1), written_value(value()), dealii::Patterns::Anything(),
                           documentation + (accepted.empty() ? "" : " Accepts " + accepted + "."));
         if (slash != std::string::npos)
           prm.leave_subsection();

@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/parameters/parameter_file.h>
 #include <squeal/studies/ingredient_selection.h>
 #include <squeal/studies/ingredient_tables.h>
 #include <squeal/studies/parameter_usage.h>
@@ -158,7 +159,7 @@ namespace Squeal
               section = path.substr(0, slash);
               stream << "subsection " << section << '\n';
             }
-          stream << "  set " << path.substr(slash + 1) << " = " << declarations.find(path)->print() << '\n';
+          stream << "  set " << path.substr(slash + 1) << " = " << written_value(declarations.find(path)->print()) << '\n';
         }
       end_section();
     }

@@ -1,5 +1,6 @@
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/parameters/design_file.h>
 #include <squeal/studies/run.h>
 
 #include <deal.II/base/mpi.h>
@@ -100,6 +101,11 @@ namespace Squeal
   {
     Parameters repeated    = parameters;
     repeated.geometry.file = copy_of(parameters.geometry.path()).name;
+    if (const std::string designs = designs_file(parameters); !designs.empty())
+      {
+        repeated.designs.file = "designs/given.csv";
+        results->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
+      }
     results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
     record.files = results->files();
     results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });

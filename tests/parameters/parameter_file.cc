@@ -149,3 +149,42 @@ TEST_F(ParameterFile, WhatIsNoParameterFileIsRefused)
   expect(refusal(write("a.prm", "friction = 3\n")), "`friction = 3` is no line of a parameter file");
   expect(refusal(write("a.prm", "subsection A\nend of it\n")), "`end of it` is no line");
 }
+
+TEST_F(ParameterFile, ValuesBetweenQuotesAreTakenAsTheyAre)
+{
+  EXPECT_EQ(statements(write("a.prm", "set a = \"plate #2.geo\" # why\nset b=\" x \"\nset c = \"\"\nset d = \"a\\\\b \\\"c\\\" \\n\"\n"
+                                      "set e = no \"quotes\"\nset f = \"one, \\\n two\"\n")),
+            (Statements{"a=plate #2.geo", "b= x ", "c=", "d=a\\b \"c\" \n", "e=no \"quotes\"", "f=one, two"}));
+  write("below/part #1.prm", "set g = 1\n");
+  EXPECT_EQ(statements(write("b.prm", "include \"below/part #1.prm\" # why\n")), Statements{"g=1"});
+}
+
+TEST_F(ParameterFile, WrittenValuesReadBackUnchanged)
+{
+  EXPECT_EQ(written_value("disc_bore: 0, 7.8e10; \"b\" \\x"), "disc_bore: 0, 7.8e10; \"b\" \\x"); // quotes only where they are needed
+  const std::vector<std::string> parts = {
+    "", " ", "\t", "#", "\"", "\\", "\n", "\r", "\"\"", "\\n", "\\\"", "set a = 1\nend", "\xC3\xBC", "\xFF", "$(x)", "a = b"};
+  std::vector<std::string> values = parts;
+  for (const std::string &first : parts)
+    for (const std::string &last : parts)
+      values.push_back(first + "a" + last);
+  for (const std::string &value : values)
+    {
+      EXPECT_EQ(statements(write("a.prm", "set a = " + written_value(value) + " \r\nset b = 1 # end\n")),
+                (Statements{"a=" + value, "b=1"}));
+      EXPECT_EQ(read_value(written_value(value), ""), value);
+    }
+}
+
+TEST_F(ParameterFile, WhatWouldCutAValueIsRefused)
+{
+  const std::string cut = refusal(write("a.prm", "set a = 1\nset b = plate#2.geo\n"));
+  expect(cut, "`#`");
+  expect(cut, "`plate#2.geo`");
+  expect(cut, "line 2");
+  EXPECT_EQ(statements(write("a.prm", "set a = 1# why\nset b = 2 #why\nset c = #why\n")), (Statements{"a=1", "b=2", "c="}));
+  expect(refusal(write("a.prm", "include part#1.prm\n")), "`part#1.prm`");
+  expect(refusal(write("a.prm", "set a = \"x # y\n")), "`\"x # y`");
+  expect(refusal(write("a.prm", "set a = \"x\" y # z\n")), "`\"x\" y`");
+  expect(refusal(write("a.prm", "set a = \"C:\\data\"\n")), "`\\d`");
+}

@@ -196,7 +196,11 @@ class DesignsTest(ProgramTest):
     def test_designs_of_a_file(self):
         (self.folder / "designs.csv").write_text('Geometry/Pin height,"Geometry/Top pin angles + Geometry/Bottom pin angles"\n0.030,"-12, 12"\n',
                                                  encoding="utf-8")
-        rows = read_table(self.run_scene("file", *STUDY, "Designs/Plan=file", "Designs/File=designs.csv") / "designs.csv")
+        study = self.run_scene("file", *STUDY, "Designs/Plan=file", "Designs/File=designs.csv")
+        (self.folder / "designs.csv").replace(study / "designs.csv.former")
+        process = self.call("file/parameters.prm", "--dry-run")
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+        rows = read_table(study / "designs.csv")
         self.assertEqual([row["Geometry/Top pin angles + Geometry/Bottom pin angles"] for row in rows], ["-12, 12"])
         self.assertEqual([row["outcome"] for row in rows], ["solved"])
 

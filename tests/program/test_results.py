@@ -2,16 +2,21 @@
 
 import json
 import math
+import os
 import re
 import pathlib
 import shlex
 import shutil
 import subprocess
+import sys
 import unittest
 import xml.etree.ElementTree
 
-from program import COMPLEX_COLUMNS, EXECUTABLE, SAME, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
+from program import COMPLEX_COLUMNS, EXECUTABLE, SAME, SOURCE, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
 from vtu_file import VtuFile
+
+sys.path.insert(0, str(SOURCE / "scripts"))
+from parameter_file import read_parameters  # noqa: E402
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 VTU = "Output/Field format=VTU"
@@ -144,6 +149,60 @@ class Results(ProgramTest):
 # Of the complex modes the unstable ones, of the others all
 SHAPES = ("Output/Mode shapes=unstable", "Output/Component mode shapes=true", "Output/Real mode shapes=true",
           "Output/Animation periods=2", "Output/Animation growth=true")
+
+
+class Repetition(ProgramTest):
+    """Files and folders may have any name, and standard streams may be closed: the parameters of a run repeat it."""
+
+    BAND = ("--set", "Band/Maximum frequency=1000")
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.results = cls.run_scene("results", cls.BAND[1])
+
+    def assert_same_results(self, folder):
+        for name in [*TABLES, "mesh.msh"]:
+            self.assertEqual((self.folder / folder / name).read_bytes(), (self.results / name).read_bytes(), name)
+
+    def complete(self, *arguments):
+        # As bytes: what is printed has the names, which need not be UTF-8
+        process = subprocess.run([EXECUTABLE, *self.BAND, *arguments], cwd=self.folder, capture_output=True, check=False, timeout=300)
+        self.assertEqual((process.returncode, process.stderr), (0, b""), arguments)
+
+    def test_any_name_repeats_the_run(self):
+        scene = (self.folder / "scene.prm").read_bytes()
+        for name in ("plate #2", " blanks\t", '"a" b"', "back\\slash\\n\\", "line\nbreak", "-\xfc", os.fsdecode(b"-\xff\xfe"), "$HOME *':,;=|"):
+            with self.subTest(name):
+                mesh = f"{name}.msh"
+                written = '"' + mesh.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n") + '"'
+                shutil.copy(self.results / "mesh.msh", self.folder / mesh)
+                (self.folder / f"{name}.prm").write_bytes(scene + os.fsencode(f"subsection Geometry\n  set File = {written} # why\nend\n"))
+                self.complete(f"--output={name}", "--", f"{name}.prm")
+                (self.folder / mesh).unlink()
+                self.complete("--output", "again", "--", f"{name}/parameters.prm")
+                for folder in (name, "again"):
+                    self.assertEqual(list((self.folder / folder / "geometry").iterdir()), [self.folder / folder / "geometry" / mesh])
+                for table in TABLES:
+                    self.assertEqual((self.folder / "again" / table).read_bytes(), (self.folder / name / table).read_bytes())
+                self.assertEqual(read_parameters(self.folder / name / "parameters.prm")["Geometry/File"], f"geometry/{mesh}")
+                shutil.rmtree(self.folder / "again")
+
+    def test_what_begins_a_comment_is_kept_in_overrides(self):
+        shutil.copy(self.results / "mesh.msh", self.folder / "a #1.msh")
+        for value in ("a #1.msh", '"a #1.msh"'):
+            self.complete("scene.prm", "--output", "numbered", "--set", f"Geometry/File={value}")
+            self.complete("numbered/parameters.prm", "--output", "again")
+            self.assertTrue((self.folder / "again" / "geometry" / "a #1.msh").is_file())
+
+    def test_closed_streams(self):
+        for closed in ("<&-", ">&-", "2>&-", ">&- 2>&-", "<&- >&- 2>&-"):
+            with self.subTest(closed):
+                process = subprocess.run(["sh", "-c", f'exec "$0" "$@" {closed}', EXECUTABLE, "scene.prm", *self.BAND, "--output", "closed"],
+                                         cwd=self.folder, capture_output=True, check=False, timeout=300)
+                self.assertEqual(process.returncode, 0, process.stderr)
+                self.assert_same_results("closed")
+                shutil.rmtree(self.folder / "closed")
 
 
 class CompactShapes(ProgramTest):
