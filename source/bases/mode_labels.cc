@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/bases/mode_labels.h>
 #include <squeal/linear_algebra/communication.h>
 
@@ -14,8 +13,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Functions r^k e^{inθ} of a disc's plane that the others do not span.
-    const Decision independent("rest of a function of a label / function", 1e-8);
+    /// Norm of what projection leaves of a function r^k e^{inθ}, over its norm, up to which the others span it: well above rounding errors.
+    constexpr double smallest_rest = 1e-8;
 
     /// The same sums over the processes on all of them, to the last bit.
     DenseMatrix summed(const MPI_Comm communicator, DenseMatrix parts)
@@ -49,7 +48,7 @@ namespace Squeal
                 Q.col(j).noalias() -= Q.leftCols(j) * c;
               }
             const double after = norm(communicator, j);
-            if (independent.exceeded_by(after / before))
+            if (after / before > smallest_rest)
               {
                 R(j, j) = after;
                 Q.col(j) /= after;

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/linear_algebra/communication.h>
@@ -17,8 +16,6 @@ namespace Squeal
     constexpr double largest_orthonormality_defect = 1e-10;
     /// M-norm of a rigid-body motion outside of given modes below which they contain it.
     constexpr double contained = 1e-6;
-
-    const Decision connected("singular value of the gaps of component vectors / tolerance of their rank", 1.);
 
     std::string where(const BasisRecipe &recipe)
     {
@@ -99,8 +96,7 @@ namespace Squeal
 
       const double largest = values.front();
       const int    n_r0    = T_r0.n_columns();
-      connection.rank =
-        std::count_if(values.begin(), values.end(), [&](const double value) { return connected.exceeded_by(value / largest / tolerance); });
+      connection.rank = std::count_if(values.begin(), values.end(), [&](const double value) { return value / largest / tolerance > 1.; });
       if (connection.rank == n_r0)
         throw SolverError("no combination of its " + std::to_string(n_r0) + " vectors keeps the contact closed", where(recipe),
                           "take more component modes");

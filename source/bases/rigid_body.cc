@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/replicate.h>
@@ -13,8 +12,8 @@ namespace Squeal
 {
   namespace
   {
-    const Decision elastic_resistance("square of the frequency of a rigid-body motion / what rounding hides", 1.);
-    const Decision normal_motion("normal motion of contact nodes / rigid-body motion of the disc", 1e-8);
+    /// Normal motion of contact nodes over the motion of the disc, up to which it is a rounding error of sliding.
+    constexpr double no_normal_motion = 1e-8;
 
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
     std::pair<MultiVector, std::vector<double>> rayleigh_ritz(const MultiVector &X, const SecondOrderSystem &system)
@@ -67,8 +66,7 @@ namespace Squeal
     const SingularValues axes = singular_values(D); // descending
     const auto [values, V]    = agreed(motions.communicator(), {axes.values, axes.right});
     const int k               = motions.n_columns();
-    const int rank =
-      std::count_if(values.begin(), values.end(), [size](const double value) { return normal_motion.exceeded_by(value / size); });
+    const int rank = std::count_if(values.begin(), values.end(), [size](const double value) { return value / size > no_normal_motion; });
 
     ContactMotions result;
     if (rank > 0)
@@ -82,8 +80,7 @@ namespace Squeal
   {
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
     const double hidden             = unresolved_square(*system.stiffness, *system.mass);
-    const int    n_free             = std::count_if(eigenvalues.begin(), eigenvalues.end(),
-                                                    [hidden](const double value) { return !elastic_resistance.exceeded_by(value / hidden); });
+    const int    n_free = std::count_if(eigenvalues.begin(), eigenvalues.end(), [hidden](const double value) { return !(value > hidden); });
     if (n_free == 0)
       return {};
     return view(modes, 0, n_free);

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/contact/contact_interface.h>
@@ -19,7 +18,8 @@ namespace Squeal
 
   namespace
   {
-    const Decision inclined("direction cosine of the normal of a contact node", 1e-12);
+    /// Direction cosine of a normal up to which it is a rounding error of the coordinates [-].
+    constexpr double not_inclined = 1e-12;
 
     /// Nodes closer to the axis, compared with the outermost one, have no sliding direction but that of rounding errors [-].
     constexpr double smallest_axis_distance = 1e-8;
@@ -97,7 +97,7 @@ namespace Squeal
     {
       normal *= 1. / normal.norm();
       for (double &cosine : normal)
-        if (!inclined.exceeded_by(std::abs(cosine)))
+        if (!(std::abs(cosine) > not_inclined))
           cosine = 0.;
       node.normal = (1. / normal.norm()) * normal;
 

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/linear_algebra/dense_lu.h>
@@ -20,8 +19,8 @@ namespace Squeal
     constexpr double unit_mass = 1e-11;
     /// Part of λ that is imaginary, below which nothing takes it for oscillating.
     constexpr double surely_real = 1e-13;
-    /// λ oscillates; below, it is real.
-    const Decision oscillating_dense("Im / modulus of an eigenvalue of a dense quadratic problem", 1e-12);
+    /// |Im λ| / |λ| up to which λ is real: rounding in corrected eigenvalues stays below, oscillating modes far above.
+    constexpr double real_dense = 1e-12;
 
     /// The root of a real or complex square with Im λ ≥ 0.
     Complex upper_root(const Complex square)
@@ -135,7 +134,7 @@ namespace Squeal
       for (int j = 0; j < companion.rows(); ++j)
         {
           const Complex lambda = value(j);
-          if (!oscillating_dense.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda)))
+          if (!(std::abs(lambda.imag()) / std::abs(lambda) > real_dense))
             {
               modes.real_values.push_back(lambda.real());
               if (linear)

@@ -3,7 +3,6 @@
 
 #include <squeal/eigen/phase.h>
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/eigen/quadratic_modes.h>
@@ -20,11 +19,8 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    const Decision nonzero("square of |lambda| of a mode / what rounding hides", 1.);
-    /// Real λ below this part of the band's end creep: they count with the zeros.
-    const Decision listed_real("|lambda| of a real eigenvalue / end of the band", zero_frequency);
-    /// λ oscillates; below, it is real.
-    const Decision oscillating("Im / modulus of lambda of a mode", 1e-7);
+    /// |Im λ| / |λ| up to which λ is real: a double real λ splits into a pair by the root of rounding errors.
+    constexpr double nearly_real = 1e-7;
     /// Values beyond the radius that have to converge, so that none inside can still be on its way.
     constexpr int n_beyond = 2;
     /// Block steps of fresh directions, with the values found deflated, before these are taken as complete.
@@ -103,9 +99,10 @@ namespace Squeal
           const bool    pair   = nu.imag() != 0.;
           if (!transformation.inside(nu) || std::abs(lambda) > transformation.largest_modulus)
             continue;
-          const bool is_real = !oscillating.exceeded_by(std::abs(lambda.imag()) / std::abs(lambda));
-          if (!nonzero.exceeded_by(std::norm(lambda) / transformation.zero_square) ||
-              (is_real && !listed_real.exceeded_by(std::abs(lambda) / options.largest_circular_frequency)))
+          const bool is_real = !(std::abs(lambda.imag()) / std::abs(lambda) > nearly_real);
+          // Real λ below a part of the band's end creep: they count with the zeros.
+          if (!(std::norm(lambda) > transformation.zero_square) ||
+              (is_real && !(std::abs(lambda) / options.largest_circular_frequency > zero_frequency)))
             modes.n_zero_values += transformation.degree == 1 ? 2 : 1;
           else if (is_real)
             {

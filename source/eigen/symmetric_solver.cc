@@ -3,7 +3,6 @@
 #include "symmetric_solver.h"
 
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/rounding.h>
@@ -17,8 +16,6 @@ namespace Squeal
 {
   namespace
   {
-    const Decision elastic("eigenvalue of the symmetric problem / what rounding hides", 1.);
-
     /// Residual of a rigid-body mode, beside the largest eigenvalue wanted, that is accepted.
     constexpr double largest_rigid_residual = 1e-8;
 
@@ -350,6 +347,6 @@ namespace Squeal
 
   bool SymmetricSolver::is_rigid(const double value) const
   {
-    return !elastic.exceeded_by(value / hidden_square);
+    return !(value > hidden_square);
   }
 } // namespace Squeal

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/estimates/subspaces.h>
 
 #include <Eigen/Eigenvalues>
@@ -9,7 +8,8 @@ namespace Squeal
 {
   namespace
   {
-    const Decision independent("squared norm of a direction of a cluster / largest", 1e-12);
+    /// Squared norm of a direction over the largest, up to which it is a rounding error: squares leave 1e-16.
+    constexpr double negligible_square = 1e-12;
 
     /// W with Wᴴ G W = 1 for a Hermitian positive semidefinite G, without the directions that are rounding errors.
     ComplexDenseMatrix whitening(const ComplexDenseMatrix &G)
@@ -17,7 +17,7 @@ namespace Squeal
       const Eigen::SelfAdjointEigenSolver<ComplexDenseMatrix> pairs(G);
       const Eigen::VectorXd                                  &values = pairs.eigenvalues(); // ascending
       const Eigen::Index                                      n_kept = std::count_if(
-                                             values.begin(), values.end(), [&values](const double value) { return independent.exceeded_by(value / values[values.size() - 1]); });
+                                             values.begin(), values.end(), [&values](const double value) { return value / values[values.size() - 1] > negligible_square; });
       return pairs.eigenvectors().rightCols(n_kept) * values.tail(n_kept).cwiseSqrt().cwiseInverse().asDiagonal();
     }
   } // namespace

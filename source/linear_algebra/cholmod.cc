@@ -3,7 +3,6 @@
 #include "libraries.h"
 #include "supernodal_solve.h"
 
-#include <squeal/base/decision.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -14,8 +13,6 @@ namespace Squeal
 {
   namespace
   {
-    const Decision definite("smallest pivot / diagonal entry of a Cholesky factor", relative_pivot_tolerance);
-
     class CholmodFactorization : public Factorization
     {
     public:
@@ -115,7 +112,7 @@ namespace Squeal
           throw_not_positive_definite("CHOLMOD", what);
         if (success == 0 || common.status < CHOLMOD_OK)
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the factorisation", what);
-        if (!definite.exceeded_by(smallest_relative_pivot(triangle.diagonal)))
+        if (!(smallest_relative_pivot(triangle.diagonal) > relative_pivot_tolerance))
           throw_not_positive_definite("CHOLMOD", what);
         solver = std::make_unique<SupernodalSolve>(supernodes());
       }

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/dense_lu.h>
 
@@ -10,10 +9,10 @@ namespace Squeal
 {
   namespace
   {
-    /// A matrix that is singular leaves 10⁻¹⁷ to 10⁻¹⁵.
-    const Decision regular("reciprocal condition number of a dense matrix", 1e-14);
-    /// Of Q(λ), which is nearly singular close to an eigenvalue.
-    const Decision complex_regular("reciprocal condition number of a dense complex matrix", 1e-16);
+    /// Reciprocal condition number up to which a matrix is singular, which leaves 10⁻¹⁷ to 10⁻¹⁵.
+    constexpr double singular_condition = 1e-14;
+    /// The same of Q(λ), which is nearly singular close to an eigenvalue.
+    constexpr double singular_complex_condition = 1e-16;
   } // namespace
 
   template <typename Matrix>
@@ -35,7 +34,7 @@ namespace Squeal
   {
     if (factors.rows() == 0 && norm == 0.)
       return 0.;
-    return complex_regular.exceeded_by(rcond) ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
+    return rcond > singular_complex_condition ? 1. / (rcond * norm) : std::numeric_limits<double>::infinity();
   }
 
   template <typename Matrix>
@@ -56,7 +55,7 @@ namespace Squeal
   RealLU regular_lu(const DenseMatrix &A, const char *what)
   {
     RealLU factors(A);
-    if (!regular.exceeded_by(factors.reciprocal_condition()))
+    if (!(factors.reciprocal_condition() > singular_condition))
       throw SolverError("a dense matrix of size " + std::to_string(A.rows()) + " is singular to working precision", what,
                         "check for linearly dependent vectors or a parameter value at which the problem degenerates");
     return factors;

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/weighted_gram.h>
@@ -41,8 +40,6 @@ namespace Squeal
     {
       return pairs.vectors * as_column(pairs.values).cwiseSqrt().cwiseInverse().asDiagonal() * pairs.vectors.transpose();
     }
-
-    const Decision independent("norm of a direction among unit vectors / tolerance of their rank", 1.);
 
     /// Whether directions are looked for among the columns as they are or scaled to unit norm.
     enum class Scaling
@@ -139,11 +136,6 @@ namespace Squeal
 
           const double threshold = std::max(resolved * values.back(), smallest);
           int          n_rest    = std::lower_bound(values.begin(), values.end(), threshold) - values.begin();
-          // Directions between wait for the next pass
-          if (scaling == Scaling::unit_norm)
-            for (const double value : values)
-              if (value <= smallest || value >= threshold)
-                independent.exceeded_by(std::sqrt(std::max(value, 0.) / smallest));
           if (!(values.back() > smallest) || n_rest == k)
             break;
 

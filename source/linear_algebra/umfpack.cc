@@ -1,6 +1,5 @@
 #include "libraries.h"
 
-#include <squeal/base/decision.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <suitesparse/umfpack.h>
@@ -9,7 +8,8 @@ namespace Squeal
 {
   namespace
   {
-    const Decision sparse_regular("smallest / largest pivot of a sparse LU factor", 1e-16);
+    /// Smallest over largest pivot up to which a matrix is singular: Q(λ) close to an eigenvalue is nearly so.
+    constexpr double singular_pivot = 1e-16;
 
     class UmfpackFactorization : public Factorization
     {
@@ -37,7 +37,7 @@ namespace Squeal
         umfpack_di_free_symbolic(&symbolic);
 
         const bool singular = factorised == UMFPACK_WARNING_singular_matrix ||
-                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !sparse_regular.exceeded_by(info[UMFPACK_RCOND]));
+                              (factorised == UMFPACK_OK && analysed == UMFPACK_OK && !(info[UMFPACK_RCOND] > singular_pivot));
         if (analysed != UMFPACK_OK || factorised != UMFPACK_OK || singular)
           umfpack_di_free_numeric(&numeric);
         if (singular)

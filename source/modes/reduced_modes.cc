@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/modes/reduced_modes.h>
@@ -14,19 +13,15 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// A defective double zero splits into ± √(rounding).
-    const Decision nonzero("square of |lambda| of a reduced mode / what rounding hides", 1.);
-    /// Real λ below this part of the band's end creep: they count with the zeros.
-    const Decision listed_real("|lambda| of a real reduced eigenvalue / end of the band", zero_frequency);
-    /// A multiple real λ splits into pairs by rounding.
-    const Decision oscillating_in_band("Im lambda of a reduced mode / end of the band", 1e-7);
+    /// |Im λ| over the end of the band up to which λ is real: a multiple real λ splits into pairs by rounding.
+    constexpr double real_in_band = 1e-7;
 
     /// Vectors of a basis from which it pays to separate the modes of the band first.
     constexpr int least_separated = 64;
 
     bool is_real(const Complex lambda, const double largest_circular_frequency)
     {
-      return !oscillating_in_band.exceeded_by(std::abs(lambda.imag()) / largest_circular_frequency);
+      return !(std::abs(lambda.imag()) / largest_circular_frequency > real_in_band);
     }
 
     /// |λ|² up to this is zero: rounding errors of K_c or of the stiffest vector of the basis.
@@ -47,7 +42,7 @@ namespace Squeal
       // What holds for an oscillating value holds for its conjugate, too
       std::vector<int> others;
       for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        if (const Complex l = modes.lambda[j]; !nonzero.exceeded_by(std::norm(l) / hidden))
+        if (const Complex l = modes.lambda[j]; !(std::norm(l) > hidden))
           modes.n_zeros += 2;
         else if (is_real(l, largest_circular_frequency))
           modes.real_values.insert(modes.real_values.end(), 2, l.real());
@@ -56,9 +51,10 @@ namespace Squeal
       if (others.size() < modes.lambda.size())
         modes = selected(modes, others);
 
-      auto      &values = modes.real_values;
-      const auto end    = std::remove_if(values.begin(), values.end(),
-                                         [&](const double l) { return !listed_real.exceeded_by(std::abs(l) / largest_circular_frequency); });
+      auto &values = modes.real_values;
+      // Real λ below a part of the band's end creep: they count with the zeros.
+      const auto end = std::remove_if(values.begin(), values.end(),
+                                      [&](const double l) { return !(std::abs(l) / largest_circular_frequency > zero_frequency); });
       modes.n_zeros += static_cast<int>(values.end() - end);
       values.erase(end, values.end());
       std::sort(values.begin(), values.end());
@@ -205,7 +201,7 @@ namespace Squeal
     const double     limit = band_limit(largest_circular_frequency, end), hidden = hidden_square(model);
     std::vector<int> kept;
     for (std::size_t j = 0; j < squares.size(); ++j)
-      if (!nonzero.exceeded_by(squares[j] / hidden))
+      if (!(squares[j] > hidden))
         modes.n_zeros += 2;
       else if (squares[j] <= limit * limit)
         {

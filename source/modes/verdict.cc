@@ -1,19 +1,13 @@
-#include <squeal/base/decision.h>
 #include <squeal/modes/verdict.h>
 
 #include <cmath>
 
 namespace Squeal
 {
-  namespace
-  {
-    const Decision growing("growth rate of a mode / its uncertainty", 1.);
-  } // namespace
-
   Verdict verdict_of(const std::complex<double> &lambda, const double error, const bool growth_needs_coalescence)
   {
     const double rate = lambda.real(), uncertainty = error_safety * error, negligible = negligible_divergence * lambda.imag();
-    if (growing.exceeded_by(rate / (negligible + uncertainty)))
+    if (rate / (negligible + uncertainty) > 1.)
       return Verdict::unstable;
     if (!(rate + (growth_needs_coalescence && !std::isnan(error) ? 0. : uncertainty) <= negligible))
       return Verdict::undecided;

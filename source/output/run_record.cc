@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/output/run_record.h>
@@ -65,24 +64,6 @@ namespace Squeal
                                {"CPU time [s]", step.cpu_seconds},
                                {"peak memory so far [byte]", step.peak_memory},
                                {"result", step.summary}});
-    std::vector<DecisionRecord> decisions = Decision::records();
-    merge(decisions, record.decisions);
-    for (const DecisionRecord &decision : decisions)
-      {
-        // Infinite where no value lay on a side: JSON has null for it
-        tree["decisions"].push_back({{"quantity", decision.quantity},
-                                     {"threshold", decision.threshold},
-                                     {"nearest below", decision.below},
-                                     {"nearest above", decision.above},
-                                     {"orders of magnitude below", decision.margin_below()},
-                                     {"orders of magnitude above", decision.margin_above()},
-                                     {"times below", decision.n_below},
-                                     {"times above", decision.n_above}});
-        if (!decision.below_in.empty())
-          tree["decisions"].back()["nearest below in"] = decision.below_in;
-        if (!decision.above_in.empty())
-          tree["decisions"].back()["nearest above in"] = decision.above_in;
-      }
     tree[file_list] = record.files;
     // Names of files and words of a command need not be UTF-8.
     stream << tree.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';

@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
@@ -16,10 +15,12 @@ namespace Squeal
 {
   namespace
   {
-    const Decision tension("tension of a closed contact node / largest reaction", 1e-13);
-    const Decision overlap_of_open("overlap of an open contact node / largest gap or deflection", 1e-13);
-    const Decision asymmetry_of_motions("balance but work of the reactions / gaps of the motions", 1e-10);
-    const Decision difference_of_solutions("difference of the reactions of two solutions / largest reaction", 1e-8);
+    /// Tension of a closed node over the largest reaction, and overlap of an open one over the largest gap, that are rounding errors.
+    constexpr double rounding_of_contact = 1e-13;
+    /// Difference of balance and gaps of the motions over the gaps, up to which it is rounding and the condition of uniqueness applies.
+    constexpr double symmetric_motions = 1e-10;
+    /// Difference of the reactions of two solutions over the largest one, up to which they are the same: nodes may just touch.
+    constexpr double same_reactions = 1e-8;
 
     /// Block steps that may pass without fewer violations before single nodes are flipped.
     constexpr int patience = 8;
@@ -103,8 +104,8 @@ namespace Squeal
         for (int c = 0; c < G.rows(); ++c)
           {
             // Without any reaction or gap there is no violation: NaN does not exceed
-            const bool pulls    = closed[c] && tension.exceeded_by(r[c] / largest_reaction);
-            const bool overlaps = !closed[c] && overlap_of_open.exceeded_by(g[c] / largest_gap);
+            const bool pulls    = closed[c] && r[c] / largest_reaction > rounding_of_contact;
+            const bool overlaps = !closed[c] && g[c] / largest_gap > rounding_of_contact;
             if (pulls || overlaps)
               result.violated.push_back(c);
             result.pull    = std::max(result.pull, pulls ? r[c] : 0.);
@@ -271,7 +272,7 @@ namespace Squeal
     ContactUniqueness result{0., false, 0, false, {}};
 
     const double asymmetry = max_norm(problem.motions + problem.balance.transpose()), scale = max_norm(problem.motions);
-    if (scale == 0. || !asymmetry_of_motions.exceeded_by(asymmetry / scale))
+    if (scale == 0. || !(asymmetry / scale > symmetric_motions))
       {
         const DenseMatrix S       = -0.5 * (problem.tangential_flexibility + problem.tangential_flexibility.transpose());
         const double      largest = symmetric_eigenpairs(S, problem.normal_flexibility).values.back();
@@ -290,7 +291,7 @@ namespace Squeal
           {
             // Nodes that just touch may count as closed or open: only other reactions are another solution.
             const auto r       = as_column(solution.reactions);
-            result.found_other = difference_of_solutions.exceeded_by(max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r));
+            result.found_other = max_norm(as_column(attempt->solution.reactions) - r) / max_norm(r) > same_reactions;
             result.other       = attempt->solution;
           }
       }

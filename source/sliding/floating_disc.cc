@@ -1,4 +1,3 @@
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/sliding/floating_disc.h>
@@ -10,9 +9,12 @@ namespace Squeal
 {
   namespace
   {
-    const Decision motion_in_plane("motion in its plane but turning / motion that leaves the gaps of a free disc as they are", 1e-6);
-    const Decision gap_of_all_motions("smallest / largest singular value of the gaps of backplates and free disc, unit columns", 1e-8);
-    const Decision unequal_loads("difference / sum of the loads on a floating disc", 1e-10);
+    /// Dimensions other than turning among the motions that keep the gaps: one or more, or rounding errors of M-orthonormal vectors.
+    constexpr double only_turning = 1e-6;
+    /// Smallest over largest singular value of the gaps of all motions, up to which one changes no gap: rounding leaves 1e-15.
+    constexpr double unchanged_gaps = 1e-8;
+    /// Difference over sum of the loads on a floating disc, up to which they are equal: decimal numbers are off by rounding.
+    constexpr double equal_loads = 1e-10;
 
     /// Throws SolverError if there are other motions in the plane than turning, whose moment the drive takes.
     void refuse_unless_turning(const Model &model, const SecondOrderSystem &system, const MultiVector &sliding)
@@ -22,7 +24,7 @@ namespace Squeal
       turning *= 1. / std::sqrt(column_products(turning, *system.mass * turning)[0]);
       const DenseMatrix turned = gram(sliding, *system.mass * turning);
       const double      others = sliding.n_columns() - turned.squaredNorm();
-      if (motion_in_plane.exceeded_by(others))
+      if (others > only_turning)
         throw SolverError("nothing holds the disc in its plane against the friction forces", "steady sliding",
                           "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
                           "state = equal load");
@@ -33,7 +35,7 @@ namespace Squeal
     {
       const Eigen::VectorXd work         = y.cwiseProduct(as_column(forces));
       const double          sum_of_sizes = work.lpNorm<1>();
-      if (sum_of_sizes > 0. && unequal_loads.exceeded_by(std::abs(work.sum()) / sum_of_sizes))
+      if (sum_of_sizes > 0. && std::abs(work.sum()) / sum_of_sizes > equal_loads)
         throw SolverError("the disc floats along its axis, and the loads on its sides are not equal", "steady sliding",
                           "give equal loads on both sides, or a mount with axial stiffness (Mounts/Elastic mounts)");
     }
@@ -59,7 +61,7 @@ namespace Squeal
     const Eigen::RowVectorXd sizes = problem.motions.colwise().norm();
     const auto [values, V]         = singular_values(problem.motions * sizes.cwiseInverse().asDiagonal()); // descending
     const int n                    = sizes.size();
-    if (static_cast<int>(values.size()) == n && gap_of_all_motions.exceeded_by(values.back() / values.front()))
+    if (static_cast<int>(values.size()) == n && values.back() / values.front() > unchanged_gaps)
       return;
     const Eigen::VectorXd y = V.col(n - 1);
     refuse_unbalanced(y.cwiseQuotient(sizes.transpose()), problem.forces);

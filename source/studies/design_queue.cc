@@ -22,7 +22,7 @@ namespace Squeal
   namespace
   {
     constexpr const char *key_file = "study.key";
-    constexpr const char *title    = "squeal designs 2\n"; ///< with the version of the format
+    constexpr const char *title    = "squeal designs 3\n"; ///< with the version of the format
 
     std::string content(const fs::path &file)
     {

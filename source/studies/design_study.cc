@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/parameters/design_plan.h>
@@ -100,13 +99,6 @@ namespace Squeal
       return result;
     }
 
-    /// Keeps a result with the decisions since the one before: of the design, and of what a family shares in its first one.
-    void keep_with_decisions(DesignResult result, const DesignStore &store)
-    {
-      result.decisions = Decision::take();
-      store.keep(result);
-    }
-
     /**
      * Solves designs that share a mesh one after the other in this process, each by the basis that those before it have left. What
      * the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
@@ -134,7 +126,7 @@ namespace Squeal
           // What is wrong each of them tells in its row
           for (const int design : work.designs)
             if (!store.find(design))
-              keep_with_decisions(solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string())), store);
+              store.keep(solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string())));
           return;
         }
       ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
@@ -172,7 +164,7 @@ namespace Squeal
           for (const MultiVector &block : family->take_growth())
             if (!is_kept)
               kept->keep(block);
-          keep_with_decisions(std::move(result), store);
+          store.keep(result);
         }
       checkpoint.remove();
     }
@@ -207,7 +199,6 @@ namespace Squeal
         // For the study of which this is a part
         if (is_part)
           {
-            results.front().decisions      = Decision::take();
             const std::vector<char> packed = dealii::Utilities::pack(results.front(), false);
             run.folder().write(DesignStore::result_file,
                                [&](std::ostream &stream) { stream.write(packed.data(), static_cast<std::streamsize>(packed.size())); });

@@ -280,8 +280,6 @@ namespace Squeal
   void write_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &results, Run &run)
   {
     run.count("designs", results.size());
-    for (const DesignResult &result : results)
-      run.add_decisions(result.decisions, text("design ", result.number));
     run.screen << '\n';
     for (const std::string &line : verdict(names, results))
       run.progress.note(line);

@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/near_null_space.h>
 #include <squeal/bases/rigid_body.h>
@@ -17,7 +16,8 @@ namespace Squeal
     /// Component modes are found somewhat beyond the band: they label the coupled modes at its end.
     constexpr double label_band = 1.2;
 
-    const Decision held("work of a mount in its units / displacements of a motion of zero frequency", 1e-12);
+    /// Work of a mount, in its units, over the displacements of a motion of zero frequency, up to which it is a rounding error.
+    constexpr double no_work = 1e-12;
 
     /// Warns where motions count as those of a free body although a mount holds them.
     void warn_of_hidden_mounts(const FrictionlessModes &modes, Run &run)
@@ -29,7 +29,7 @@ namespace Squeal
         return;
       const MultiVector U      = *coupled.kernel * view(*modes.real.vectors, 0, n);
       const auto        work   = symmetric_eigenpairs(gram(U, *mounts * U), gram(U, U)).values;
-      const auto        n_held = std::count_if(work.begin(), work.end(), [](const double value) { return held.exceeded_by(value); });
+      const auto        n_held = std::count_if(work.begin(), work.end(), [](const double value) { return value > no_work; });
       if (n_held > 0)
         run.warn(text(n_held, " of the ", n, " modes of zero frequency ", n_held == 1 ? "is" : "are",
                       " held by mounts that are too soft: rounding errors of the stiffness hide frequencies below ",

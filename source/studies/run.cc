@@ -62,16 +62,6 @@ namespace Squeal
     , options(whole.options)
   {}
 
-  void Run::add_decisions(std::vector<DecisionRecord> decisions, const std::string &part)
-  {
-    for (DecisionRecord &decision : decisions)
-      {
-        decision.below_in = decision.below > 0. ? part : "";
-        decision.above_in = decision.n_above > 0 ? part : "";
-      }
-    merge(record.decisions, decisions);
-  }
-
   void Run::keep_geometry()
   {
     for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)

@@ -1,7 +1,6 @@
 #include "tracked_modes.h"
 
 #include <squeal/base/assignment.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/groups.h>
 
 #include <algorithm>
@@ -14,15 +13,15 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Of modes of nearly the same λ, of which only rounding errors count.
-    const Decision just_divergent("divergence rate of a mode among others of nearly the same lambda", 1e-11);
+    /// |Re λ| / Im λ of modes of nearly the same λ, up to which it is a rounding error.
+    constexpr double neutral_rate = 1e-11;
     /// Weight of closeness of λ beside overlaps of vectors.
     constexpr double closeness_weight = 0.01;
 
     /// −1: decays, 0: neutral, 1: grows.
     int growth_class(const Complex &lambda)
     {
-      return !just_divergent.exceeded_by(std::abs(lambda.real()) / lambda.imag()) ? 0 : lambda.real() > 0. ? 1 : -1;
+      return !(std::abs(lambda.real()) / lambda.imag() > neutral_rate) ? 0 : lambda.real() > 0. ? 1 : -1;
     }
 
     /// Right or left vectors of the modes at a point, but within a multiple λ those nearest to the vectors of the branches before.

@@ -1,5 +1,4 @@
 #include <squeal/base/assignment.h>
-#include <squeal/base/decision.h>
 #include <squeal/base/groups.h>
 #include <squeal/tracking/mode_links.h>
 
@@ -27,8 +26,8 @@ namespace Squeal
     constexpr double dependent = 1e-13;
     /// The same of vectors so close to a coalescence that rounding decides on the rest.
     constexpr double defective = 1e-7;
-    const Decision   complex_discriminant("Im / modulus of the square of a difference of two eigenvalues", 1e-6);
-    const Decision   distinguishable("difference of two eigenvalues / their modulus", indistinguishable);
+    /// |Im δ²| / |δ²| of the difference δ of two λ up to which δ² is real, as it is where modes may coalesce.
+    constexpr double real_discriminant = 1e-6;
 
     /// Orthonormal basis without directions that are rounding errors.
     ComplexDenseMatrix safe_basis(const ComplexDenseMatrix &X)
@@ -245,7 +244,7 @@ namespace Squeal
   std::vector<int> mode_clusters(const std::vector<Complex> &lambda)
   {
     return connected_groups(static_cast<int>(lambda.size()), [&](const int i, const int j) {
-      return !distinguishable.exceeded_by(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i]));
+      return !(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i]) > indistinguishable);
     });
   }
 
@@ -277,7 +276,7 @@ namespace Squeal
   int pair_sign(const Complex &lambda_1, const Complex &lambda_2)
   {
     const Complex square = (lambda_1 - lambda_2) * (lambda_1 - lambda_2);
-    if (complex_discriminant.exceeded_by(std::abs(square.imag()) / std::abs(square)))
+    if (std::abs(square.imag()) / std::abs(square) > real_discriminant)
       return 0;
     return square.real() > 0. ? 1 : -1;
   }

@@ -60,6 +60,8 @@ TEST(DenseMatrices, LUSolvesBothWaysAndRefusesSingular)
   singular.col(2)      = A.col(0) - A.col(1);
   EXPECT_THROW(regular_lu(singular, "test"), SolverError);
   EXPECT_THROW(regular_lu(DenseMatrix::Zero(2, 2), "test"), SolverError);
+  EXPECT_NO_THROW(regular_lu(DenseMatrix(Eigen::Vector2d(1., 1e-13).asDiagonal()), "test"));
+  EXPECT_THROW(regular_lu(DenseMatrix(Eigen::Vector2d(1., 1e-15).asDiagonal()), "test"), SolverError);
   EXPECT_THROW(regular_lu(DenseMatrix::Constant(2, 2, std::numeric_limits<double>::quiet_NaN()), "test"), SolverError);
   EXPECT_EQ(regular_lu(DenseMatrix(0, 0), "test").reciprocal_condition(), 1.);
 }

@@ -61,31 +61,6 @@ class DesignsTest(ProgramTest):
             self.assertLessEqual(max(below), 0.01)
             self.assertTrue(any(float(b["divergence rate [%]"]) > 0.01 for b in branches))
 
-    def test_decisions_of_designs_are_in_the_record(self):
-        """Of every quantity the smallest margin of all designs, and the design to which it belongs."""
-        singles = {f"design {number}": self.decisions(self.run_scene_of_designs(f"decisions_{number}", str(number))) for number in (1, 2, 4, 5)}
-        found = self.decisions(self.study)
-        of_designs = 0
-        for quantity in set().union(*singles.values()):
-            for side, nearest in (("below", max), ("above", min)):
-                key = f"nearest {side}"
-                values = [single[quantity][key] for single in singles.values()
-                          if quantity in single and single[quantity][key] not in (None, 0)]
-                if not values:
-                    continue
-                self.assertEqual(found[quantity][key], nearest(values), (quantity, side))
-                # What the scene itself has comes first
-                if where := found[quantity].get(f"{key} in"):
-                    self.assertEqual(singles[where][quantity][key], nearest(values), (quantity, side))
-                    of_designs += 1
-        self.assertGreater(of_designs, 4)
-        self.assertIn("difference of two eigenvalues / their modulus", found)
-
-    @staticmethod
-    def decisions(folder):
-        record = json.loads((folder / "run.json").read_text(encoding="utf-8"))
-        return {decision["quantity"]: decision for decision in record["decisions"]}
-
     def test_modes_have_the_names_of_the_scene(self):
         scene = self.run_scene("scene")
         known = {row["label"] for row in read_table(scene / "real_modes.csv")}

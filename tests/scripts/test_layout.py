@@ -95,7 +95,7 @@ namespace Squeal
     def test_clashes_are_told(self):
         for declaration, name in (("const int small = 3;", "small"), ("class Row {};", "Row"), ("using Json = nlohmann::ordered_json;", "Json"),
                                   ("template <class U> U twice(const U &, int n);", ""), ("int say(const std::string &other) { return 1; }", "say"),
-                                  ("void run();", "run"), ("int fs;", "fs"), ('const Decision say("text", 1.);', "say")):
+                                  ("void run();", "run"), ("int fs;", "fs"), ('const Quantity say("text", 1.);', "say")):
             self.assertEqual(self.clashes(declaration), [f"{name} in a.cc and b.cc"] if name else [], declaration)
         self.assertEqual(self.clashes("class Row {};", apart=2), ["Row in a.cc and b.cc"])
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <squeal/base/decision.h>
 #include <squeal/base/progress.h>
 #include <squeal/output/result_files.h>
 
@@ -20,15 +19,14 @@ namespace Squeal
     int                                         n_processes; ///< of MPI
     unsigned int                                n_threads;
     int                                         blas_threads;
-    std::vector<std::pair<std::string, long>>   counts;                ///< elements, dofs, contact nodes, modes, ...
-    std::vector<std::pair<std::string, double>> quantities;            ///< worst element quality, ...
-    std::vector<std::string>                    warnings;              ///< doubts about the input
-    FileSizes                                   files     = {};        ///< what the run has written, but for the record itself
-    std::string                                 revision  = "unknown"; ///< of the program's sources
-    std::vector<DecisionRecord>                 decisions = {};        ///< of parts of the run that other processes have computed
+    std::vector<std::pair<std::string, long>>   counts;               ///< elements, dofs, contact nodes, modes, ...
+    std::vector<std::pair<std::string, double>> quantities;           ///< worst element quality, ...
+    std::vector<std::string>                    warnings;             ///< doubts about the input
+    FileSizes                                   files    = {};        ///< what the run has written, but for the record itself
+    std::string                                 revision = "unknown"; ///< of the program's sources
   };
 
-  /// Versions, revision, machine, counts, time and peak memory of each step, the margins of decisions, and files, as JSON.
+  /// Versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
   /// The files that a record lists; nothing if it lists none, as those of version 0.1.0 do, or cannot be read.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <squeal/base/decision.h>
 #include <squeal/base/enum_table.h>
 #include <squeal/output/table.h>
 
@@ -102,14 +101,13 @@ namespace Squeal
     boost::optional<DesignGrowth> worst;      ///< the largest divergence rate at any friction coefficient
     std::vector<DesignThreshold>  thresholds;
     std::vector<DesignMode>       modes;
-    std::vector<DecisionRecord>   decisions;    ///< of the process that has solved it, since the design before
     double                        seconds = 0.; ///< wall time [s]
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
       archive &number &values &outcome &reason &n_dofs &n_modes &n_counted &is_complete &n_unstable &n_undecided &n_growing &largest_error
-        &largest_residual &n_doubtful &onset &weak_onset &worst &thresholds &modes &decisions &seconds;
+        &largest_residual &n_doubtful &onset &weak_onset &worst &thresholds &modes &seconds;
     }
   };
 

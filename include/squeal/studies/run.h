@@ -71,9 +71,6 @@ namespace Squeal
       record.quantities.emplace_back(name, value);
     }
 
-    /// Adds what decisions were asked in a @p part of the run, of which the run record tells the nearest values.
-    void add_decisions(std::vector<DecisionRecord> decisions, const std::string &part);
-
     /// Keeps a copy of a geometry of the user's own, so that the results repeat themselves.
     void keep_geometry();
 
