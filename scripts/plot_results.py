@@ -28,10 +28,10 @@ NEEDED = ("matplotlib", "numpy")
 
 def figures(results):
     """All figures of a run by their names. Throws ResultsError if its tables give none."""
-    from plotting import accuracy, branches, complex_plane, designs, dissipation, ingredients, reduction, sensitivity, stability_map
+    from plotting import accuracy, branches, complex_plane, designs, ingredients, reduction, sensitivity, stability_map
 
     found = {}
-    for plots in (complex_plane, branches, stability_map, reduction, dissipation, ingredients, sensitivity, accuracy, designs):
+    for plots in (complex_plane, branches, stability_map, reduction, ingredients, sensitivity, accuracy, designs):
         found.update(plots.figures(results))
     if not found:
         raise ResultsError("no table is there of which a plot is known", f"folder {results.folder}", "run squeal again")

@@ -166,25 +166,24 @@ def modes_of_run(table):
 
 
 def series_of_run(results):
-    """Modes at one friction coefficient: those of the study `paper` without and with radial dissipation, else those of the one solution."""
-    modes = modes_of_run(results.table("complex_modes"))
-    if results.has("complex_modes_damped"):
-        return [Series(charts.WITHOUT, modes), Series(charts.WITH, modes_of_run(results.table("complex_modes_damped")))]
-    return [Series(charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH, modes)]
+    """Modes of a run at one friction coefficient."""
+    title = charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH
+    return Series(title, modes_of_run(results.table("complex_modes")))
 
 
-def paper_figure(results, series):
-    """Figure 6 of the paper: without and with radial dissipation, beside each other with the same axes."""
-    picture = style.Picture(f"Stability charts for \u03bc = {results.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
+def paper_figure(without, damped):
+    """Figure 6 of the paper: results without and with radial dissipation, next to each other with the same axes."""
+    series = [series_of_run(results) for results in (without, damped)]
+    picture = style.Picture(f"Stability charts for \u03bc = {without.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
     for panel, caption, one in zip(picture.panels, ("(a) $C_b = 0$", "(b) $C_b \\neq 0$"), series):
-        draw(panel, picture.size, caption, [one], results.number("Band/Maximum frequency"), Limits(series))
+        draw(panel, picture.size, caption, [one], without.number("Band/Maximum frequency"), Limits(series))
     return picture.add_key()
 
 
-def run_figure(results, series):
+def run_figure(results):
     """The complex modes of a run at one friction coefficient."""
     picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
-    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", series,
+    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [series_of_run(results)],
          results.number("Band/Maximum frequency"))
     if results.has("real_eigenvalues"):
         rates = [rate for rate in results.table("real_eigenvalues").numbers("growth rate [1/s]") if rate > 0]
@@ -198,5 +197,4 @@ def figures(results):
     """Of a run at one friction coefficient."""
     if not results.has("complex_modes"):
         return {}
-    series = series_of_run(results)
-    return {"complex_plane": (run_figure if len(series) == 1 else paper_figure)(results, series)}
+    return {"complex_plane": run_figure(results)}

@@ -5,7 +5,7 @@ from reporting.charts import DAMPING, FREQUENCY, RATE, STABLE, UNSTABLE, digits,
 
 TITLES = {"complex_modes": "Modes with friction", "real_modes": "Modes without friction", "component_modes": "Modes of disc and pins alone",
           "energy": "Where the energy of growing modes enters", "real_eigenvalues": "Eigenvalues that do not oscillate",
-          "sliding_pins": "Pins in steady sliding", "table1": "Beside the paper's Table 1"}
+          "sliding_pins": "Pins in steady sliding"}
 REPLACED = ("complex_plane",)
 
 

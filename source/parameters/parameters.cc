@@ -265,12 +265,12 @@ namespace Squeal
 
   bool Parameters::needs_steady_sliding() const
   {
-    return sliding.state == ContactState::steady_sliding || study->compares_dissipation;
+    return sliding.state == ContactState::steady_sliding;
   }
 
   bool Parameters::has_contact_damping() const
   {
-    return operation.has_contact_damping() || study->compares_dissipation || study->adds_dissipation;
+    return operation.has_contact_damping();
   }
 
   bool Parameters::has_friction() const
@@ -285,8 +285,6 @@ namespace Squeal
 
   bool Parameters::uses_load_per_side() const
   {
-    if (study->compares_dissipation)
-      return true;
     return needs_steady_sliding() ? sliding.control == BackplateControl::load_per_side : has_contact_damping();
   }
 

@@ -105,14 +105,14 @@ namespace Squeal
     return result;
   }
 
-  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run, const std::string &step)
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run)
   {
     const Parameters     &parameters = run.parameters;
     const CoupledSystem  &coupled    = frictionless.linearisation.coupled;
     const SymmetricModes &real       = frictionless.real;
     const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    run.progress.begin(step);
+    run.progress.begin("Complex modes");
     ComplexModes modes;
     if (parameters.solvers.complex_solver == ComplexSolver::krylov)
       modes = krylov_modes(coupled, *frictionless.inverse, frictionless.shift, mu, omega_max, real.eigenvalues.size(), parameters.solvers,

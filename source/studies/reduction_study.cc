@@ -1,7 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/studies/friction_modes.h>
-#include <squeal/studies/paper_scene.h>
 #include <squeal/studies/reduction_plan.h>
 #include <squeal/studies/reduction_tables.h>
 
@@ -182,7 +181,7 @@ namespace Squeal
     // ----------------------------------------------------------------- results
     run.write_table("reduction_bases", reduction_basis_table(candidates, scene.model->free_map().n(), reference.seconds));
     if (!truncations.empty())
-      run.write_table("reduction_truncations", reduction_truncation_table(truncations, is_paper_scene(run.parameters)));
+      run.write_table("reduction_truncations", reduction_truncation_table(truncations));
     run.write_table("reduction_costs", reduction_cost_table(sets.charges()));
     run.write_table("reduction_errors", reduction_error_table(candidates, reference));
     run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));

@@ -2,16 +2,12 @@
 #include <squeal/studies/reduction_tables.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace Squeal
 {
   namespace
   {
-    /// Table 3 of the paper: component modes below three frequencies, pins fixed and mixed under `pins_sliding`.
-    const std::array<ModeTruncation, 3> paper_truncations = {{{6000., 30, 36, 36}, {7500., 60, 72, 36}, {10000., 80, 120, 60}}};
-
     /// Estimates count as good within this factor of the true error.
     constexpr double good_factor = 3.;
 
@@ -189,10 +185,10 @@ namespace Squeal
                  charges);
   }
 
-  Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations, const bool with_paper)
+  Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations)
   {
-    using Row         = TruncatedModes;
-    const auto n_here = [](const BasisSource source, const BasisSource other) {
+    using Row          = TruncatedModes;
+    const auto n_modes = [](const BasisSource source, const BasisSource other) {
       return [=](const Row &row) {
         for (const BasisSource asked : {source, other})
           if (const auto found = row.n.find(asked); found != row.n.end() && found->second > 0)
@@ -200,24 +196,11 @@ namespace Squeal
         return Cell();
       };
     };
-    const auto n_paper = [](int ModeTruncation::*const which) {
-      return [=](const Row &row) {
-        const auto same  = [&](const ModeTruncation &printed) { return printed.frequency == row.truncation.frequency; };
-        const auto found = std::find_if(paper_truncations.begin(), paper_truncations.end(), same);
-        return found != paper_truncations.end() ? Cell((*found).*which) : Cell();
-      };
-    };
-    using Source         = BasisSource;
-    Columns<Row> columns = {{"component modes", "", [](const Row &row) { return row.truncation.text(); }},
-                            {"disc", "-", n_here(Source::disc_free, Source::disc_sliding)},
-                            {"pins free", "-", n_here(Source::pins_free, Source::pins_free)},
-                            {"pins sliding", "-", n_here(Source::pins_sliding, Source::pins_sliding)}};
-    if (with_paper)
-      {
-        columns.push_back({"disc of the paper", "-", n_paper(&ModeTruncation::disc)});
-        columns.push_back({"pins free of the paper", "-", n_paper(&ModeTruncation::pins_free)});
-        columns.push_back({"pins sliding of the paper", "-", n_paper(&ModeTruncation::pins_sliding)});
-      }
-    return Table(columns, truncations);
+    using Source = BasisSource;
+    return Table(Columns<Row>{{"component modes", "", [](const Row &row) { return row.truncation.text(); }},
+                              {"disc", "-", n_modes(Source::disc_free, Source::disc_sliding)},
+                              {"pins free", "-", n_modes(Source::pins_free, Source::pins_free)},
+                              {"pins sliding", "-", n_modes(Source::pins_sliding, Source::pins_sliding)}},
+                 truncations);
   }
 } // namespace Squeal

@@ -5,8 +5,6 @@
 #include <squeal/studies/mesh_estimate.h>
 #include <squeal/studies/mode_shapes.h>
 #include <squeal/studies/mode_tables.h>
-#include <squeal/studies/paper_scene.h>
-#include <squeal/studies/paper_table.h>
 #include <squeal/studies/sliding_results.h>
 
 #include <algorithm>
@@ -93,22 +91,6 @@ namespace Squeal
       run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form");
     }
 
-    // ------------------------------------------------------------ beside the paper
-
-    /// The columns that the run has: complex modes without or with radial dissipation, at the friction coefficient of the paper.
-    void write_table_one(const FrictionlessModes &frictionless, const FrictionModes &friction, Run &run)
-    {
-      const Parameters &parameters = run.parameters;
-      TableOneResults   results    = {component_modes_to_compare(frictionless), coupled_modes_to_compare(frictionless), {}, {}};
-      if (is_paper_operation(parameters))
-        (parameters.operation.radial_dissipation == RadialDissipation::none ? results.undamped : results.damped) =
-          complex_modes_to_compare(friction);
-      const TableOne one = table_one(results);
-      run.store_table("table1", one.table);
-      run.progress.note("  beside the paper's Table 1: component frequencies " + to_string(one.component) + ", coupled " +
-                        to_string(one.coupled));
-    }
-
     // ----------------------------------------------------------------- the answer
 
     /// Verdict and unstable modes, which is what most users want to know.
@@ -192,8 +174,6 @@ namespace Squeal
       run.store_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
     const PowerBalances balances = power_balances(linearisation, friction, run);
     write_power_table(linearisation, friction, balances, run);
-    if (is_paper_scene(parameters))
-      write_table_one(frictionless, friction, run);
 
     if (sliding && parameters.output.fields != FieldSelection::none)
       write_sliding_fields(linearisation, run);

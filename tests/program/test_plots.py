@@ -53,14 +53,12 @@ class PlotTest(ProgramTest):
     """A run, its results, and its figures by their names."""
 
     OVERRIDES = []
-    FILE = "scene.prm"
     WITH_NAMES_ABOVE = ()  # pictures whose names stand above each other
 
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        (cls.folder / "default.prm").write_text("", encoding="utf-8")
-        cls.results = cls.run_scene("results", *cls.OVERRIDES, file=cls.FILE)
+        cls.results = cls.run_scene("results", *cls.OVERRIDES)
         cls.figures = plot_results.figures(Results(cls.results))
 
     def assert_drawn(self, names):
@@ -110,27 +108,6 @@ class Stability(PlotTest):
         leader = max(read_table(table), key=lambda row: float(row["divergence rate [%]"]))
         self.assertIn(leader["label"], [text.get_text() for text in axes.texts])
         self.assertIn("0.4", axes.get_title())
-
-
-class Paper(PlotTest):
-    """Figure 6 of the paper: two panels with the same axes."""
-
-    OVERRIDES = ["Study=paper", "Geometry/Nodes per pin face=7", "Geometry/Element size=0.04", "Geometry/Pin layers=2", "Geometry/Disc layers=2"]
-    FILE = "default.prm"
-
-    def test_pictures(self):
-        self.assert_drawn({"complex_plane"})
-
-    def test_panels(self):
-        panels = self.figures["complex_plane"].axes
-        self.assertEqual(panels[0].get_ylim(), panels[1].get_ylim())
-        self.assertEqual(panels[0].get_xlim(), panels[1].get_xlim())
-        for axes, title, name in zip(panels, (WITHOUT, WITH), ("complex_modes", "complex_modes_damped"), strict=True):
-            modes = [(1e-3 * frequency, rate) for frequency, rate in columns(self.results / f"{name}.csv", "frequency [Hz]", "divergence rate [%]")]
-            faster = line_of(axes, "faster decay, " + title)
-            edge = faster[0][1] if faster else min(rate for _, rate in modes)
-            self.assert_same_points(line_of(axes, title), [(x, y) for x, y in modes if y >= edge])
-            self.assert_same_points(faster, [(x, edge) for x, y in modes if y < edge])
 
 
 class Sweep(PlotTest):
@@ -230,22 +207,6 @@ class Frictionless(PlotTest):
         titles = [axes.get_title() for axes in self.figures["reduction_errors"].axes]
         for truncation in ("28/20/12", "36/36/16"):
             self.assertTrue(any(truncation in title for title in titles), titles)
-
-
-class Dissipation(PlotTest):
-    OVERRIDES = ["Study=dissipation"]
-
-    def test_pictures(self):
-        self.assert_drawn({"dissipation"})
-
-    def test_rates(self):
-        for axes, name in zip(self.figures["dissipation"].axes, ("dissipation", "dissipation_ranges"), strict=True):
-            rows = read_table(self.results / f"{name}.csv")
-            readings = [column for column in rows[0] if column.endswith(" [%]")]
-            self.assertGreaterEqual(len(readings), 5)
-            for column in readings:
-                expected = [float(row[column]) for row in rows if row[column]]
-                self.assertEqual([y for _, y in line_of(axes, column.removesuffix(" [%]"))], expected)
 
 
 class Ingredients(PlotTest):

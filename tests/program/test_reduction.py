@@ -167,7 +167,6 @@ class Frictionless(ProgramTest):
         rows = read_table(results / "reduction_bases.csv")
         self.assertEqual([row["component modes"] for row in rows if row["basis"] == "mixed"], ["28/20/12", "36/36/16", "9000 Hz"])
         self.assertEqual({row["basis"] for row in rows} & {"free + t.a.m.", "real + 1st-ord.", "free with r.a.m."}, set())
-        # Table 3 of the paper belongs to another scene
         truncations = read_table(results / "reduction_truncations.csv")
         self.assertEqual(list(truncations[0]), ["component modes", "disc [-]", "pins free [-]", "pins sliding [-]"])
         self.assertEqual([tuple(row.values()) for row in truncations[:2]], [("28/20/12", "28", "20", "12"), ("36/36/16", "36", "36", "16")])

@@ -4,7 +4,6 @@ import cmath
 import importlib.util
 import json
 import math
-import re
 import subprocess
 import sys
 import unittest
@@ -442,58 +441,6 @@ class Damping(SlidingTest):
             # Friction lets pin modes share their damping among themselves.
             self.assertAlmostEqual(value.real - undamped.real, -ratio * abs(undamped), delta=0.03 * ratio * abs(undamped))
         self.assert_same_eigenvalues(eigenvalues(self.run_scene("other", table, *RESIDUAL_ITERATION)), damped)
-
-
-class DissipationStudy(SlidingTest):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.results = cls.run_scene("results", "Study=dissipation")
-
-    def test_files(self):
-        self.assertEqual(sorted(path.name for path in self.results.iterdir()),
-                         ["dissipation.csv", "dissipation_ranges.csv", "parameters.prm", "run.json", "sliding_certificate.csv",
-                          "sliding_pins.csv"])
-        self.assertEqual(header(self.results / "dissipation_ranges.csv").split(",")[1:], header(self.results / "dissipation.csv").split(",")[1:])
-        self.assert_certified(self.results)
-
-    def assert_same_rates(self, column, *overrides):
-        """Divergence rates [%] of each name, marks of doublets left out, are those of a run of their own; no mode is missing."""
-        alone = self.run_scene("alone", *overrides)
-
-        def rates(file, name):
-            found = {}
-            for row in read_table(file):
-                if row[name]:
-                    found.setdefault(re.sub(" [-+]$", "", row["label"]), []).append(float(row[name]))
-            return found
-
-        expected = rates(alone / "complex_modes.csv", "divergence rate [%]")
-        actual = rates(self.results / "dissipation.csv", f"{column} [%]")
-        self.assertGreater(sum(map(len, actual.values())), 30)
-        self.assertEqual(set(actual), set(expected))
-        for label in expected:
-            with self.subTest(column, label=label):
-                self.assertEqual(len(actual[label]), len(expected[label]))
-                for rate, other in zip(sorted(actual[label]), sorted(expected[label])):
-                    self.assertAlmostEqual(rate, other, delta=1e-8)
-        return alone
-
-    def test_columns(self):
-        self.assert_same_rates("no C_b")
-        self.assert_same_rates("equal load published", "Operation/Radial dissipation=published")
-        self.assert_same_rates("steady sliding published", STEADY, "Operation/Radial dissipation=published")
-        alone = self.assert_same_rates("steady sliding consistent", STEADY, CONSISTENT)
-        self.assertEqual(loads(alone), loads(self.results))
-
-    def test_open_nodes(self):
-        gaps = "Steady sliding/Gaps=pin_top_1: 2e-5"
-        results = self.run_scene("short", "Study=dissipation", gaps)
-        self.assertEqual(pins(results)["pin_top_1"]["open nodes [-]"], 7)
-        most_damped = {row["damped pin modes"]: row for row in read_table(results / "dissipation_ranges.csv")}["T1 most damped"]
-        alone = self.run_scene("alone", STEADY, CONSISTENT, gaps)
-        rates = [float(row["divergence rate [%]"]) for row in read_table(alone / "complex_modes.csv") if row["label"] == "T1"]
-        self.assertAlmostEqual(float(most_damped["steady sliding consistent [%]"]), min(rates), delta=1e-8)
 
 
 class Shoes(SlidingTest):

@@ -131,66 +131,6 @@ class Words(ProgramTest):
         tables = next(line for line in lines if line.startswith("  tables: "))
         self.assertEqual(sorted(tables.replace("  tables: ", "").split(", ")), sorted(path.name for path in results.glob("*.csv")))
 
-    def test_table_1_is_that_of_its_scene(self):
-        self.assertNotIn("Table 1", self.screen())
-        self.assertFalse((self.folder / "results" / "table1.csv").exists())
-        self.write("default.prm", "")
-        results = self.run_scene("default", *COARSE, file="default.prm")
-        rows = {row["label"]: row for row in read_table(results / "table1.csv")}
-        self.assertEqual(rows["A0-4 +"]["divergence without C_b paper [%]"], "0.64")
-        self.assertGreater(float(rows["A0-4 +"]["divergence without C_b [%]"]), 0.1)
-        self.assertEqual((rows["A0-4 +"]["divergence with C_b [%]"], rows["A0-4 +"]["mode with C_b"]), ("", ""))
-        # The columns follow the radial dissipation
-        results = self.run_scene("damped", *COARSE, "Operation/Radial dissipation=consistent", file="default.prm")
-        rows = {row["label"]: row for row in read_table(results / "table1.csv")}
-        self.assertEqual(rows["A0-4 +"]["divergence without C_b [%]"], "")
-        self.assertLess(float(rows["A0-4 +"]["divergence with C_b [%]"]), -0.1)
-        # Its complex modes have friction of 0.4
-        results = self.run_scene("default", *COARSE, "Operation/Friction coefficient=0.2", file="default.prm")
-        rows = {row["label"]: row for row in read_table(results / "table1.csv")}
-        self.assertEqual(rows["A0-4 +"]["divergence without C_b [%]"], "")
-        self.assertNotEqual(rows["A0-4 +"]["coupled [Hz]"], "")
-
-    def test_all_of_table_1_in_one_run(self):
-        """Every printed number has one beside it, growing modes beside growing ones, and the modes are those of two single runs."""
-        steady = "Steady sliding/Contact state=steady sliding"
-        self.write("default.prm", "")
-        results = self.run_scene("paper", *COARSE, "Study=paper", steady, file="default.prm")
-        rows = read_table(results / "table1.csv")
-        for row in rows:
-            if row["label"][:4] in ("A0-6", "A1-3"):
-                continue  # on the coarse mesh they lie beyond the band
-            for column in ("component", "coupled", "without C_b", "with C_b"):
-                self.assertEqual(row[f"{column} paper [Hz]"] == "", row[f"{column} [Hz]"] == "", f"{row['label']}, {column}")
-            for column in ("without C_b", "with C_b"):
-                paper, here = row[f"divergence {column} paper [%]"], row[f"divergence {column} [%]"]
-                if row["label"][:4] in ("A0-4", "A0-5") or paper and float(paper) > 0:
-                    self.assertGreater(float(paper) * float(here), 0, f"{row['label']}, {column}")
-        rows = {row["label"]: row for row in rows}
-        # The paper's label and number, and the mode that stands beside it
-        for label, paper, mode in (("A0-4 -", 0.65, "A0-4 +"), ("A0-4 +", -0.67, "A0-4 -"), ("A0-5 -", -1.02, "A0-5 -"),
-                                   ("A0-5 +", 0.95, "A0-5 +"), ("F1 pair 1 -", -0.51, "F1"), ("T1 highest", -1.41, "T1")):
-            self.assertEqual(float(rows[label]["divergence with C_b paper [%]"]), paper)
-            self.assertEqual(rows[label]["mode with C_b"], mode)
-        for label in ("F1 neutral", "F1 damped", "T1"):
-            for quantity in ("with C_b [Hz]", "divergence with C_b [%]"):
-                self.assertLess(float(rows[f"{label} lowest"][quantity]), float(rows[f"{label} highest"][quantity]))
-        # Statements speak of 5 kHz
-        statements = {row["statement"]: row for row in read_table(results / "statements.csv")}
-        self.assertEqual(statements["unstable disc modes without C_b"]["here"], "2")
-        self.assertLessEqual({row["verdict"] for row in statements.values()}, {"holds", "holds less", "does not hold"})
-        self.assertTrue(all(row["rule"] for row in statements.values()))
-        short = self.run_scene("short", *COARSE, "Study=paper", "Band/Maximum frequency=3000", file="default.prm")
-        self.assertFalse((short / "statements.csv").exists())
-
-        for table, dissipation in (("complex_modes", "none"), ("complex_modes_damped", "consistent")):
-            single = self.run_scene("single", *COARSE, steady, f"Operation/Radial dissipation={dissipation}", file="default.prm")
-            rates = [sorted(float(row["growth rate [1/s]"]) for row in read_table(path))
-                     for path in (results / f"{table}.csv", single / "complex_modes.csv")]
-            self.assertEqual(len(rates[0]), len(rates[1]))
-            for one, other in zip(*rates):
-                self.assertAlmostEqual(one, other, delta=1e-4)
-
     def test_growing_modes_of_the_disc_are_waves(self):
         """The two of a pair travel opposite ways, and that with regard to the sense in which the disc turns."""
         self.write("default.prm", "")
@@ -203,12 +143,6 @@ class Words(ProgramTest):
                 for one, other in (("with", "against"), ("against", "with")):
                     self.assertAlmostEqual(float(growing[f"wave {one} rotation [-]"]), float(decaying[f"wave {other} rotation [-]"]), places=5)
             self.assertGreater(float(rows["A0-4 +"]["wave with rotation [-]"]), 0.8, rotation)
-
-    def test_table_1_needs_its_scene(self):
-        message = self.message("scene.prm", "--set", "Study=paper", "--set", "Operation/Load per side=500")
-        for path in ("Geometry/Top pin angles", "Operation/Load per side"):
-            self.assertIn(path, message)
-        self.assertNotIn("Geometry/Element size", message)
 
     def test_growing_modes_have_one_name(self):
         """Of a doublet the one that grows is `+` in every study."""
@@ -226,7 +160,3 @@ class Words(ProgramTest):
                 self.assertTrue(label.endswith("+") or rates[label] < rates[label[:-1] + "+"], f"{label} in {study}")
         self.assertTrue(growing["stability"])
         self.assertEqual(growing["stability"], growing["sweep"])
-        dissipation = self.run_scene("dissipation", *COARSE, "Study=dissipation", file="default.prm") / "dissipation.csv"
-        rates = {row["label"]: row["no C_b [%]"] for row in read_table(dissipation)}
-        for label in growing["stability"]:
-            self.assertGreater(float(rates[label]), 0.)

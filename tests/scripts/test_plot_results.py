@@ -204,8 +204,11 @@ class ComplexPlane(PlotTest):
     def test_both_solutions_of_the_paper(self):
         columns = ("label", "frequency [Hz]", "divergence rate [%]", "unstable [-]")
         self.write("complex_modes", columns, [("F1", 50, 0.1, 1), ("F1", 60, -0.1, 0)])
-        self.write("complex_modes_damped", columns, [("F1", 40, -0.05, 0)])
-        without, damped = complex_plane.figures(Results(self.folder))["complex_plane"].axes
+        undamped = Results(self.folder)
+        undamped.table = {"complex_modes": undamped.table("complex_modes")}.get
+        self.write("complex_modes", columns, [("F1", 40, -0.05, 0)])
+        self.write_parameters({**PARAMETERS, "Operation": {"Radial dissipation": "consistent", "Friction coefficient": 0.4}})
+        without, damped = complex_plane.paper_figure(undamped, Results(self.folder)).axes
         self.assertEqual(line_of(without, charts.WITHOUT), [(0.050, 0.1), (0.060, -0.1)])
         self.assertEqual(line_of(damped, charts.WITH), [(0.040, -0.05)])
         self.assertEqual(line_of(without, "growing"), [(0.050, 0.1)])

@@ -210,8 +210,8 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
-  EXPECT_EQ(names, (std::set<std::string>{"accuracy", "dissipation", "geometry", "ingredients", "paper", "reduction", "search",
-                                          "sensitivity", "stability", "sweep"}));
+  EXPECT_EQ(names,
+            (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "search", "sensitivity", "stability", "sweep"}));
 }
 
 TEST(ParameterUsage, OfStability)
@@ -235,31 +235,6 @@ TEST(ParameterUsage, OfStability)
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
                             {"Output/Animation periods", "Output/Animation growth"})));
   EXPECT_EQ(unused_alone({"Output/Mode shapes=none", "Output/Real mode shapes=true"}).count("Output/Field format"), 0u);
-}
-
-TEST(ParameterUsage, OfDissipation)
-{
-  EXPECT_EQ(unused_alone({"Study=dissipation"}),
-            those_of({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/",
-                      "Steady sliding/Contact", "Complex modes/Iteration", "Complex modes/Maximum", "Output/"}));
-}
-
-TEST(ParameterUsage, OfThePaper)
-{
-  const std::vector<std::string> always = {"Reduction/",
-                                           "Sweep/",
-                                           "Ingredients/",
-                                           "Accuracy study/",
-                                           "Designs/",
-                                           "Search/",
-                                           "Sensitivity/",
-                                           "Complex modes/Iteration",
-                                           "Complex modes/Maximum",
-                                           "Output/"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  EXPECT_EQ(unused_alone({"Study=paper"}), those_of(joined(always, steady)));
-  EXPECT_EQ(unused_alone({"Study=paper", "Steady sliding/Contact state=steady sliding"}), those_of(always));
 }
 
 TEST(ParameterUsage, OfAccuracy)

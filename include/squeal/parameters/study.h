@@ -45,12 +45,6 @@ namespace Squeal
     /// Whether it solves for modes with friction; null: always.
     bool (*has_friction)(const Parameters &) = nullptr;
 
-    /// Whether it goes through contact states and radial dissipations on its own, whatever the parameters say.
-    bool compares_dissipation = false;
-
-    /// Whether some of its modes have radial dissipation, whatever the parameters say.
-    bool adds_dissipation = false;
-
     /// Whether it knows the near null spaces of all its systems, which multigrid needs.
     bool knows_near_null_spaces = false;
 

@@ -35,8 +35,8 @@ namespace Squeal
   /// Names @p modes, however they were found, and decides which of them grow. Their cost is left zero.
   FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes);
 
-  /// Complex modes of the band by the solver that the parameters choose, as a step of the run called @p step.
-  FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run, const std::string &step = "Complex modes");
+  /// Complex modes of the band by the solver that the parameters choose.
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run);
 
   /**
    * Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much

@@ -62,6 +62,6 @@ namespace Squeal
   /// What everything that bases rest on has cost.
   Table reduction_cost_table(const std::vector<Charge> &charges);
 
-  /// Numbers of component modes, @p with_paper beside Table 3 of the paper where the truncation is one of its frequencies.
-  Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations, bool with_paper);
+  /// Numbers of component modes below each truncation.
+  Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations);
 } // namespace Squeal

@@ -1,9 +1,14 @@
 """doc/dissipation.md"""
 
+import paper
 from reproduction.numbers import Number, entry
 
 NO_SHAPES = "Output/Mode shapes=none"
 READINGS = ("equal load consistent [%]", "equal load published [%]", "steady sliding consistent [%]", "steady sliding published [%]")
+
+
+def rates_with_all_readings(runs):
+    return list(paper.readings({reading: runs(*how) for reading, how in paper.READINGS.items()}))
 
 
 def ends(rows, label, column):
@@ -19,7 +24,7 @@ def of_modes(results, label):
 
 @entry("dissipation", "The table of divergence rates with each reading")
 def table(runs):
-    rows = runs("readings_of_dissipation", "readings_of_dissipation.prm").table("dissipation.csv")
+    rows = rates_with_all_readings(runs)
     quoted = {"F1": (("-2.07", "-5.15", "-1.41", "-3.35"), ("0.947", "0.919", "0.970", "0.934")),
               "T1": (("-1.36", "-3.39", "-1.80", "-4.53"), ("-1.03", "-2.57", "-1.36", "-3.40")),
               "A0-4": (("-0.686", "-0.695", "-0.686", "-0.695"), ("0.674", "0.664", "0.674", "0.665")),
@@ -56,7 +61,7 @@ def small_friction(runs):
 
 @entry("dissipation", "Seven F1 modes that hardly grow without it grow by 0.01 to 0.04 %; the leading pairs lose at most 0.15 %")
 def destabilised(runs):
-    rows = runs("readings_of_dissipation", "readings_of_dissipation.prm").table("dissipation.csv")
+    rows = rates_with_all_readings(runs)
 
     def rates(column):
         return sorted(row[column] for row in rows if row["label"].startswith("F1"))

@@ -1,5 +1,6 @@
 """doc/paper.md, but for what has a page of its own"""
 
+import paper
 from reproduction.numbers import Number, entry
 
 NO_SHAPES = "Output/Mode shapes=none"
@@ -36,7 +37,7 @@ def coalescences(runs):
 
 @entry("paper", "Statements of section 4")
 def section_four(runs):
-    rows = runs("paper", "paper.prm").table("statements.csv")
+    rows = paper.statements(runs(*paper.READINGS[paper.WITHOUT]), runs(*paper.READINGS[paper.WITH]))
 
     def here(words):
         return next(row["here"] for row in rows if words in row["statement"])
@@ -44,8 +45,7 @@ def section_four(runs):
     for words, quoted in (("bending modes F1 per pin", "2"), ("splits double disc modes", "38.0"), ("spreads the bending modes", "0.60"),
                           ("hardly shifts in-plane", "0.002"), ("real coupled ones, without C_b", "1.02"),
                           ("real coupled ones, with C_b", "0.83"),
-                          ("unstable disc modes without", "2"), ("unstable pin modes without", "3")):
+                          ("unstable disc modes without", "2"), ("unstable pin modes without", "3"), ("unstable modes with C_b", "12")):
         yield Number(words, quoted, here(words))
     for label, quoted in (("A0-4 +", "99"), ("A0-5 +", "96")):
         yield Number(f"{label}: share of the wave that travels one way [%]", quoted, 100 * here(f"{label} looks like a rotating wave"))
-    yield Number("largest divergence rate of modes that C_b adds [%]", "0.05", here("largest divergence rate of those that it adds"))

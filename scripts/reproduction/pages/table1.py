@@ -1,7 +1,6 @@
 """doc/table1.md"""
 
-import math
-
+import paper
 from reproduction.numbers import Number, entry
 
 NO_SHAPES = "Output/Mode shapes=none"
@@ -15,20 +14,19 @@ MESHES = {
 }
 
 
-def paper(runs):
-    return runs("paper", "paper.prm")
+def solution(runs, reading):
+    return runs(*paper.READINGS[reading])
 
 
-def rms(rows, column):
-    values = [row[column] for row in rows if isinstance(row[column], float)]
-    return math.sqrt(sum(value**2 for value in values) / len(values)), len(values)
+def table_one(runs):
+    return list(paper.table_one(solution(runs, paper.WITHOUT), solution(runs, paper.WITH)))
 
 
 @entry("table1", "The agreement: component, coupled and complex frequencies, numbers below 5 kHz")
 def agreement(runs):
-    results = paper(runs)
+    results, rows = solution(runs, paper.WITHOUT), table_one(runs)
     for name, quoted, of in (("component", "3.2", "34"), ("coupled", "3.0", "34"), ("without C_b", "2.8", "38"), ("with C_b", "2.8", "39")):
-        value, number = rms(results.table("table1.csv"), f"{name} difference [%]")
+        value, number, _, _ = paper.agreement(rows, name)
         yield Number(f"{name}: difference, rms [%]", quoted, value)
         yield Number("  of so many", of, number)
     counts = results.record["counts"]
@@ -39,7 +37,7 @@ def agreement(runs):
 
 @entry("table1", "Unstable pairs without radial dissipation")
 def unstable_pairs(runs):
-    modes = paper(runs).table("complex_modes.csv")
+    modes = solution(runs, paper.WITHOUT).modes()
     growing = sorted((mode for mode in modes if mode["divergence rate [%]"] > 0.01), key=lambda mode: -mode["divergence rate [%]"])
     for place, (label, frequency, rate) in enumerate((("F1", "3569", "1.07"), ("A0-5", "3452", "0.86"), ("A0-4", "2353", "0.68"),
                                                       ("F1", "3548", "0.32"), ("F1", "3542", "0.12"))):
@@ -49,7 +47,7 @@ def unstable_pairs(runs):
 
 @entry("table1", "With C_b, consistent and about steady sliding")
 def damped(runs):
-    modes = paper(runs).table("complex_modes_damped.csv")
+    modes = solution(runs, paper.WITH).modes()
 
     def rates(label):
         return sorted((mode["divergence rate [%]"], mode["frequency [Hz]"]) for mode in modes if mode["label"].startswith(label))
@@ -73,7 +71,7 @@ def damped(runs):
 
 @entry("table1", "What differs by more than 7 %")
 def large_differences(runs):
-    rows = {row["label"]: row for row in paper(runs).table("table1.csv")}
+    rows = {row["label"]: row for row in table_one(runs)}
     for label, column, quoted in (("C0-0", "component", "-8.0"), ("C0-0", "coupled", "-8.0"), ("R0-1 -", "component", "6.3"),
                                   ("R0-1 -", "coupled", "7.3"), ("A0-2 +", "coupled", "-7.2"), ("A0-2 +", "component", "-6.1")):
         yield Number(f"{label}, {column} [%]", quoted, rows[label][f"{column} difference [%]"])
@@ -92,6 +90,5 @@ def convergence(runs):
 
 @entry("table1", "F1 at 3353 Hz: the coupled modes up to there in the paper's table")
 def coupled_modes_up_to_f1(runs):
-    rows = paper(runs).table("table1.csv")
-    printed = [row["coupled paper [Hz]"] for row in rows if isinstance(row["coupled paper [Hz]"], float)]
+    printed = [row["coupled paper [Hz]"] for row in table_one(runs) if row["coupled paper [Hz]"] is not None]
     yield Number("coupled modes up to 3353 Hz", "18", sum(frequency <= 3353 for frequency in printed))
