@@ -1,6 +1,5 @@
 #include <squeal/base/assignment.h>
 #include <squeal/bases/component_modes.h>
-#include <squeal/bases/near_null_space.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -78,16 +77,11 @@ namespace Squeal
     struct Pending
     {
       std::shared_ptr<const ComponentProblem> problem;
-      std::optional<NearNullSpace>            space;
       std::future<SymmetricModes>             modes;
     };
     const auto pending = std::make_shared<Pending>();
     pending->problem   = problem;
-    // Multigrid has to know how the dofs of this component move
-    SymmetricModesOptions used = options;
-    if (options.library == FactorizationLibrary::multigrid)
-      used.near_null_space = &pending->space.emplace(near_null_space(model, *problem->kernel));
-    pending->modes = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue, used);
+    pending->modes = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue, options);
     return std::async(std::launch::deferred, [&model, &interface, &system, pending] {
       return labelled(model, interface, system, *pending->problem, pending->modes.get());
     });

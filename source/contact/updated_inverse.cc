@@ -44,7 +44,6 @@ namespace Squeal
         [&system, shift] { return frictionless_pencil(system, shift); },
         library,
         "stiffness of the coupled system without friction",
-        system.near_null_space.get(),
         attachment == AttachmentModes::at_once ? [this](const Factorization &made) { find_attachment_modes(made); } :
                                                  std::function<void(const Factorization &)>()))
   {

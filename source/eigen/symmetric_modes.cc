@@ -132,13 +132,11 @@ namespace Squeal
 
   std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options)
   {
-    const bool lacks_motions = options.library == FactorizationLibrary::multigrid && options.near_null_space == nullptr;
-    if (options.inverse != nullptr || options.shift != 0. || options.solver == RealSolver::lobpcg || K.n_rows() <= largest_dense_system ||
-        lacks_motions)
+    if (options.inverse != nullptr || options.shift != 0. || K.n_rows() <= largest_dense_system)
       return {};
     return factorize_beside(
              K.rows(), [&K] { return std::shared_ptr<const SparseMatrix>(std::shared_ptr<const SparseMatrix>(), &K); }, options.library,
-             options.what, options.near_null_space)
+             options.what)
       .share();
   }
 

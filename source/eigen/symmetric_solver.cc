@@ -1,4 +1,3 @@
-#include "preconditioned_modes.h"
 #include "shift_invert.h"
 #include "symmetric_solver.h"
 
@@ -29,16 +28,13 @@ namespace Squeal
     , M(M)
     , options(options)
     , early(options.factor.valid() ? options.factor : factor_of_stiffness(K, options))
-    , counted(options.counting == ModeCounting::inertia || K.n_rows() <= largest_dense_system)
-    , count(options.count ? *options.count :
-            counted       ? count_below(K, M, limit, options.what) :
-                            ModeCount{0, limit})
+    , count(options.count ? *options.count : count_below(K, M, limit, options.what))
     , hidden_square(unresolved_square(K, M))
   {}
 
   bool SymmetricSolver::is_dense() const
   {
-    return counted && count.n_modes > 0 && (K.n_rows() <= largest_dense_system || 4 * count.n_modes + 50 > K.n_rows());
+    return count.n_modes > 0 && (K.n_rows() <= largest_dense_system || 4 * count.n_modes + 50 > K.n_rows());
   }
 
   void SymmetricSolver::solve_densely()
@@ -55,8 +51,6 @@ namespace Squeal
   SymmetricModes SymmetricSolver::modes()
   {
     SymmetricModes modes;
-    if (!counted)
-      return uncounted();
     if (count.n_modes > 0)
       {
         RitzPairs       pairs  = find_all();
@@ -69,65 +63,13 @@ namespace Squeal
 
   bool SymmetricSolver::may_be_alone() const
   {
-    return counted && K.rows().n_processes() == 1 &&
+    return K.rows().n_processes() == 1 &&
            (count.n_modes == 0 || is_dense() || (options.solver == RealSolver::lanczos && needs_no_process(K.rows(), options.library)));
   }
 
   void SymmetricSolver::keep_to_itself(const bool keep)
   {
     keeps_to_itself = keep;
-  }
-
-  SymmetricModes SymmetricSolver::uncounted()
-  {
-    RitzPairs pairs;
-    int       n_wanted = std::max(8, options.n_expected);
-    for (unsigned int attempt = 0;; ++attempt)
-      {
-        const std::optional<MultiVector> fresh = lobpcg(n_wanted, attempt, pairs.vectors);
-        if (!fresh)
-          throw SolverError("LOBPCG found nothing in its search number " + std::to_string(attempt + 1), options.what,
-                            "choose Anasazi or ARPACK as solver of the real modes");
-        const int n_before = static_cast<int>(pairs.values.size());
-        if (merge(*fresh, pairs) == n_before)
-          break;
-        // Once a search went beyond the band, a few vectors look for missing modes.
-        const int n_now = static_cast<int>(pairs.values.size());
-        n_wanted        = n_now - n_before < fresh->n_columns() ? 4 : std::max(8, options.n_expected - n_now);
-      }
-    SymmetricModes modes;
-    count.n_modes = static_cast<int>(pairs.values.size());
-    if (count.n_modes > 0)
-      {
-        const Residuals result = refine(pairs);
-        modes                  = accept(pairs, result);
-      }
-    modes.n_counted = not_counted;
-    return modes;
-  }
-
-  std::optional<MultiVector> SymmetricSolver::lobpcg(const int                         n_wanted,
-                                                     const unsigned int                attempt,
-                                                     const std::optional<MultiVector> &deflated)
-  {
-    return lobpcg_vectors(
-      K, M, preconditioner(), deflated ? &*deflated : nullptr,
-      {std::min(n_wanted, K.n_rows() / 8), 0.3 * options.tolerance, count.limit, options.seed + 7919 * attempt, options.what});
-  }
-
-  const LinearOperator &SymmetricSolver::preconditioner()
-  {
-    if (options.preconditioner != nullptr)
-      return *options.preconditioner;
-    if (!multigrid)
-      {
-        if (options.near_null_space == nullptr)
-          throw SolverError("LOBPCG was asked for where no near null space is known", options.what,
-                            "choose Anasazi or ARPACK as solver of the real modes");
-        multigrid =
-          std::make_unique<Multigrid>(options.shift > 0. ? *add(1., K, options.shift, M) : K, *options.near_null_space, options.what);
-      }
-    return *multigrid;
   }
 
   const LinearOperator &SymmetricSolver::inverse()
@@ -141,7 +83,7 @@ namespace Squeal
         {
           if (early.valid())
             return *early.get().factor;
-          factorization = factorize_positive_definite(K, options.library, options.what, options.near_null_space);
+          factorization = factorize_positive_definite(K, options.library, options.what);
           return *factorization;
         }
       catch (const SolverError &)
@@ -150,7 +92,7 @@ namespace Squeal
           // reason was another one, the next attempt says so.
         }
     const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
-    factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what, options.near_null_space);
+    factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what);
     return *factorization;
   }
 
@@ -211,8 +153,6 @@ namespace Squeal
                                                      const int                         n_fruitless,
                                                      const std::optional<MultiVector> &deflated)
   {
-    if (options.solver == RealSolver::lobpcg)
-      return lobpcg(n_wanted, attempt, deflated);
     const ShiftInvert A(inverse(), M, deflated ? &*deflated : nullptr);
     KrylovRequest     request;
     request.n_wanted   = n_wanted;
@@ -229,7 +169,6 @@ namespace Squeal
           return lanczos_vectors(A, request);
         case RealSolver::anasazi:
           return anasazi_vectors(A, request);
-        case RealSolver::lobpcg: // above
         case RealSolver::arpack:
           break;
       }
@@ -292,14 +231,7 @@ namespace Squeal
       {
         const int   n = pairs.vectors->n_columns();
         MultiVector W(pairs.vectors->map(), n);
-        if (options.solver == RealSolver::lobpcg)
-          {
-            MultiVector R = K * *pairs.vectors - M * *pairs.vectors * DenseMatrix(as_column(pairs.values).asDiagonal());
-            preconditioner().apply(R, W);
-            W = join({&*pairs.vectors, &W});
-          }
-        else
-          ShiftInvert(inverse(), M, nullptr).apply(*pairs.vectors, W);
+        ShiftInvert(inverse(), M, nullptr).apply(*pairs.vectors, W);
         RitzPairs refined = rayleigh_ritz(orthonormalize(M, nullptr, W, 1e-12));
         pairs.values.assign(refined.values.begin(), refined.values.begin() + n);
         pairs.vectors.emplace(view(*refined.vectors, 0, n));

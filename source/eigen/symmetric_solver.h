@@ -56,15 +56,11 @@ namespace Squeal
 
     RitzPairs rayleigh_ritz(const MultiVector &V) const;
 
-    /// Whatever LOBPCG finds in the band; the last search, orthogonal to it, finds nothing more.
-    SymmetricModes uncounted();
-
     /// A space that contains approximations of all wanted modes.
     RitzPairs find_all();
 
     RitzPairs                  dense();
     std::optional<MultiVector> krylov(int n_wanted, unsigned int attempt, int n_fruitless, const std::optional<MultiVector> &deflated);
-    std::optional<MultiVector> lobpcg(int n_wanted, unsigned int attempt, const std::optional<MultiVector> &deflated);
 
     /// Puts fresh vectors to the pairs where modes in the band come with them; how many are in the band then.
     int merge(const MultiVector &fresh, RitzPairs &pairs) const;
@@ -75,12 +71,9 @@ namespace Squeal
      */
     bool lift_limit();
 
-    /// An approximation of (K + s M)⁻¹ for LOBPCG.
-    const LinearOperator &preconditioner();
-
     const LinearOperator &inverse();
 
-    /// Inverse iteration, block-wise, until the residuals are accepted; without an inverse, steps along preconditioned residuals.
+    /// Inverse iteration, block-wise, until the residuals are accepted.
     Residuals refine(RitzPairs &pairs);
 
     Residuals      residuals(const RitzPairs &pairs) const;
@@ -93,13 +86,11 @@ namespace Squeal
     const SparseMatrix              &K, &M;
     const SymmetricModesOptions      options;
     std::shared_future<FactorBeside> early; ///< while modes are counted
-    const bool                       counted;
     ModeCount                        count;
     const double                     hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
     bool                             lifted          = false;
     bool                             keeps_to_itself = false;
     std::unique_ptr<Factorization>   factorization;
-    std::unique_ptr<Multigrid>       multigrid;
     std::optional<RealPairs>         dense_pairs;
   };
 } // namespace Squeal

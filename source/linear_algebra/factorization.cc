@@ -1,7 +1,6 @@
 #include "libraries.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/iterative_inverse.h>
 
 namespace Squeal
 {
@@ -50,8 +49,7 @@ namespace Squeal
 
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix        &A,
                                                              const FactorizationLibrary library,
-                                                             const std::string         &what,
-                                                             const NearNullSpace       *near_null_space)
+                                                             const std::string         &what)
   {
     check_square(A, what);
     switch (library)
@@ -69,11 +67,6 @@ namespace Squeal
           if (count_negative_eigenvalues(A, what) > 0)
             throw_not_positive_definite("UMFPACK", what);
           return umfpack_factorization(A, what);
-        case FactorizationLibrary::multigrid:
-          if (near_null_space == nullptr)
-            throw SolverError("multigrid was asked for where no near null space is known", what,
-                              "choose automatic, CHOLMOD or MUMPS as factorisation library");
-          return iterative_inverse(A, *near_null_space, what);
         case FactorizationLibrary::mumps:
           break;
       }
@@ -93,7 +86,6 @@ namespace Squeal
           check_one_process(A, library, what);
           return umfpack_factorization(A, what);
         case FactorizationLibrary::cholmod:
-        case FactorizationLibrary::multigrid:
           throw SolverError(to_string(library) + " was asked for but serves positive definite matrices only", what,
                             "choose automatic, UMFPACK or MUMPS as factorisation library");
         case FactorizationLibrary::mumps:

@@ -30,12 +30,11 @@ namespace Squeal
                                              const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
                                              const FactorizationLibrary                                  library,
                                              const std::string                                          &what,
-                                             const NearNullSpace                                        *near_null_space,
                                              const std::function<void(const Factorization &)>           &then)
   {
     if (!needs_no_process(rows, library) || !is_done_beside(rows))
       return std::async(std::launch::deferred, [=] {
-        FactorBeside result{factorize_positive_definite(*matrix(), library, what, near_null_space)};
+        FactorBeside result{factorize_positive_definite(*matrix(), library, what)};
         if (then)
           then(*result.factor);
         return result;

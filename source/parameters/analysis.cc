@@ -29,14 +29,9 @@ namespace Squeal
   void SolverParameters::declare(Declarations &declarations)
   {
     declarations.enter("Real modes");
-    declarations.add(
-      "Solver", real_solver,
-      "Of the symmetric problem. Shift-invert: block Lanczos, block Krylov-Schur (Anasazi), Lanczos with implicit restarts (ARPACK). LOBPCG: preconditioned by "
-      "multigrid, with Linear algebra/Factorization = multigrid; slower wherever it was measured (doc/multigrid.md).");
-    declarations.add(
-      "Count", mode_counting,
-      "How it is known that no real mode is missing. inertia: by the pivots of a factor, which takes its memory. none: not at "
-      "all, with LOBPCG, and the run says so.");
+    declarations.add("Solver", real_solver,
+                     "Shift-invert eigensolver of the symmetric problem: block Lanczos; block Krylov-Schur (Anasazi) and implicitly "
+                     "restarted Lanczos (ARPACK) as independent checks.");
     declarations.add("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", {1e-14, 1e-4});
     declarations.add("Maximum number of modes", maximum_modes,
                      "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
@@ -58,8 +53,7 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several. multigrid: block conjugate "
-                     "gradients in place of the Cholesky factor: more time, less memory on fine meshes (doc/multigrid.md).");
+                     "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads,
       "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and large factors. 0: as many as "
@@ -71,15 +65,6 @@ namespace Squeal
 
   void SolverParameters::check() const
   {
-    if (real_solver == RealSolver::lobpcg && library != FactorizationLibrary::multigrid)
-      throw ParameterError("LOBPCG is preconditioned by multigrid, but systems are solved by " + to_string(library),
-                           "parameter Real modes/Solver", "set Linear algebra/Factorization = multigrid, or choose Anasazi or ARPACK");
-    if (mode_counting == ModeCounting::none && real_solver != RealSolver::lobpcg)
-      throw ParameterError("without a count nobody tells " + to_string(real_solver) + " how many real modes to look for",
-                           "parameter Real modes/Count", "set it to inertia, or Real modes/Solver = LOBPCG");
-    if (library == FactorizationLibrary::multigrid && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)
-      throw ParameterError("multigrid cannot solve with the nonsymmetric matrix that `Shift inverse = sparse LU` asks for",
-                           "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");
     if (library == FactorizationLibrary::umfpack)
       return;
     if (library == FactorizationLibrary::cholmod && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)

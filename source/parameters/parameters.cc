@@ -330,18 +330,6 @@ namespace Squeal
                              text("give at most ", most_damping_by_mass * radius, " 1/s, or give Damping/Modal damping ratio instead"));
   }
 
-  void Parameters::check_multigrid() const
-  {
-    if (!solvers.uses_multigrid())
-      return;
-    if (!study->knows_near_null_spaces)
-      throw ParameterError(text("Study = ", study->name, " also solves systems for which multigrid is not prepared"),
-                           "parameter Linear algebra/Factorization", "set it to automatic, or Study = stability");
-    if (solvers.mode_counting == ModeCounting::none && operation.rotating_disc)
-      throw ParameterError("whether the disc turns beyond a critical speed is seen by inertia only", "parameter Real modes/Count",
-                           "set it to inertia, or Operation/Gyroscopic forces = false");
-  }
-
   void Parameters::check() const
   {
     geometry.check();
@@ -358,6 +346,5 @@ namespace Squeal
       study->check(*this);
     check_damping_in_band();
     solvers.check();
-    check_multigrid();
   }
 } // namespace Squeal

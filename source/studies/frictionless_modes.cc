@@ -1,8 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/near_null_space.h>
 #include <squeal/bases/rigid_body.h>
-#include <squeal/linear_algebra/iterative_inverse.h>
 #include <squeal/linear_algebra/weighted_gram.h>
 #include <squeal/studies/frictionless_modes.h>
 
@@ -54,10 +52,8 @@ namespace Squeal
     }
 
     /// Counts the modes of the band, and refuses more than allowed before any is computed: counting them takes one factorisation.
-    std::optional<ModeCount> number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
+    ModeCount number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
     {
-      if (run.parameters.solvers.mode_counting == ModeCounting::none)
-        return {};
       run.progress.begin("Mode count");
       const ModeCount    count     = count_below(*coupled.stiffness, *coupled.mass, largest_circular_frequency * largest_circular_frequency,
                                                  "real modes of the coupled system");
@@ -69,16 +65,6 @@ namespace Squeal
                              "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; time grows up to its cube");
       run.progress.finish(text(count.n_modes, " below ", frequency, " Hz by inertia"));
       return count;
-    }
-
-    /// What a step says of the factor or of what takes its place.
-    std::string factor_summary(const Factorization &factor)
-    {
-      const auto *iterative = dynamic_cast<const IterativeInverse *>(&factor);
-      return text(factor.n_factor_entries() / 1e6, iterative != nullptr ? " million entries of multigrid" : " million entries",
-                  iterative != nullptr && iterative->n_vectors() > 0 ?
-                    text("; ", iterative->n_vectors(), " vectors in ", iterative->n_steps(), " steps of blocks") :
-                    "");
     }
   } // namespace
 
@@ -155,7 +141,6 @@ namespace Squeal
   {
     SymmetricModesOptions options;
     options.solver    = solvers.real_solver;
-    options.counting  = solvers.mode_counting;
     options.tolerance = solvers.real_tolerance;
     options.library   = solvers.library;
     options.what      = what;
@@ -165,16 +150,6 @@ namespace Squeal
 
   namespace
   {
-    /// Bodies that are solved one by one are small: by factors, and counted, whatever is chosen for the others.
-    void factorize_parts(SymmetricModesOptions &options)
-    {
-      if (options.library == FactorizationLibrary::multigrid)
-        options.library = FactorizationLibrary::automatic;
-      if (options.solver == RealSolver::lobpcg)
-        options.solver = RealSolver::anasazi;
-      options.counting = ModeCounting::inertia;
-    }
-
     /// Component modes, in two steps: those of the pins may be found while coupled modes are counted.
     class ComponentSolutions
     {
@@ -189,7 +164,6 @@ namespace Squeal
         , disc_options(
             real_modes_options(run.parameters.solvers, "modes of the disc", stabilizing_shift(*scene.model, scene.system, omega_max)))
       {
-        disc_options.n_expected = static_cast<int>(scene.expected_modes / 2.);
         disc_options.factor     = factor_of_stiffness(*disc->stiffness, disc_options);
         pins_free               = begin(problem(Component::pins, ContactBoundary::free), pin_options("modes of the free pins"), 1.);
         pins_sliding = begin(problem(Component::pins, ContactBoundary::sliding), pin_options("modes of the sliding pins"), label_band);
@@ -225,7 +199,6 @@ namespace Squeal
         SymmetricModesOptions options = real_modes_options(run.parameters.solvers, name, 0.);
         // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
         options.by_parts = true;
-        factorize_parts(options);
         return options;
       }
 
@@ -261,14 +234,12 @@ namespace Squeal
     const AttachmentModes attachment = !may_keep_attachment_modes(coupled)                     ? AttachmentModes::not_kept :
                                        parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed :
                                                                                                  AttachmentModes::at_once;
-    if (parameters.solvers.uses_multigrid())
-      result.linearisation.coupled.near_null_space = std::make_shared<NearNullSpace>(near_null_space(*scene.model, *coupled.kernel));
     result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
                                                       FactorTime::beside);
 
     check_speed(coupled, parameters);
     ComponentSolutions             components(linearisation, run);
-    const std::optional<ModeCount> count = number_of_modes(coupled, (1. + margin) * omega_max, run);
+    const ModeCount                count = number_of_modes(coupled, (1. + margin) * omega_max, run);
 
     SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
     options.count                 = count;
@@ -277,13 +248,11 @@ namespace Squeal
     // The factor serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.has_damping())
       options.inverse = result.inverse.get();
-    options.n_expected    = static_cast<int>(scene.expected_modes);
     const auto real_modes = [&] {
-      return symmetric_modes_beside(*coupled.stiffness, *coupled.mass, count ? count->limit : (1. + margin) * (1. + margin) * limit,
-                                    options);
+      return symmetric_modes_beside(*coupled.stiffness, *coupled.mass, count.limit, options);
     };
     std::future<SymmetricModes> real;
-    if (steps == Steps::overlapping && !parameters.solvers.uses_multigrid())
+    if (steps == Steps::overlapping)
       real = real_modes();
     components.finish(result);
 
@@ -291,18 +260,13 @@ namespace Squeal
     run.progress.begin("Factorisation");
     run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
     result.factorisation = run.progress.finish(
-      text(factor_summary(result.inverse->frictionless()), result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
+      text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries", result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
     // Steps before it have what another thread did
     result.factorisation.cpu_seconds += result.inverse->factor_seconds_beside();
 
     run.progress.begin("Real modes");
     if (!real.valid())
-      {
-        if (const auto *iterative = dynamic_cast<const IterativeInverse *>(&result.inverse->frictionless()); iterative != nullptr)
-          options.preconditioner = &iterative->preconditioner();
-        options.near_null_space = result.linearisation.coupled.near_null_space.get();
-        real                    = real_modes();
-      }
+      real = real_modes();
     result.real              = real.get();
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
@@ -311,7 +275,7 @@ namespace Squeal
     run.count("rigid-body modes", result.real.n_rigid_body);
     result.solution =
       run.progress.finish(text(result.real.eigenvalues.size(), " found, ",
-                               result.real.n_counted == not_counted ? "not counted" : text(result.real.n_counted, " counted by inertia"),
+                               result.real.n_counted, " counted by inertia",
                                n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                                result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 

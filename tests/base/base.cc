@@ -82,8 +82,8 @@ TEST(Assignment, AgreesWithTryingAll)
 
 TEST(EnumTables, NamesThereAndBack)
 {
-  EXPECT_EQ(enum_names<RealSolver>(), (std::vector<std::string>{"block Lanczos", "Anasazi", "ARPACK", "LOBPCG"}));
-  for (const RealSolver solver : {RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack, RealSolver::lobpcg})
+  EXPECT_EQ(enum_names<RealSolver>(), (std::vector<std::string>{"block Lanczos", "Anasazi", "ARPACK"}));
+  for (const RealSolver solver : {RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack})
     EXPECT_EQ(enum_value<RealSolver>(to_string(solver)), solver);
 }
 

@@ -405,25 +405,6 @@ TEST(ParameterChecks, Solvers)
             "accepted");
 }
 
-TEST(ParameterChecks, Multigrid)
-{
-  const std::string multigrid = "Linear algebra/Factorization=multigrid", lobpcg = "Real modes/Solver=LOBPCG",
-                    none = "Real modes/Count=none";
-  EXPECT_EQ(refusal("", {multigrid}), "accepted");
-  EXPECT_EQ(refusal("", {multigrid, lobpcg}), "accepted");
-  EXPECT_EQ(refusal("", {multigrid, lobpcg, none}), "accepted");
-
-  const auto refused = [](const std::string &message, const std::string &parameter) {
-    EXPECT_NE(message.find("parameter " + parameter), std::string::npos) << message;
-  };
-  refused(refusal("", {lobpcg}), "Real modes/Solver");
-  refused(refusal("", {none}), "Real modes/Count");
-  refused(refusal("", {multigrid, none}), "Real modes/Count");
-  refused(refusal("", {multigrid, "Complex modes/Shift inverse=sparse LU"}), "Linear algebra/Factorization");
-  refused(refusal("", {multigrid, "Study=sweep"}), "Linear algebra/Factorization");
-  refused(refusal("", {multigrid, lobpcg, none, "Operation/Gyroscopic forces=true"}), "Real modes/Count");
-}
-
 TEST(ParameterChecks, Output)
 {
   expect_refused("Output/Animation frames=-1", "Output/Animation frames", "-1");

@@ -10,7 +10,6 @@ from program import ProgramTest, distance, eigenvalues, numbers, read_table, rea
 
 # With its default tolerance of 1e-7 the residual iteration stops earlier than the comparison asks.
 RESIDUAL_ITERATION = ["Complex modes/Solver=residual iteration", "Complex modes/Iteration tolerance=1e-10"]
-MULTIGRID = "Linear algebra/Factorization=multigrid"
 HERE = pathlib.Path(__file__).resolve().parent
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
@@ -29,11 +28,7 @@ class Solvers(ProgramTest):
                           ["Complex modes/Shift inverse=sparse LU"],
                           ["Complex modes/Shift inverse=sparse LU", "Linear algebra/Factorization=MUMPS"],
                           ["Real modes/Solver=Anasazi"],
-                          ["Real modes/Solver=ARPACK"],
-                          [MULTIGRID],
-                          [MULTIGRID, "Real modes/Solver=LOBPCG"],
-                          [MULTIGRID, "Real modes/Solver=LOBPCG", "Real modes/Count=none"],
-                          [MULTIGRID, RESIDUAL_ITERATION[0], RESIDUAL_ITERATION[1]]):
+                          ["Real modes/Solver=ARPACK"]):
             with self.subTest(overrides):
                 results = self.run_scene("results", *overrides)
                 self.assert_same_eigenvalues(eigenvalues(results), self.values)

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <squeal/contact/contact_operators.h>
-#include <squeal/linear_algebra/multigrid.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
 
@@ -55,7 +54,6 @@ namespace Squeal
     double                               hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c (rounding.h) [rad²/s²]
     std::shared_ptr<const LowRankFactor> friction_forces;    ///< A, n × n_c
     std::shared_ptr<const SparseMatrix>  kernel;             ///< T_c, n_uncoupled × n
-    std::shared_ptr<const NearNullSpace> near_null_space;    ///< of K_c, for multigrid; null where nobody has asked for it
 
     /// Distribution of the coupled dofs.
     const RowMap &map() const;

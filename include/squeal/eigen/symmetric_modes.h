@@ -3,7 +3,6 @@
 #include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
 #include <squeal/linear_algebra/factorization_beside.h>
-#include <squeal/linear_algebra/multigrid.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <memory>
@@ -52,27 +51,12 @@ namespace Squeal
 
     FactorizationLibrary library = FactorizationLibrary::automatic;
 
-    /// Of K: LOBPCG and FactorizationLibrary::multigrid need it.
-    const NearNullSpace *near_null_space = nullptr;
-
-    /// A symmetric positive definite approximation of (K + s M)⁻¹ for LOBPCG where the caller has it; null: multigrid is set up here.
-    const LinearOperator *preconditioner = nullptr;
-
-    /// LOBPCG also works without a count: it searches until nothing else is found in the band.
-    ModeCounting counting = ModeCounting::inertia;
-
-    /// Without a count: with how many modes the search begins.
-    int n_expected = 0;
-
     /// Seed of the random start vectors; results do not depend on it but for rounding.
     unsigned int seed = 1;
 
     /// Whose modes these are, for error messages.
     std::string what = "a symmetric eigenvalue problem";
   };
-
-  /// Of modes that were found without a count.
-  inline constexpr int not_counted = -1;
 
   /// Modes of K φ = ω² M φ, lowest first.
   struct SymmetricModes
@@ -89,7 +73,7 @@ namespace Squeal
     /// Eigenvalues that rounding errors of K hide (linear_algebra/rounding.h), whatever the band: those of rigid-body motions.
     int n_rigid_body = 0;
 
-    /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found. not_counted where nobody counted.
+    /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found.
     int n_counted = 0;
   };
 
@@ -101,8 +85,7 @@ namespace Squeal
    * shift-invert (K + s M)⁻¹ M, block Lanczos, block Krylov-Schur (Anasazi) or
    * implicitly restarted Lanczos (ARPACK), then by a Rayleigh-Ritz procedure in
    * the space found. Where members of multiple eigenvalues are missing, the solver is
-   * started again, orthogonally to what was found. LOBPCG takes the place of shift-invert where there is no factor; without a
-   * count it is started until what is orthogonal to the modes found has none in the band: modes may then be missing.
+   * started again, orthogonally to what was found.
    *
    * Throws SolverError if fewer modes are found than exist, or if the residual
    * of one exceeds both the tolerance and what rounding in K φ allows,
@@ -124,8 +107,7 @@ namespace Squeal
                                                      double                       largest_eigenvalue,
                                                      const SymmetricModesOptions &options = {});
 
-  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none,
-  /// or where multigrid takes its place and does not know yet how K moves.
+  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none.
   std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options);
 
   /**

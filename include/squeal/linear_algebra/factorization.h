@@ -9,9 +9,7 @@
 
 namespace Squeal
 {
-  struct NearNullSpace;
-
-  /// The inverse of a sparse matrix, by a direct factorisation in general.
+  /// The inverse of a sparse matrix, by a direct factorisation.
   class Factorization : public LinearOperator
   {
   public:
@@ -27,12 +25,11 @@ namespace Squeal
    * matrix, of which only one triangle is read. Throws SolverError naming
    * @p what if the matrix is not positive definite to working precision (a
    * pivot that is negative, or rounding error of its diagonal entry) or if the
-   * library cannot be used here. Multigrid needs the near null space of A and makes an iterative_inverse().
+   * library cannot be used here.
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix  &A,
                                                              FactorizationLibrary library,
-                                                             const std::string   &what,
-                                                             const NearNullSpace *near_null_space = nullptr);
+                                                             const std::string   &what);
 
   /**
    * LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws

@@ -34,6 +34,5 @@ namespace Squeal
                                              const std::function<std::shared_ptr<const SparseMatrix>()> &matrix,
                                              FactorizationLibrary                                        library,
                                              const std::string                                          &what,
-                                             const NearNullSpace                                        *near_null_space = nullptr,
                                              const std::function<void(const Factorization &)>           &then            = nullptr);
 } // namespace Squeal

@@ -49,7 +49,6 @@ namespace Squeal
   struct SolverParameters
   {
     RealSolver           real_solver         = RealSolver::lanczos;
-    ModeCounting         mode_counting       = ModeCounting::inertia;
     double               real_tolerance      = 1e-10; ///< on ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]
     unsigned int         maximum_modes       = 500;   ///< in the band
     ComplexSolver        complex_solver      = ComplexSolver::krylov;
@@ -62,12 +61,6 @@ namespace Squeal
     unsigned int         blas_threads        = 1;
 
     void declare(Declarations &declarations);
-
-    /// Whether anything is done by multigrid.
-    bool uses_multigrid() const
-    {
-      return library == FactorizationLibrary::multigrid || real_solver == RealSolver::lobpcg;
-    }
 
     /// Throws ParameterError.
     void check() const;

@@ -86,6 +86,5 @@ namespace Squeal
   private:
     void check_contact_state() const;
     void check_damping_in_band() const;
-    void check_multigrid() const;
   };
 } // namespace Squeal

@@ -45,9 +45,6 @@ namespace Squeal
     /// Whether it solves for modes with friction; null: always.
     bool (*has_friction)(const Parameters &) = nullptr;
 
-    /// Whether it knows the near null spaces of all its systems, which multigrid needs.
-    bool knows_near_null_spaces = false;
-
     /// Memory that it takes beside what modes of the scene do [byte]; null: little.
     double (*further_memory)(const Parameters &, const ProblemSize &, double n_modes) = nullptr;
 
