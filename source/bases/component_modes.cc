@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <functional>
 #include <map>
-#include <optional>
 
 namespace Squeal
 {
@@ -42,49 +41,27 @@ namespace Squeal
     return {component, boundary, T, congruence(*system.stiffness, *T), congruence(*system.mass, *T)};
   }
 
-  namespace
+  ComponentModes component_modes(const Model                 &model,
+                                 const ContactInterface      &interface,
+                                 const SecondOrderSystem     &system,
+                                 const ComponentProblem      &problem,
+                                 const double                 largest_eigenvalue,
+                                 const SymmetricModesOptions &options)
   {
-    ComponentModes labelled(const Model             &model,
-                            const ContactInterface  &interface,
-                            const SecondOrderSystem &system,
-                            const ComponentProblem  &problem,
-                            const SymmetricModes    &modes)
-    {
-      ComponentModes result;
-      result.eigenvalues = modes.eigenvalues;
-      result.residuals   = modes.residuals;
-      if (modes.eigenvalues.empty())
-        return result;
-      result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
-
-      const auto masses = nodal_masses(model, *system.mass);
-      result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
-                                                                 pin_labels(model, interface, masses, *result.vectors);
-      for (int j = 0; j < modes.n_rigid_body; ++j)
-        result.labels[j] = {ModeFamily::rigid_body};
+    const SymmetricModes modes = symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, options);
+    ComponentModes       result;
+    result.eigenvalues = modes.eigenvalues;
+    result.residuals   = modes.residuals;
+    if (modes.eigenvalues.empty())
       return result;
-    }
-  } // namespace
+    result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
 
-  std::future<ComponentModes> component_modes_beside(const Model                                   &model,
-                                                     const ContactInterface                        &interface,
-                                                     const SecondOrderSystem                       &system,
-                                                     const std::shared_ptr<const ComponentProblem> &problem,
-                                                     const double                                   largest_eigenvalue,
-                                                     const SymmetricModesOptions                   &options)
-  {
-    // Members go in reverse: what another thread uses goes when that has ended
-    struct Pending
-    {
-      std::shared_ptr<const ComponentProblem> problem;
-      std::future<SymmetricModes>             modes;
-    };
-    const auto pending = std::make_shared<Pending>();
-    pending->problem   = problem;
-    pending->modes = symmetric_modes_beside(*problem->stiffness, *problem->mass, largest_eigenvalue, options);
-    return std::async(std::launch::deferred, [&model, &interface, &system, pending] {
-      return labelled(model, interface, system, *pending->problem, pending->modes.get());
-    });
+    const auto masses = nodal_masses(model, *system.mass);
+    result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
+                                                               pin_labels(model, interface, masses, *result.vectors);
+    for (int j = 0; j < modes.n_rigid_body; ++j)
+      result.labels[j] = {ModeFamily::rigid_body};
+    return result;
   }
 
   ComponentModes component_modes(const Model                 &model,
@@ -96,8 +73,8 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    const auto problem = std::make_shared<ComponentProblem>(component_problem(model, closed, system, component, boundary));
-    return component_modes_beside(model, interface, system, problem, largest_eigenvalue, options).get();
+    return component_modes(model, interface, system, component_problem(model, closed, system, component, boundary), largest_eigenvalue,
+                           options);
   }
 
   namespace

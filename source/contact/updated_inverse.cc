@@ -33,55 +33,47 @@ namespace Squeal
   UpdatedInverse::UpdatedInverse(const CoupledSystem       &system,
                                  const double               shift,
                                  const FactorizationLibrary library,
-                                 const AttachmentModes      attachment,
-                                 const FactorTime           time)
+                                 const AttachmentModes      attachment)
     : attachment(attachment)
     , rows(system.map())
     , A(system.friction_forces)
     , V(normal_reactions(system, shift))
-    , later(factorize_beside(
-        system.map(),
-        [&system, shift] { return frictionless_pencil(system, shift); },
-        library,
-        "stiffness of the coupled system without friction",
-        attachment == AttachmentModes::at_once ? [this](const Factorization &made) { find_attachment_modes(made); } :
-                                                 std::function<void(const Factorization &)>()))
+    , factor(factorize_positive_definite(*frictionless_pencil(system, shift),
+                                         library,
+                                         "stiffness of the coupled system without friction"))
   {
-    if (time == FactorTime::at_once)
-      frictionless();
+    if (attachment == AttachmentModes::at_once)
+      find_attachment_modes();
   }
 
   const Factorization &UpdatedInverse::frictionless() const
   {
-    return *later.get().factor;
+    return *factor;
   }
 
-  void UpdatedInverse::find_attachment_modes(const Factorization &of) const
+  void UpdatedInverse::find_attachment_modes() const
   {
     X = std::make_unique<MultiVector>(rows, A->rank(), false);
     for_column_blocks(A->rank(), [&](const int first, const int n) {
       MultiVector place = view(*X, first, n);
-      of.apply(A->columns(first, n), place);
+      factor->apply(A->columns(first, n), place);
     });
   }
 
   const MultiVector &UpdatedInverse::attachment_modes() const
   {
-    const Factorization &S = frictionless();
     if (!X)
-      find_attachment_modes(S);
+      find_attachment_modes();
     return *X;
   }
 
   MultiVector UpdatedInverse::attachment_modes_times(const DenseMatrix &B) const
   {
-    frictionless(); // with which they come
     return X ? *X * B : solve_frictionless(*A * B);
   }
 
   void UpdatedInverse::for_responses(const LowRankFactor &F, const std::function<void(int first, const MultiVector &X_b)> &f) const
   {
-    frictionless(); // with which they come
     if (&F == A.get() && (X || attachment != AttachmentModes::not_kept))
       {
         f(0, attachment_modes());

@@ -27,7 +27,6 @@ namespace Squeal
     : K(K)
     , M(M)
     , options(options)
-    , early(options.factor.valid() ? options.factor : factor_of_stiffness(K, options))
     , count(options.count ? *options.count : count_below(K, M, limit, options.what))
     , hidden_square(unresolved_square(K, M))
   {}
@@ -61,17 +60,6 @@ namespace Squeal
     return modes;
   }
 
-  bool SymmetricSolver::may_be_alone() const
-  {
-    return K.rows().n_processes() == 1 &&
-           (count.n_modes == 0 || is_dense() || (options.solver == RealSolver::lanczos && needs_no_process(K.rows(), options.library)));
-  }
-
-  void SymmetricSolver::keep_to_itself(const bool keep)
-  {
-    keeps_to_itself = keep;
-  }
-
   const LinearOperator &SymmetricSolver::inverse()
   {
     if (options.inverse != nullptr)
@@ -81,8 +69,6 @@ namespace Squeal
     if (options.shift == 0.)
       try
         {
-          if (early.valid())
-            return *early.get().factor;
           factorization = factorize_positive_definite(K, options.library, options.what);
           return *factorization;
         }
@@ -179,8 +165,6 @@ namespace Squeal
   {
     if (lifted)
       return false;
-    if (keeps_to_itself)
-      throw MustCommunicate(); // to count takes MUMPS, and so may what comes after it
     lifted                = true;
     const ModeCount below = count_below(K, M, count.limit * (1. - 1e-8), options.what);
     const ModeCount above = count_below(K, M, count.limit * (1. + 1e-8), options.what);

@@ -13,10 +13,6 @@ namespace Squeal
   /// Systems up to this size are solved densely.
   constexpr int largest_dense_system = 300;
 
-  /// Modes cannot be found without a call of MPI: they may still be asked for where one is allowed.
-  struct MustCommunicate
-  {};
-
   /// Solves one symmetric eigenproblem, step by step: counts when it is made, then finds, refines and accepts modes.
   class SymmetricSolver
   {
@@ -30,13 +26,7 @@ namespace Squeal
     /// The dense eigenvalue problem of a process that is alone, ahead of modes(); others may be solved on other threads meanwhile.
     void solve_densely();
 
-    /// Whether modes() calls no MPI, but for what MustCommunicate stands for.
-    bool may_be_alone() const;
-
     SymmetricModes modes();
-
-    /// Whether modes() throws MustCommunicate where it would take a call of MPI, so that any thread may ask for them.
-    void keep_to_itself(bool keep);
 
   private:
     /// Rayleigh-Ritz approximations in a space, ascending.
@@ -85,11 +75,9 @@ namespace Squeal
 
     const SparseMatrix              &K, &M;
     const SymmetricModesOptions      options;
-    std::shared_future<FactorBeside> early; ///< while modes are counted
     ModeCount                        count;
     const double                     hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
     bool                             lifted          = false;
-    bool                             keeps_to_itself = false;
     std::unique_ptr<Factorization>   factorization;
     std::optional<RealPairs>         dense_pairs;
   };

@@ -169,7 +169,7 @@ namespace Squeal
     const int n_dofs = scene.model->n_dofs();
     if (n_dofs > parameters.accuracy.largest_dofs)
       throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
-    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part, 0., Steps::one_by_one);
+    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
     add_modal_damping(frictionless, parameters);
     Cost to_real_modes        = watch.cost();
     to_real_modes.peak_memory = memory.peak();

@@ -150,76 +150,37 @@ namespace Squeal
 
   namespace
   {
-    /// Component modes, in two steps: those of the pins may be found while coupled modes are counted.
-    class ComponentSolutions
+    /// Modes of the disc and of the pins alone, as a step of the run.
+    void find_component_modes(const Linearisation &linearisation, FrictionlessModes &result, Run &run)
     {
-    public:
-      /// Begins with the factor of the disc and the modes of the pins.
-      ComponentSolutions(const Linearisation &linearisation, Run &run)
-        : scene(*linearisation.scene)
-        , closed(linearisation.interface)
-        , run(run)
-        , omega_max(circular_frequency(run.parameters.discretization.maximum_frequency))
-        , disc(problem(Component::disc, ContactBoundary::free))
-        , disc_options(
-            real_modes_options(run.parameters.solvers, "modes of the disc", stabilizing_shift(*scene.model, scene.system, omega_max)))
-      {
-        disc_options.factor     = factor_of_stiffness(*disc->stiffness, disc_options);
-        pins_free               = begin(problem(Component::pins, ContactBoundary::free), pin_options("modes of the free pins"), 1.);
-        pins_sliding = begin(problem(Component::pins, ContactBoundary::sliding), pin_options("modes of the sliding pins"), label_band);
-      }
-
-      void finish(FrictionlessModes &result)
-      {
-        run.progress.begin("Component modes");
-        result.pins_free    = pins_free.get();
-        result.pins_sliding = pins_sliding.get();
-        run.progress.update(disc_options.what);
-        result.disc         = begin(disc, disc_options, label_band).get();
-        disc_options.factor = {};
-        disc.reset();
-
-        const auto n_in_band = [&](const ComponentModes &modes) { return Squeal::n_in_band(modes.eigenvalues, omega_max * omega_max); };
-        const auto n_disc = n_in_band(result.disc), n_free = n_in_band(result.pins_free), n_sliding = n_in_band(result.pins_sliding);
-        run.count("disc modes", n_disc);
-        run.count("free pin modes", n_free);
-        run.count("sliding pin modes", n_sliding);
-        run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
-                                 run.parameters.discretization.maximum_frequency, " Hz"));
-      }
-
-    private:
-      std::shared_ptr<const ComponentProblem> problem(const Component component, const ContactBoundary boundary) const
-      {
-        return std::make_shared<ComponentProblem>(component_problem(*scene.model, closed, scene.system, component, boundary));
-      }
-
-      SymmetricModesOptions pin_options(const char *name) const
-      {
-        SymmetricModesOptions options = real_modes_options(run.parameters.solvers, name, 0.);
+      const Scene &scene     = *linearisation.scene;
+      const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
+      run.progress.begin("Component modes");
+      const auto modes = [&](const Component component, const ContactBoundary boundary, const double band, const char *name) {
+        const bool            is_disc = component == Component::disc;
+        SymmetricModesOptions options =
+          real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : 0.);
         // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
-        options.by_parts = true;
-        return options;
-      }
+        options.by_parts = !is_disc;
+        run.progress.update(name);
+        return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,
+                               band * band * omega_max * omega_max, options);
+      };
+      result.pins_free    = modes(Component::pins, ContactBoundary::free, 1., "modes of the free pins");
+      result.pins_sliding = modes(Component::pins, ContactBoundary::sliding, label_band, "modes of the sliding pins");
+      result.disc         = modes(Component::disc, ContactBoundary::free, label_band, "modes of the disc");
 
-      std::future<ComponentModes> begin(const std::shared_ptr<const ComponentProblem> &of,
-                                        const SymmetricModesOptions                   &options,
-                                        const double                                   band) const
-      {
-        return component_modes_beside(*scene.model, scene.interface, scene.system, of, band * band * omega_max * omega_max, options);
-      }
-
-      const Scene                            &scene;
-      const ContactInterface                 &closed;
-      Run                                    &run;
-      const double                            omega_max; ///< end of the band [rad/s]
-      std::shared_ptr<const ComponentProblem> disc;
-      SymmetricModesOptions                   disc_options;
-      std::future<ComponentModes>             pins_free, pins_sliding;
-    };
+      const auto n_in_band = [&](const ComponentModes &modes) { return Squeal::n_in_band(modes.eigenvalues, omega_max * omega_max); };
+      const auto n_disc = n_in_band(result.disc), n_free = n_in_band(result.pins_free), n_sliding = n_in_band(result.pins_sliding);
+      run.count("disc modes", n_disc);
+      run.count("free pin modes", n_free);
+      run.count("sliding pin modes", n_sliding);
+      run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
+                               run.parameters.discretization.maximum_frequency, " Hz"));
+    }
   } // namespace
 
-  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin, const Steps steps)
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
   {
     const Scene         &scene      = *linearisation.scene;
     const Parameters    &parameters = run.parameters;
@@ -230,17 +191,20 @@ namespace Squeal
     result.linearisation = linearisation;
     result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
-    // A factor that may be made beside them, and what is solved for with it, is begun before the component modes
+    check_speed(coupled, parameters);
+    const ModeCount count = number_of_modes(coupled, (1. + margin) * omega_max, run);
+    find_component_modes(linearisation, result, run);
+
+    run.progress.begin("Factorisation");
     const AttachmentModes attachment = !may_keep_attachment_modes(coupled)                     ? AttachmentModes::not_kept :
                                        parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed :
                                                                                                  AttachmentModes::at_once;
-    result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment,
-                                                      FactorTime::beside);
+    result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment);
+    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
+    result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
+                                                    result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
 
-    check_speed(coupled, parameters);
-    ComponentSolutions             components(linearisation, run);
-    const ModeCount                count = number_of_modes(coupled, (1. + margin) * omega_max, run);
-
+    run.progress.begin("Real modes");
     SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
     options.count                 = count;
     // As many modes as there are pins that are alike may have one frequency
@@ -248,26 +212,7 @@ namespace Squeal
     // The factor serves here too, unless the shift brought damping into it.
     if (result.shift == 0. || !coupled.has_damping())
       options.inverse = result.inverse.get();
-    const auto real_modes = [&] {
-      return symmetric_modes_beside(*coupled.stiffness, *coupled.mass, count.limit, options);
-    };
-    std::future<SymmetricModes> real;
-    if (steps == Steps::overlapping)
-      real = real_modes();
-    components.finish(result);
-
-    // ------------------------------------------------------ real coupled modes
-    run.progress.begin("Factorisation");
-    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
-    result.factorisation = run.progress.finish(
-      text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries", result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
-    // Steps before it have what another thread did
-    result.factorisation.cpu_seconds += result.inverse->factor_seconds_beside();
-
-    run.progress.begin("Real modes");
-    if (!real.valid())
-      real = real_modes();
-    result.real              = real.get();
+    result.real              = symmetric_modes(*coupled.stiffness, *coupled.mass, count.limit, options);
     const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
     if (n_real == 0)
       throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");

@@ -162,7 +162,7 @@ namespace Squeal
   static void run_reduction_study(Scene &scene, Run &run)
   {
     const ReductionPlan plan         = reduction_plan(run.parameters);
-    FrictionlessModes   frictionless = frictionless_modes(linearised_scene(scene, run), run, 0., Steps::one_by_one);
+    FrictionlessModes   frictionless = frictionless_modes(linearised_scene(scene, run), run);
     add_modal_damping(frictionless, run.parameters);
     const CoupledSystem &coupled = frictionless.linearisation.coupled;
     const CoupledSystem  system  = plan.has_friction ? coupled : undamped(coupled);

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <future>
 #include <mutex>
 
 namespace Squeal
@@ -128,15 +127,9 @@ namespace Squeal
         for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
           *vectors = with_rows(*vectors, model.size());
       MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
-      // Written, where another thread may do it, from where the model has it while it projects on it
-      const MultiVector block     = view(smaller, 0, smaller.n_columns());
-      const bool        is_beside = n_task_threads() > 1 && is_alone(communicator);
-      std::future<void> kept;
       if (store != nullptr)
-        kept = std::async(is_beside ? std::launch::async : std::launch::deferred, [&] { store->keep(block); });
+        store->keep(smaller);
       model.restart(std::move(smaller));
-      if (kept.valid())
-        kept.get();
       return n_growths;
     }
     using Each = std::function<void(int, const ChartPoint &)>;

@@ -283,18 +283,6 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       late -= inverse.attachment_modes();
       EXPECT_LT(column_norms(late)[0], 1e-12 * column_norms(inverse.attachment_modes())[0]);
 
-      // ... on another thread, as are those that nobody waits for
-      set_task_threads(2);
-      {
-        const UpdatedInverse beside(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::at_once, FactorTime::beside),
-          left_alone(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::at_once, FactorTime::beside);
-        MultiVector V(beside.attachment_modes_times(Y));
-        V -= waiting.attachment_modes_times(Y);
-        EXPECT_LT(column_norms(V)[0], 1e-12 * size);
-        EXPECT_TRUE(s.coupled.map().n_processes() > 1 || beside.factor_seconds_beside() > 0.);
-      }
-      set_task_threads(1);
-
       // ... or are not kept
       UpdatedInverse frugal(s.coupled, shift, FactorizationLibrary::automatic, AttachmentModes::not_kept);
       MultiVector    kept(B), solved(B);

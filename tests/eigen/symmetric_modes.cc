@@ -247,43 +247,27 @@ namespace
   }
 } // namespace
 
-TEST(SymmetricModes, BesideEachOtherTheyAreTheSame)
+TEST(SymmetricModes, DoNotDependOnThreads)
 {
-  const Body            body = plate({{14, 8, 2}}, 0.02, 1e10), free = plate({{12, 8, 2}}, 0.02, 0.);
-  const double          limit  = std::pow(2. * M_PI * 15e3, 2);
   const auto            copies = laplacian(5, 12), unit = diagonal(copies->rows(), [](int) { return 1.; });
-  SymmetricModesOptions plain, by_parts;
-  by_parts.by_parts  = true;
-  const auto of_body = symmetric_modes(*body.stiffness, *body.mass, limit), of_free = symmetric_modes(*free.stiffness, *free.mass, limit),
-             of_parts = symmetric_modes(*copies, *unit, 1.7, by_parts);
-
+  SymmetricModesOptions by_parts;
+  by_parts.by_parts   = true;
+  const auto of_parts = symmetric_modes(*copies, *unit, 1.7, by_parts);
   const TwoThreads two;
-  // One that nobody asks for ends, too
-  symmetric_modes_beside(*body.stiffness, *body.mass, 0.5 * limit);
-  auto body_beside  = symmetric_modes_beside(*body.stiffness, *body.mass, limit),
-       free_beside  = symmetric_modes_beside(*free.stiffness, *free.mass, limit),
-       parts_beside = symmetric_modes_beside(*copies, *unit, 1.7, by_parts);
-  expect_same(symmetric_modes(*body.stiffness, *body.mass, limit), of_body);
-  expect_same(parts_beside.get(), of_parts);
-  expect_same(free_beside.get(), of_free);
-  expect_same(body_beside.get(), of_body);
+  expect_same(symmetric_modes(*copies, *unit, 1.7, by_parts), of_parts);
 }
 
-TEST(SymmetricModes, WhatTakesAnotherCountIsFoundWhenItIsAskedFor)
+TEST(SymmetricModes, ModesOnTheLimitAreCountedAgain)
 {
   // Twelve modes at the end of the band and, next to it, a thirteenth that the count has seen on this side
   const auto            K = diagonal(rows(400), [](const int i) { return i < 12 ? 1. : i == 12 ? 1. + 5e-9 : 5. + i; });
   const auto            M = diagonal(K->rows(), [](int) { return 1.; });
   SymmetricModesOptions options;
   options.count = ModeCount{13, 1. + 1e-9};
-  const TwoThreads two;
-  EXPECT_EQ(symmetric_modes_beside(*K, *M, 1., options).get().n_counted, 13);
-
-  // Errors are thrown there as well
-  options.count                   = ModeCount{14, 1. + 1e-7};
-  std::future<SymmetricModes> bad = symmetric_modes_beside(*K, *M, 1., options);
-  EXPECT_THROW(bad.get(), SolverError);
-  EXPECT_THROW(symmetric_modes_beside(*K, *M, -1.), SolverError); // but not before the count
+  EXPECT_EQ(symmetric_modes(*K, *M, 1., options).n_counted, 13);
+  options.count = ModeCount{14, 1. + 1e-7};
+  EXPECT_THROW(symmetric_modes(*K, *M, 1., options), SolverError);
+  EXPECT_THROW(symmetric_modes(*K, *M, -1.), SolverError);
 }
 
 TEST(SymmetricModes, CountAgreesWithDenseEigenvalues)

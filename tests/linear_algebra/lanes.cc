@@ -143,33 +143,3 @@ TEST_P(Lanes, SolutionsHardlyDependOnTheOtherColumns)
       EXPECT_LT(difference(replicate(alone), replicate(together).col(j)), 1e-13);
     }
 }
-
-TEST(FactorizationBeside, GivesTheSameFactorOrError)
-{
-  const auto        A = laplacian(12, 1), indefinite = add(1., *A, -1., *diagonal(A->rows(), [](int) { return 3.; }));
-  const auto        now = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
-  const MultiVector B   = random_vectors(A->rows(), 5, 4);
-  MultiVector       X(B.map(), 5), Y(B.map(), 5);
-  now->apply(B, X);
-  for (const unsigned int n_threads : {1, 2})
-    {
-      const TaskThreads threads(n_threads);
-      auto              later = factorize_beside(
-                     A->rows(), [&] { return A; }, FactorizationLibrary::automatic, "test matrix");
-      auto hopeless = factorize_beside(
-        A->rows(), [&] { return indefinite; }, FactorizationLibrary::automatic, "test matrix");
-      const Factorization *seen = nullptr;
-      auto                 used = factorize_beside(
-                        A->rows(), [&] { return A; }, FactorizationLibrary::automatic, "test matrix", nullptr,
-                        [&](const Factorization &factor) { seen = &factor; });
-      const FactorBeside made = later.get();
-      EXPECT_EQ(used.get().factor.get(), seen);
-      made.factor->apply(B, Y);
-      EXPECT_GE(made.cpu_seconds, 0.);
-      EXPECT_LT(difference(replicate(Y), replicate(X)), 1e-13);
-      EXPECT_THROW(hopeless.get(), SolverError);
-      // One that nobody asks for
-      factorize_beside(
-        A->rows(), [&] { return A; }, FactorizationLibrary::automatic, "test matrix");
-    }
-}

@@ -5,7 +5,6 @@
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/system/terms.h>
 
-#include <future>
 #include <map>
 #include <memory>
 
@@ -55,17 +54,13 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 
-  /**
-   * The same for a problem that is at hand, when it is asked for. Modes are counted at once. Where another thread may work and to find
-   * them takes no other process, they are found beside what is done until then; those of a large matrix, and all others, wait.
-   * Model, interface and system must outlive it, and so must what the options point to.
-   */
-  std::future<ComponentModes> component_modes_beside(const Model                                   &model,
-                                                     const ContactInterface                        &interface,
-                                                     const SecondOrderSystem                       &system,
-                                                     const std::shared_ptr<const ComponentProblem> &problem,
-                                                     double                                         largest_eigenvalue,
-                                                     const SymmetricModesOptions                   &options);
+  /// The same of a problem that is at hand.
+  ComponentModes component_modes(const Model                 &model,
+                                 const ContactInterface      &interface,
+                                 const SecondOrderSystem     &system,
+                                 const ComponentProblem      &problem,
+                                 double                       largest_eigenvalue,
+                                 const SymmetricModesOptions &options);
 
   /// Part of each shape of component modes in a mode: |v_iᵀ M φ|² / φᴴ M φ, summed over the v_i of the shape [-].
   using ShapeShares = std::map<ModeShape, double>;

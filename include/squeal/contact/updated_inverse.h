@@ -2,10 +2,9 @@
 
 #include <squeal/contact/coupled_system.h>
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/factorization_beside.h>
+#include <squeal/linear_algebra/factorization.h>
 
 #include <functional>
-#include <future>
 #include <memory>
 #include <optional>
 
@@ -17,13 +16,6 @@ namespace Squeal
     at_once,     ///< with the factor
     when_needed, ///< by a friction coefficient or by who asks for them: never, for a solver that works on a basis
     not_kept     ///< each product with X is another solve with the factor
-  };
-
-  /// When S is factorised, and what is wrong with it thrown.
-  enum class FactorTime
-  {
-    at_once,
-    beside ///< until it is needed: factorize_beside()
   };
 
   /// Whether a dense n × n_c matrix has room in the memory that is left: an eighth of it is what this process may take for one.
@@ -45,12 +37,11 @@ namespace Squeal
   class UpdatedInverse : public LinearOperator
   {
   public:
-    /// Factorises S, or begins to; throws SolverError if S is not positive definite, here or where the factor is first needed.
+    /// Factorises S; throws SolverError if S is not positive definite.
     UpdatedInverse(const CoupledSystem &system,
                    double               shift,
                    FactorizationLibrary library,
-                   AttachmentModes      attachment = AttachmentModes::at_once,
-                   FactorTime           time       = FactorTime::at_once);
+                   AttachmentModes      attachment = AttachmentModes::at_once);
 
     /// Friction coefficient of the following apply(); throws SolverError if Q(s) is singular there.
     void set_friction_coefficient(double mu);
@@ -75,23 +66,16 @@ namespace Squeal
     /// S⁻¹ by itself. Several threads may ask for it, and for apply() without friction.
     const Factorization &frictionless() const;
 
-    /// Processor time of another thread on which the factor was made beside other work; 0 if there was none [s].
-    double factor_seconds_beside() const
-    {
-      return later.get().cpu_seconds;
-    }
-
   private:
-    /// X with the factor of S, perhaps on another thread.
-    void find_attachment_modes(const Factorization &of) const;
+    void find_attachment_modes() const;
 
     const AttachmentModes                attachment;
     const RowMap                         rows;
     std::shared_ptr<const LowRankFactor> A;
     std::shared_ptr<const SparseMatrix>  V;
-    mutable std::unique_ptr<MultiVector> X;     ///< once it has been needed; where it comes with the factor, not before frictionless()
-    std::shared_future<FactorBeside>     later; ///< waits when it goes, before what the other thread uses
-    std::optional<DenseMatrix>           VX;    ///< the same, n_c × n_c, on every process
+    mutable std::unique_ptr<MultiVector> X;     ///< once it has been needed
+    std::unique_ptr<const Factorization> factor; ///< of S
+    std::optional<DenseMatrix>           VX;     ///< n_c × n_c, on every process
     double                               friction_coefficient = 0.;
     std::optional<RealLU>                correction;
   };

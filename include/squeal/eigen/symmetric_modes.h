@@ -1,8 +1,7 @@
 #pragma once
 
-#include <squeal/base/factorization_library.h>
 #include <squeal/base/real_solver.h>
-#include <squeal/linear_algebra/factorization_beside.h>
+#include <squeal/linear_algebra/factorization.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <memory>
@@ -39,9 +38,6 @@ namespace Squeal
 
     /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
     const LinearOperator *inverse = nullptr;
-
-    /// The factor of K that factor_of_stiffness() has begun to make with the same options; not valid: it is made here.
-    std::shared_future<FactorBeside> factor;
 
     /// The count of the modes below the limit where the caller has it already, by count_below(); without by_parts.
     std::optional<ModeCount> count;
@@ -96,19 +92,6 @@ namespace Squeal
                                  const SparseMatrix          &M,
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
-
-  /**
-   * What symmetric_modes() returns or throws, when it is asked for. Modes are counted at once. Where another thread may work and to find them
-   * takes no other process, they are found beside what is done until then; those of a large matrix, and all others, wait until they are asked
-   * for. K and M, and what the options point to, must outlive it.
-   */
-  std::future<SymmetricModes> symmetric_modes_beside(const SparseMatrix          &K,
-                                                     const SparseMatrix          &M,
-                                                     double                       largest_eigenvalue,
-                                                     const SymmetricModesOptions &options = {});
-
-  /// The factor of K that symmetric_modes() asks for with these options, made beside other work if it may; not valid where it asks for none.
-  std::shared_future<FactorBeside> factor_of_stiffness(const SparseMatrix &K, const SymmetricModesOptions &options);
 
   /**
    * Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ by the

@@ -38,19 +38,12 @@ namespace Squeal
     std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
   };
 
-  /// Whether steps may be done beside each other, or each by itself, so that its cost is its own.
-  enum class Steps
-  {
-    overlapping,
-    one_by_one
-  };
-
   /**
    * The number of real coupled modes by inertia, component modes, the factorisation, and the real coupled modes up to
    * (1 + @p margin) times the end of the band, as steps of the run. Throws ParameterError if
    * there are more modes than the parameters allow.
    */
-  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0., Steps steps = Steps::overlapping);
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0.);
 
   /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
