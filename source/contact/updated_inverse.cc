@@ -38,9 +38,7 @@ namespace Squeal
     , rows(system.map())
     , A(system.friction_forces)
     , V(normal_reactions(system, shift))
-    , factor(factorize_positive_definite(*frictionless_pencil(system, shift),
-                                         library,
-                                         "stiffness of the coupled system without friction"))
+    , factor(factorize_positive_definite(*frictionless_pencil(system, shift), library, "stiffness of the coupled system without friction"))
   {
     if (attachment == AttachmentModes::at_once)
       find_attachment_modes();

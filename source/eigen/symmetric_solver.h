@@ -73,12 +73,12 @@ namespace Squeal
 
     bool is_rigid(double value) const;
 
-    const SparseMatrix              &K, &M;
-    const SymmetricModesOptions      options;
-    ModeCount                        count;
-    const double                     hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
-    bool                             lifted          = false;
-    std::unique_ptr<Factorization>   factorization;
-    std::optional<RealPairs>         dense_pairs;
+    const SparseMatrix            &K, &M;
+    const SymmetricModesOptions    options;
+    ModeCount                      count;
+    const double                   hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
+    bool                           lifted = false;
+    std::unique_ptr<Factorization> factorization;
+    std::optional<RealPairs>       dense_pairs;
   };
 } // namespace Squeal

@@ -1,18 +1,25 @@
-#include "cholmod_triangle.h"
-#include "elimination_order.h"
 #include "libraries.h"
-#include "supernodal_solve.h"
 
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
+#include <suitesparse/cholmod.h>
+
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 namespace Squeal
 {
   namespace
   {
+    /// Matrices with fewer rows are ordered faster by minimum degree than their better order would be found.
+    constexpr int rows_for_dissection = 2000;
+
+    /// Right-hand sides of a task: the factor is read once for all of them.
+    constexpr int columns_together = 8;
+
     class CholmodFactorization : public Factorization
     {
     public:
@@ -25,8 +32,9 @@ namespace Squeal
         common.supernodal                 = CHOLMOD_SUPERNODAL;
         common.final_ll                   = 1;
         common.quick_return_if_not_posdef = 1;
-        common.nmethods                   = 1;
-        common.method[0].ordering         = CHOLMOD_GIVEN;
+        common.nmethods                   = A.n_rows() < rows_for_dissection ? 1 : 2;
+        common.method[0].ordering         = CHOLMOD_AMD;
+        common.method[1].ordering         = CHOLMOD_METIS;
         try
           {
             factorize(A);
@@ -48,7 +56,21 @@ namespace Squeal
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        solver->apply(X, Y);
+        run_parts(X.n_columns(), columns_together, [&](const int first, const int n) {
+          cholmod_common own;
+          cholmod_start(&own);
+          cholmod_dense  right_sides = columns(X, first, n);
+          cholmod_dense *solutions = nullptr, *permuted = nullptr, *front = nullptr;
+          const int      success = cholmod_solve2(CHOLMOD_A, L, &right_sides, nullptr, &solutions, nullptr, &permuted, &front, &own);
+          for (int j = 0; success != 0 && j < n; ++j)
+            std::copy_n(static_cast<const double *>(solutions->x) + j * solutions->d, L->n, Y.col(first + j).data());
+          for (cholmod_dense **vectors : {&solutions, &permuted, &front})
+            cholmod_free_dense(vectors, &own);
+          const int status = own.status;
+          cholmod_finish(&own);
+          if (success == 0)
+            throw_library_failure("CHOLMOD", "status " + std::to_string(status) + " of the solution", what);
+        });
       }
 
       void apply_transpose(const MultiVector &X, MultiVector &Y) const override
@@ -67,6 +89,19 @@ namespace Squeal
       }
 
     private:
+      /// Its view of some columns, which it only reads.
+      static cholmod_dense columns(const MultiVector &X, const int first, const int n)
+      {
+        cholmod_dense view = {};
+        view.nrow = view.d = X.n_local_rows();
+        view.ncol          = n;
+        view.nzmax         = view.d * n;
+        view.x             = const_cast<double *>(X.col(first).data());
+        view.xtype         = CHOLMOD_REAL;
+        view.dtype         = CHOLMOD_DOUBLE;
+        return view;
+      }
+
       /// The lower triangle by columns, which are the rows of the upper one.
       struct Triangle
       {
@@ -91,6 +126,23 @@ namespace Squeal
             }
         }
 
+        cholmod_sparse view()
+        {
+          cholmod_sparse S = {};
+          S.nrow = S.ncol = diagonal.size();
+          S.nzmax         = row.size();
+          S.p             = start.data();
+          S.i             = row.data();
+          S.x             = value.data();
+          S.stype         = -1;
+          S.itype         = CHOLMOD_INT;
+          S.xtype         = CHOLMOD_REAL;
+          S.dtype         = CHOLMOD_DOUBLE;
+          S.sorted        = 1;
+          S.packed        = 1;
+          return S;
+        }
+
         std::vector<int>    start, row;
         std::vector<double> value, diagonal;
       };
@@ -101,10 +153,9 @@ namespace Squeal
         if (!std::all_of(triangle.diagonal.begin(), triangle.diagonal.end(), [](const double d) { return d > 0.; }))
           throw_not_positive_definite("CHOLMOD", what);
 
-        cholmod_sparse               S     = lower_triangle(triangle.start, triangle.row, triangle.value.data());
-        std::vector<int>             order = elimination_order(A, what);
+        cholmod_sparse               S = triangle.view();
         const ThreadsOfFactorization threads(A.n_rows());
-        L = cholmod_analyze_p(&S, order.data(), nullptr, 0, &common);
+        L = cholmod_analyze(&S, &common);
         if (L == nullptr)
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the analysis", what);
         const int success = cholmod_factorize(&S, L, &common);
@@ -114,34 +165,20 @@ namespace Squeal
           throw_library_failure("CHOLMOD", "status " + std::to_string(common.status) + " of the factorisation", what);
         if (!(smallest_relative_pivot(triangle.diagonal) > relative_pivot_tolerance))
           throw_not_positive_definite("CHOLMOD", what);
-        solver = std::make_unique<SupernodalSolve>(supernodes());
-      }
-
-      SupernodalFactor supernodes() const
-      {
-        SupernodalFactor factor;
-        factor.n_rows       = L->n;
-        factor.n_supernodes = L->nsuper;
-        factor.first_column = static_cast<const int *>(L->super);
-        factor.row_start    = static_cast<const int *>(L->pi);
-        factor.value_start  = static_cast<const int *>(L->px);
-        factor.row          = static_cast<const int *>(L->s);
-        factor.permutation  = static_cast<const int *>(L->Perm);
-        factor.value        = static_cast<const double *>(L->x);
-        return factor;
       }
 
       /// min L_ii² / A_ii: what the elimination left of the diagonal entries.
       double smallest_relative_pivot(const std::vector<double> &diagonal) const
       {
-        const SupernodalFactor factor   = supernodes();
-        double                 smallest = 1.;
-        for (int s = 0; s < factor.n_supernodes; ++s)
-          for (int column = 0; column < factor.n_columns(s); ++column)
+        const auto *first_column = static_cast<const int *>(L->super), *row_start = static_cast<const int *>(L->pi),
+                   *value_start = static_cast<const int *>(L->px), *permutation = static_cast<const int *>(L->Perm);
+        double smallest = 1.;
+        for (std::size_t s = 0; s < L->nsuper; ++s)
+          for (int column = first_column[s]; column < first_column[s + 1]; ++column)
             {
-              const std::size_t offset = static_cast<std::size_t>(column) * (factor.n_rows_of(s) + 1);
-              const double      pivot  = factor.value[factor.value_start[s] + offset];
-              smallest                 = std::min(smallest, pivot * pivot / diagonal[factor.permutation[factor.first_column[s] + column]]);
+              const std::size_t n_rows = row_start[s + 1] - row_start[s], offset = (column - first_column[s]) * (n_rows + 1);
+              const double      pivot = static_cast<const double *>(L->x)[value_start[s] + offset];
+              smallest                = std::min(smallest, pivot * pivot / diagonal[permutation[column]]);
             }
         return smallest;
       }
@@ -152,11 +189,10 @@ namespace Squeal
         cholmod_finish(&common);
       }
 
-      const RowMap                           row_map;
-      const std::string                      what;
-      cholmod_factor                        *L = nullptr;
-      cholmod_common                         common;
-      std::unique_ptr<const SupernodalSolve> solver;
+      const RowMap      row_map;
+      const std::string what;
+      cholmod_factor   *L = nullptr;
+      cholmod_common    common;
     };
   } // namespace
 

@@ -23,12 +23,6 @@ namespace Squeal
     }
   } // namespace
 
-  std::mutex &ordering()
-  {
-    static std::mutex mutex;
-    return mutex;
-  }
-
   void throw_not_positive_definite(const std::string &library, const std::string &what)
   {
     throw SolverError("the matrix is not positive definite to working precision (" + library + ")", what,

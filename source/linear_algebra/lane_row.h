@@ -47,14 +47,9 @@ namespace Squeal
   /// Rows that stay in the nearest cache while their columns are copied one after the other.
   constexpr int rows_of_copy = 64;
 
-  /// @p n columns of X, @p stride numbers apart, to lanes, zeros in the others. Row i is row @p permutation[i] of X, or i.
+  /// @p n columns of X, @p stride numbers apart, to lanes, zeros in the others.
   template <int width>
-  void to_lanes(const double     *X,
-                const std::size_t stride,
-                const int         n_rows,
-                const int         n,
-                LaneRow<width>   *rows,
-                const int        *permutation = nullptr)
+  void to_lanes(const double *X, const std::size_t stride, const int n_rows, const int n, LaneRow<width> *rows)
   {
     for (int begin = 0; begin < n_rows; begin += rows_of_copy)
       {
@@ -66,19 +61,14 @@ namespace Squeal
             const double *column = X + j * stride;
             double       *target = lane(rows, j);
             for (int i = begin; i < end; ++i)
-              target[static_cast<std::size_t>(i) * width] = column[permutation ? permutation[i] : i];
+              target[static_cast<std::size_t>(i) * width] = column[i];
           }
       }
   }
 
   /// The way back.
   template <int width>
-  void from_lanes(const LaneRow<width> *rows,
-                  double               *Y,
-                  const std::size_t     stride,
-                  const int             n_rows,
-                  const int             n,
-                  const int            *permutation = nullptr)
+  void from_lanes(const LaneRow<width> *rows, double *Y, const std::size_t stride, const int n_rows, const int n)
   {
     for (int begin = 0; begin < n_rows; begin += rows_of_copy)
       for (int j = 0; j < n; ++j)
@@ -87,7 +77,7 @@ namespace Squeal
           double       *column = Y + j * stride;
           const double *source = lane(rows, j);
           for (int i = begin; i < end; ++i)
-            column[permutation ? permutation[i] : i] = source[static_cast<std::size_t>(i) * width];
+            column[i] = source[static_cast<std::size_t>(i) * width];
         }
   }
 } // namespace Squeal

@@ -3,7 +3,6 @@
 #include <squeal/linear_algebra/factorization.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 
 namespace Squeal
@@ -18,10 +17,6 @@ namespace Squeal
 
   /// MUMPS's LDLᵀ without numerical pivoting (positive definite) or LU (general).
   std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, bool positive_definite, const std::string &what);
-
-  /// METIS, which orders matrices for CHOLMOD and MUMPS, has one sequence of random numbers for all threads: one orders at a time, so that
-  /// the order is always the same.
-  std::mutex &ordering();
 
   /// Throws the error for a matrix that is not positive definite.
   [[noreturn]] void throw_not_positive_definite(const std::string &library, const std::string &what);

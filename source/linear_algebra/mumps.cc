@@ -1,4 +1,3 @@
-#include "elimination_order.h"
 #include "libraries.h"
 
 #include <squeal/linear_algebra/row_delivery.h>
@@ -51,11 +50,7 @@ namespace Squeal
         run(-1);
         try
           {
-            // Counts take the order of the factor that is made beside them
-            std::vector<int> order;
-            if (factors == Factors::counted && A.entries() != nullptr)
-              order = elimination_order(A, what);
-            factorize(LocalRows(A), order, symmetry != MatrixKind::general, factors);
+            factorize(LocalRows(A), symmetry != MatrixKind::general, factors);
           }
         catch (...)
           {
@@ -120,8 +115,7 @@ namespace Squeal
       }
 
     private:
-      /// @param order of elimination; MUMPS finds one itself where it is empty
-      void factorize(const LocalRows &rows, const std::vector<int> &order, const bool one_triangle, const Factors factors)
+      void factorize(const LocalRows &rows, const bool one_triangle, const Factors factors)
       {
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
@@ -155,20 +149,7 @@ namespace Squeal
         id.jcn_loc = column.data();
         id.a_loc   = value.data();
 
-        std::vector<int> pivot_of_row(order.size());
-        for (std::size_t pivot = 0; pivot < order.size(); ++pivot)
-          pivot_of_row[order[pivot]] = static_cast<int>(pivot) + 1;
-        if (!order.empty())
-          {
-            id.icntl[6] = 1;
-            id.perm_in  = pivot_of_row.data();
-            run(1);
-          }
-        else
-          {
-            const std::lock_guard<std::mutex> lock(ordering());
-            run(1);
-          }
+        run(1);
         check("analysis");
         // Pivoting may need more memory than the analysis foresaw: allow for more and try again.
         for (int attempt = 0; attempt < 6; ++attempt)
@@ -185,8 +166,8 @@ namespace Squeal
         if (id.infog[0] == -40)
           throw_not_positive_definite("MUMPS", what);
         check("factorisation");
-        id.irn_loc = id.jcn_loc = id.perm_in = nullptr;
-        id.a_loc                             = nullptr;
+        id.irn_loc = id.jcn_loc = nullptr;
+        id.a_loc                = nullptr;
       }
 
       /// Rows of solutions that MUMPS leaves here.

@@ -219,8 +219,7 @@ namespace Squeal
     run.count("real modes", n_real);
     run.count("rigid-body modes", result.real.n_rigid_body);
     result.solution =
-      run.progress.finish(text(result.real.eigenvalues.size(), " found, ",
-                               result.real.n_counted, " counted by inertia",
+      run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
                                n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
                                result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 

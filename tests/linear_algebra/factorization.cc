@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <future>
 #include <memory>
 #include <vector>
 
@@ -71,33 +70,6 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
       MultiVector x(B.map(), 1);
       factors->apply(view(B, 69, 1), x);
       EXPECT_LT(residual(*A, x, view(B, 69, 1), false), 1e-13) << to_string(library);
-    }
-}
-
-TEST(EliminationOrder, DoesNotDependOnWhoElseAsks)
-{
-  if (!one_process())
-    GTEST_SKIP() << "threads of one process";
-  // More patterns than orders are kept, each asked for by several threads at once
-  std::vector<std::shared_ptr<SparseMatrix>> matrices;
-  for (const int m : {13, 14, 15, 16, 17, 18})
-    matrices.push_back(laplacian(m, 1));
-  const auto solved = [](const SparseMatrix &A) {
-    MultiVector B(A.rows(), 1), X(A.rows(), 1);
-    B.local().col(0).setLinSpaced(-1., 2.);
-    factorize_positive_definite(A, FactorizationLibrary::cholmod, "test")->apply(B, X);
-    return DenseMatrix(X.local());
-  };
-  std::vector<DenseMatrix> alone;
-  for (const auto &A : matrices)
-    alone.push_back(solved(*A));
-  for (int attempt = 0; attempt < 3; ++attempt)
-    {
-      std::vector<std::future<DenseMatrix>> together;
-      for (int k = 0; k < 2 * static_cast<int>(matrices.size()); ++k)
-        together.push_back(std::async(std::launch::async, [&, k] { return solved(*matrices[k / 2]); }));
-      for (int k = 0; k < static_cast<int>(together.size()); ++k)
-        EXPECT_EQ((together[k].get() - alone[k / 2]).cwiseAbs().maxCoeff(), 0.) << k;
     }
 }
 

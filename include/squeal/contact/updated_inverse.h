@@ -73,7 +73,7 @@ namespace Squeal
     const RowMap                         rows;
     std::shared_ptr<const LowRankFactor> A;
     std::shared_ptr<const SparseMatrix>  V;
-    mutable std::unique_ptr<MultiVector> X;     ///< once it has been needed
+    mutable std::unique_ptr<MultiVector> X;      ///< once it has been needed
     std::unique_ptr<const Factorization> factor; ///< of S
     std::optional<DenseMatrix>           VX;     ///< n_c × n_c, on every process
     double                               friction_coefficient = 0.;
