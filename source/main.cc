@@ -2,7 +2,6 @@
 
 #include <squeal/base/command_line.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/interruption.h>
 #include <squeal/base/mpi_environment.h>
 #include <squeal/base/resident_memory.h>
 #include <squeal/base/text.h>
@@ -45,11 +44,7 @@ Decides whether a disc rubbed by friction pins squeals.
   -h, --help                 prints this text
 )";
 
-  void run(const Squeal::CommandLine &line,
-           const std::string         &command,
-           std::ostream              &screen,
-           Squeal::Progress          &progress,
-           Squeal::Interruption      &interruption)
+  void run(const Squeal::CommandLine &line, const std::string &command, std::ostream &screen, Squeal::Progress &progress)
   {
     using namespace Squeal;
     if (line.help)
@@ -82,7 +77,7 @@ Decides whether a disc rubbed by friction pins squeals.
       options.again.push_back("--set=" + text);
     options.designs = line.designs;
     progress.note("squeal " + std::string(version) + ", " + line.parameter_file);
-    Run run(parameters, options, MPI_COMM_WORLD, progress, screen, interruption);
+    Run run(parameters, options, MPI_COMM_WORLD, progress, screen);
     if (const std::string note = unused_parameters_note(parameters); !note.empty())
       progress.note(note);
     run_study(run);
@@ -163,60 +158,48 @@ Decides whether a disc rubbed by friction pins squeals.
 } // namespace
 
 int main(int argc, char **argv)
-try
-  {
-    open_closed_streams();
-    Squeal::return_freed_blocks();
-    Squeal::ignore_again(); // before the program starts itself again, perhaps
-    Squeal::use_native_blas_kernels(argv);
-    Squeal::prepare_mpi_environment();
-    // A limit on the size of files is an error of the write that meets it.
-    std::signal(SIGXFSZ, SIG_IGN);
-    Squeal::Interruption interruption;
+{
+  open_closed_streams();
+  Squeal::return_freed_blocks();
+  Squeal::use_native_blas_kernels(argv);
+  Squeal::prepare_mpi_environment();
+  // A limit on the size of files is an error of the write that meets it.
+  std::signal(SIGXFSZ, SIG_IGN);
 
-    // Without a current folder, libraries abort when they start.
-    std::error_code                              no_folder;
-    [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
-    if (no_folder)
-      {
-        print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(),
-                                      "current folder", "change to a folder that exists")
-                      .what());
-        return 1;
-      }
+  // Without a current folder, libraries abort when they start.
+  std::error_code                              no_folder;
+  [[maybe_unused]] const std::filesystem::path here = std::filesystem::current_path(no_folder);
+  if (no_folder)
+    {
+      print_error(Squeal::FileError("the folder in which the program was started cannot be found: " + no_folder.message(), "current folder",
+                                    "change to a folder that exists")
+                    .what());
+      return 1;
+    }
 
-    // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
-    char   without_handler[]   = "-no_signal_handler";
-    char  *library_arguments[] = {argv[0], without_handler, nullptr};
-    char **library_argv        = library_arguments;
-    int    library_argc        = 2;
-    // deal.II must not start threads of its own beside the processes.
-    dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
-    const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
-    if (!is_root)
-      interruption.be_silent();
-    std::ostream  silence(nullptr);
-    std::ostream &screen = is_root ? std::cout : silence;
-    // mpirun shows every process a terminal, whether there is one behind it or not.
-    const bool       live = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
-    Squeal::Progress progress(screen, live && is_root);
-
-    const std::string command = Squeal::shell_command({argv, argv + argc});
-    try
-      {
-        run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress, interruption);
-        if (is_root && !screen.flush())
-          throw Squeal::FileError("not everything could be printed", "standard output", "check where it is redirected to, and free space");
-        return 0;
-      }
-    catch (...)
-      {
-        return report(failure_message(), is_root);
-      }
-  }
-catch (...)
-  {
-    // Of what is started before the run, the thread that waits for signals or a pipe
-    print_error(failure_message());
-    return 1;
-  }
+  // The libraries that deal.II starts would take our options for theirs, and PETSc the signals.
+  char   without_handler[]   = "-no_signal_handler";
+  char  *library_arguments[] = {argv[0], without_handler, nullptr};
+  char **library_argv        = library_arguments;
+  int    library_argc        = 2;
+  // deal.II must not start threads of its own beside the processes.
+  dealii::Utilities::MPI::MPI_InitFinalize mpi(library_argc, library_argv, 1);
+  const bool                               is_root = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  std::ostream                             silence(nullptr);
+  std::ostream                            &screen = is_root ? std::cout : silence;
+  // mpirun shows every process a terminal, whether there is one behind it or not.
+  const bool        live    = isatty(STDOUT_FILENO) != 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
+  const std::string command = Squeal::shell_command({argv, argv + argc});
+  try
+    {
+      Squeal::Progress progress(screen, live && is_root);
+      run(Squeal::parse_command_line({argv + 1, argv + argc}), command, screen, progress);
+      if (is_root && !screen.flush())
+        throw Squeal::FileError("not everything could be printed", "standard output", "check where it is redirected to, and free space");
+      return 0;
+    }
+  catch (...)
+    {
+      return report(failure_message(), is_root);
+    }
+}

@@ -24,12 +24,7 @@ namespace Squeal
     }
   } // namespace
 
-  Run::Run(const Parameters &parameters,
-           const RunOptions &options,
-           MPI_Comm          communicator,
-           Progress         &progress,
-           std::ostream     &screen,
-           Interruption     &interruption)
+  Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
     : parameters(parameters)
     , communicator(communicator)
     , progress(progress)
@@ -49,7 +44,7 @@ namespace Squeal
   {
     set_task_threads(record.n_threads);
     if (!is_dry)
-      results = std::make_unique<ResultFolder>(options.output, is_root, options.command, &interruption);
+      results = std::make_unique<ResultFolder>(options.output, is_root, options.command);
   }
 
   Run::Run(const Parameters &parameters, const Run &whole, Progress &progress)

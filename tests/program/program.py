@@ -83,7 +83,7 @@ class ProgramTest(unittest.TestCase):
                 log.seek(0)
                 self.assertGreaterEqual(len(self.known_designs(output)), number, log.read())
             self.assertNotEqual(process.returncode, 0)
-            self.assertFalse((self.folder / output).exists())
+            self.assertFalse((self.folder / output / "run.json").exists())
 
     def known_designs(self, output):
         """Files that hold the designs that an interrupted study has solved."""

@@ -1,10 +1,11 @@
 #pragma once
 
 #include <squeal/base/progress.h>
-#include <squeal/output/result_files.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,9 @@
 
 namespace Squeal
 {
+  /// Names of files, seen from a folder, and their sizes [byte].
+  using FileSizes = std::map<std::string, std::uintmax_t>;
+
   /// What a run was: enough to repeat it and to compare its cost.
   struct RunRecord
   {
@@ -29,7 +33,7 @@ namespace Squeal
   /// Versions, revision, machine, counts, time and peak memory of each step, and files, as JSON.
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress);
 
-  /// The files that a record lists; nothing if it lists none, as those of version 0.1.0 do, or cannot be read.
+  /// The files that a record lists; nothing if it lists none or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
 
   /// Date and time of day, such as 2026-01-31T12:00:00Z.

@@ -34,17 +34,11 @@ namespace Squeal
   {
   public:
     /**
-     * @param screen       where tables go; a null stream buffer on all processes but one
-     * @param interruption lets a signal end the run without traces
+     * @param screen where tables go; a null stream buffer on all processes but one
      *
      * Throws FileError if the result folder cannot be made; a dry run makes none.
      */
-    Run(const Parameters &parameters,
-        const RunOptions &options,
-        MPI_Comm          communicator,
-        Progress         &progress,
-        std::ostream     &screen,
-        Interruption     &interruption);
+    Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
 
     /// Part of @p whole that computes with other parameters, reports to a channel of its own, and writes nothing.
     Run(const Parameters &parameters, const Run &whole, Progress &progress);
@@ -86,7 +80,7 @@ namespace Squeal
     /**
      * Writes the parameters as used and the run record, and gives the folder its name.
      *
-     * @param afterwards removes what only an unfinished run needs; no signal comes between the results and that
+     * @param afterwards removes what only an unfinished run needs
      */
     void finish(const std::function<void()> &afterwards = {});
 
