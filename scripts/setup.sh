@@ -143,11 +143,25 @@ build()
   fi
 }
 
+# OpenBLAS falls back to SSE3 kernels on processors younger than itself: by what the processor can do, others are named.
+set_blas_kernels()
+{
+  local flags
+  [[ -z ${OPENBLAS_CORETYPE:-} ]] || return 0
+  OPENBLAS_VERBOSE=2 "$squeal_root/build/release/squeal" --version 2>&1 | grep -q 'Core: Prescott' || return 0
+  flags=" $(grep -m 1 '^flags' /proc/cpuinfo) "
+  case $flags in
+    *" avx512vl "*) export OPENBLAS_CORETYPE=SkylakeX ;;
+    *" avx2 "*) export OPENBLAS_CORETYPE=Haswell ;;
+  esac
+}
+
 # The environment in which programs run: one BLAS thread for each process (threads that share cores
 # with other processes slow the factorisations down many times), and Open MPI usable in a container,
 # by root, and with more processes than cores, where those that wait must leave the core to the others.
 set_environment()
 {
+  set_blas_kernels
   export OPENBLAS_NUM_THREADS=${OPENBLAS_NUM_THREADS:-1}
   export OMPI_MCA_rmaps_base_oversubscribe=1
   export PRTE_MCA_rmaps_default_mapping_policy=:oversubscribe # of Open MPI 5

@@ -6,7 +6,6 @@
 #include <squeal/base/resident_memory.h>
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
-#include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/parameters/parameters.h>
 #include <squeal/studies/parameter_usage.h>
 #include <squeal/studies/run.h>
@@ -161,7 +160,6 @@ int main(int argc, char **argv)
 {
   open_closed_streams();
   Squeal::return_freed_blocks();
-  Squeal::use_native_blas_kernels(argv);
   Squeal::prepare_mpi_environment();
   // A limit on the size of files is an error of the write that meets it.
   std::signal(SIGXFSZ, SIG_IGN);

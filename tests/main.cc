@@ -1,4 +1,3 @@
-#include <squeal/linear_algebra/blas_kernels.h>
 #include <squeal/linear_algebra/blas_threads.h>
 
 #include <deal.II/base/mpi.h>
@@ -7,7 +6,6 @@
 
 int main(int argc, char **argv)
 {
-  Squeal::use_native_blas_kernels(argv);
   Squeal::set_blas_threads(1);
   // Takes its own arguments away before the libraries see them
   ::testing::InitGoogleTest(&argc, argv);
