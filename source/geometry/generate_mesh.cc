@@ -10,7 +10,7 @@
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
-#include <squeal/geometry/problem_size.h>
+#include <squeal/geometry/scene_size.h>
 
 #include <deal.II/base/mpi.h>
 

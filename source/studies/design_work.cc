@@ -4,7 +4,7 @@
 #include <squeal/base/memory_limit.h>
 #include <squeal/base/version.h>
 #include <squeal/base/worker_process.h>
-#include <squeal/geometry/problem_size.h>
+#include <squeal/geometry/scene_size.h>
 #include <squeal/studies/design_solution.h>
 #include <squeal/studies/design_work.h>
 #include <squeal/studies/parameter_usage.h>

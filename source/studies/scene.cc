@@ -1,7 +1,7 @@
 #include <squeal/assembly/rotation.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/mode_count_estimate.h>
+#include <squeal/geometry/scene_size.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/contact/travel.h>
 #include <squeal/geometry/generate_mesh.h>
@@ -70,7 +70,7 @@ namespace Squeal
       text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
     for (const std::string &note : scene.mesh.notes)
       run.progress.note("  note: " + note);
-    scene.expected_modes = summarise_scene(scene.mesh, run);
+    summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
                           circular_frequency(parameters.discretization.maximum_frequency));

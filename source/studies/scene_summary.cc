@@ -1,9 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/memory_limit.h>
-#include <squeal/bases/mode_count_estimate.h>
-#include <squeal/geometry/disc_axis.h>
 #include <squeal/geometry/mesh_topology.h>
-#include <squeal/geometry/problem_size.h>
+#include <squeal/geometry/scene_size.h>
 #include <squeal/studies/scene_summary.h>
 
 #include <algorithm>
@@ -20,8 +18,10 @@ namespace Squeal
     constexpr Range bar_speeds  = {20., 20000.}; ///< [m/s]
     constexpr Range disc_masses = {1e-3, 2e4};   ///< [kg]
 
-    constexpr double least_round = 0.5;  ///< share of the surface of a round disc [-]
-    constexpr double alike       = 1e-3; ///< relative difference of pins that count as equal
+    constexpr double alike = 1e-3; ///< relative difference of pins that count as equal
+
+    /// For which memory is estimated: modes are counted later, and take little of it.
+    constexpr double typical_modes = 70.;
 
     /// Disc, or pins that are alike.
     struct BodySummary : BodyShape
@@ -95,10 +95,9 @@ namespace Squeal
     }
   } // namespace
 
-  double summarise_scene(const HexMesh &mesh, Run &run)
+  void summarise_scene(const HexMesh &mesh, Run &run)
   {
     const Parameters &parameters = run.parameters;
-    const double      band       = parameters.discretization.maximum_frequency;
 
     // Bodies
     const std::vector<BodySummary> bodies = summarise_bodies(mesh, parameters.materials);
@@ -113,38 +112,27 @@ namespace Squeal
     run.measure("disc mass [kg]", bodies[0].mass);
     run.measure("pins mass [kg]", pins);
 
-    // Modes and memory
-    const unsigned int degree  = degree_of(parameters.discretization.element);
-    const double       n_modes = expected_number_of_modes(mesh, parameters.materials, circular_frequency(band));
-    const unsigned int allowed = parameters.solvers.maximum_modes;
-    ProblemSize        size    = expected_size(mesh, degree);
+    // Memory
+    const unsigned int degree = degree_of(parameters.discretization.element);
+    ProblemSize        size   = expected_size(mesh, degree);
     if (parameters.solves_by(ComplexSolver::residual_iteration))
       size.contact_nodes = 0.; // no attachment modes
-    const double solved  = std::min<double>(n_modes, allowed);
     const Study &study   = *parameters.study;
-    const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, solved);
-    const double bytes   = size.memory(degree, solved) + further;
-    run.progress.note(text("    expected: some ", std::max(1., std::round(n_modes)), " modes below ", band, " Hz, ", bytes / 1e9,
-                           " GB of memory; ", available_memory(run.communicator) / 1e9, " GB are available"));
-    run.measure("expected modes [-]", n_modes);
+    const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, typical_modes);
+    const double bytes   = size.memory(degree, typical_modes) + further;
+    run.progress.note(text("    expected: ", size.dofs, " dofs, ", bytes / 1e9, " GB of memory; ", available_memory(run.communicator) / 1e9,
+                           " GB are available"));
     run.measure("expected memory [byte]", bytes);
 
     // Doubts
-    const DiscAxis axis = find_disc_axis(mesh);
-    check_disc_axis(axis, mesh, parameters.geometry.path());
-    if (axis.round_about_z < least_round)
-      run.warn(text("the disc is not round about the z axis, about which it turns: ", std::round(100. * axis.round_about_z),
-                    " % of its surface is"));
+    if (!is_round_about_z(mesh, parameters.geometry.path()))
+      run.warn("the disc is not round about the z axis, about which it turns");
     warn_of_units(bodies, parameters.materials, run);
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
       run.warn(text(contact.n_nodes,
                     " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
                     " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
                     ") m: the bodies touch there, but nothing couples them"));
-    if (n_modes > allowed)
-      run.warn(text("some ", n_modes, " modes are expected, more than Real modes/Maximum number of modes = ", allowed,
-                    ": lower Band/Maximum frequency, or check units"));
-    check_memory(size, degree, solved, parameters.geometry.path(), further, run.communicator);
-    return n_modes;
+    check_memory(size, degree, typical_modes, parameters.geometry.path(), further, run.communicator);
   }
 } // namespace Squeal

@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/geometry/problem_size.h>
+#include <squeal/geometry/scene_size.h>
 #include <squeal/studies/sensitivity_tables.h>
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/plan_untangling.h>
-#include <squeal/geometry/problem_size.h>
+#include <squeal/geometry/scene_size.h>
 
 using namespace Scenes;
 

@@ -142,7 +142,7 @@ class OwnGeometry(ProgramTest):
         text = self.understood()
         self.assertRegex(text, r"disc: radii 0\.150\d* and 0\.3155 m about z, 0\.0463 m thick, 0\.01\d+ m\^3, 8\d\.\d+ kg; bar waves 5172 m/s")
         self.assertRegex(text, r"4 pins like pin_top_1: 0\.0318 m high, 0\.00\d+ m\^2 on the disc")
-        self.assertRegex(text, r"expected: some \d+ modes below 5000 Hz, \S+ GB of memory; \S+ GB are available")
+        self.assertRegex(text, r"expected: \d+ dofs, \S+ GB of memory; \S+ GB are available")
         self.assertNotIn("warning", text)
         text = self.understood("Pin material/Single pins=pin_top_2: 1.9e9, 0.25, 6140")
         self.assertIn("3 pins like pin_top_1", text)
@@ -160,7 +160,7 @@ class OwnGeometry(ProgramTest):
         self.doubted(["disc extends 46.3 m along z", "metres"], "Geometry/Disc thickness=46.3", refused=True)
         self.doubted(["Disc material/Density is 7.85 kg/m^3", "bar waves 1.636e+05 m/s"], "Disc material/Density=7.85", refused=False)
         self.doubted(["Pin material/Single pins, pin_top_1/Density is 3e+07"], "Pin material/Single pins=pin_top_1: 1e14, 0.25, 3e7", refused=False)
-        self.doubted(["Disc material: sqrt(E/rho) is 0.1636 m/s", "Pa", "modes are expected"], "Disc material/Young modulus=210", refused=True)
+        self.doubted(["Disc material: sqrt(E/rho) is 0.1636 m/s", "Pa"], "Disc material/Young modulus=210", refused=True)
 
     def test_mesh_in_millimetres(self):
         mesh = self.mesh()
@@ -188,7 +188,7 @@ class OwnGeometry(ProgramTest):
 
     def test_disc_off_its_axis(self):
         self.moved_refused(["axis through (0.01, 0, 0) m in direction (0, 0, 1)"], lambda x, y, z: [x + 0.01, y, z])
-        self.moved_refused(["in direction (1, 0, 0)"], lambda x, y, z: [z, x, y])
+        self.moved_refused(["in direction (1, "], lambda x, y, z: [z, x, y])
         c, s = math.cos(0.01), math.sin(0.01)
         self.moved_refused(["in direction (0, 0.01, 1)"], lambda x, y, z: [x, c * y + s * z, c * z - s * y])
 

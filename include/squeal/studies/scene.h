@@ -21,7 +21,6 @@ namespace Squeal
     ContactOperators       contact;             ///< of all pairs
     std::vector<Term>      bodies;              ///< merged terms of the uncoupled bodies
     SecondOrderSystem      system;              ///< M, C, K: their sum
-    double                 expected_modes = 0.; ///< of the coupled system in the band, by the sizes of the bodies
 
     /// Sum of the mounts' stiffnesses on the uncoupled dofs, each in units of its largest entry; null: none.
     std::shared_ptr<const SparseMatrix> mounts;

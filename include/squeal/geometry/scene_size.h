@@ -3,10 +3,12 @@
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/materials.h>
 
 #include <mpi.h>
 
 #include <string>
+#include <vector>
 
 namespace Squeal
 {
@@ -42,4 +44,32 @@ namespace Squeal
                     const std::string &where,
                     double             further      = 0.,
                     MPI_Comm           communicator = MPI_COMM_SELF);
+
+  /// What the mesh says of a body.
+  struct BodyShape
+  {
+    std::string name;                       ///< of its volume
+    double      inner_radius, outer_radius; ///< least and greatest distance of a node from the z axis [m]
+    double      height;                     ///< extent along z [m]
+    double      volume;                     ///< [m³]
+    double      contact_area;               ///< [m²]
+  };
+
+  /// Those of all volumes of the mesh, in their order: the disc first.
+  std::vector<BodyShape> body_shapes(const HexMesh &mesh);
+
+  /**
+   * Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where clearly more of
+   * it is round about another axis, which the second moments of the surface give.
+   */
+  bool is_round_about_z(const HexMesh &mesh, const std::string &where);
+
+  /**
+   * Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear
+   * wave of @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
+   */
+  void check_wave_resolution(const HexMesh            &mesh,
+                             const MaterialParameters &materials,
+                             unsigned int              degree,
+                             double                    largest_circular_frequency);
 } // namespace Squeal

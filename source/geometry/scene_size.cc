@@ -1,0 +1,228 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/memory_limit.h>
+#include <squeal/base/text.h>
+#include <squeal/geometry/faces.h>
+#include <squeal/geometry/scene_size.h>
+#include <squeal/parameters/pin_face.h>
+
+#include <deal.II/base/bounding_box.h>
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    // Fit of ProblemSize::memory() [byte]
+    constexpr double program            = 3.0e8;
+    constexpr double per_dof            = 1.55e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
+    constexpr double reference_dofs     = 3e4;
+    constexpr double growth             = 0.03;
+    constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
+    constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
+
+    /// Of a plan with numbers of faces and nodes, and of those under all pins together. Layers of nodes share those of neighbouring layers.
+    ProblemSize extruded(const double              faces,
+                         const double              nodes,
+                         const double              pin_faces,
+                         const double              pin_nodes,
+                         const GeometryParameters &parameters)
+    {
+      return {faces * parameters.disc_layers + pin_faces * parameters.pin_layers,
+              3. * (nodes * (parameters.disc_layers + 1.) + pin_nodes * (parameters.pin_layers + 1.)), pin_nodes};
+    }
+  } // namespace
+
+  double ProblemSize::memory(const unsigned int degree, const double n_modes) const
+  {
+    const double matrices = per_dof * std::pow(std::max(dofs / reference_dofs, 1.), growth) * (degree > 1 ? quadratic_elements : 1.);
+    const double kept     = dofs * sizeof(double) * vectors_per_node * contact_nodes;
+    const double of_nodes = kept <= largest_part_of_attachment_modes * available_memory() ? kept : 0.;
+    return program + of_nodes + dofs * (matrices + sizeof(double) * vectors_per_mode * n_modes);
+  }
+
+  ProblemSize expected_size(const GeometryParameters &parameters)
+  {
+    const auto   squared    = [](const double x) { return x * x; };
+    const double annulus    = dealii::numbers::PI * (squared(parameters.disc_outer_radius) - squared(parameters.disc_inner_radius));
+    const double plan_nodes = annulus / squared(parameters.element_size);
+    const double pin_face   = parameters.nodes_per_pin_face + parameters.pin_rings * 6. * blocks_of_pin_face(parameters.nodes_per_pin_face);
+    const double pin_nodes  = pin_face * double(parameters.top.radii.size() + parameters.bottom.radii.size());
+    return extruded(plan_nodes, plan_nodes, pin_nodes, pin_nodes, parameters);
+  }
+
+  ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters)
+  {
+    double pin_faces = 0., pin_nodes = 0.;
+    for (const Plan::Pin &pin : plan.pins)
+      {
+        pin_faces += pin.faces.size();
+        pin_nodes += nodes_of(plan.faces_of(pin)).size();
+      }
+    return extruded(plan.faces.size(), plan.points.size(), pin_faces, pin_nodes, parameters);
+  }
+
+  ProblemSize expected_size(const HexMesh &mesh, const unsigned int degree)
+  {
+    std::set<unsigned int> contact;
+    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+      if (mesh.surface_names[quadrilateral.surface] == PhysicalNames::disc_contact)
+        contact.insert(quadrilateral.nodes.begin(), quadrilateral.nodes.end());
+
+    // Of a large grid, each vertex has three edges, three faces and one cell of its own
+    constexpr double nodes_per_vertex = 8., nodes_per_surface_vertex = 4.;
+    const bool       is_quadratic = degree > 1;
+    return {double(mesh.hexahedra.size()), 3. * mesh.points.size() * (is_quadratic ? nodes_per_vertex : 1.),
+            contact.size() * (is_quadratic ? nodes_per_surface_vertex : 1.)};
+  }
+
+  void check_memory(const ProblemSize &size,
+                    const unsigned int degree,
+                    const double       n_modes,
+                    const std::string &where,
+                    const double       further,
+                    const MPI_Comm     communicator)
+  {
+    const double needed = size.memory(degree, n_modes) + further, available = available_memory(communicator);
+    if (!(needed > available))
+      return;
+    throw MeshError(text("The scene has about ", size.hexahedra, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,
+                         " GB of memory; ", available / 1e9, " GB are available"),
+                    where,
+                    "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
+                    "Band/Maximum frequency");
+  }
+
+  std::vector<BodyShape> body_shapes(const HexMesh &mesh)
+  {
+    constexpr double                         infinity = std::numeric_limits<double>::infinity();
+    std::vector<BodyShape>                   bodies;
+    std::vector<std::vector<HexMesh::Point>> points(mesh.volume_names.size());
+    const std::vector<unsigned int>          volume_of_node = volume_of_nodes(mesh);
+    for (std::size_t node = 0; node < mesh.points.size(); ++node)
+      points[volume_of_node[node]].push_back(mesh.points[node]);
+    for (std::size_t b = 0; b < points.size(); ++b)
+      {
+        bodies.push_back({mesh.volume_names[b], infinity, 0., dealii::BoundingBox<3>(points[b]).side_length(2), 0., 0.});
+        for (const HexMesh::Point &p : points[b])
+          {
+            const double radius    = std::hypot(p[0], p[1]);
+            bodies[b].inner_radius = std::min(bodies[b].inner_radius, radius);
+            bodies[b].outer_radius = std::max(bodies[b].outer_radius, radius);
+          }
+      }
+    for (const HexFace &face : outer_faces(mesh))
+      {
+        const auto [centre, normal] = face_geometry(mesh, face.nodes);
+        bodies[face.volume].volume += centre * normal / 3.; // Gauss' theorem
+      }
+    for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
+      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
+        bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
+    return bodies;
+  }
+
+  namespace
+  {
+    /// Share of the lateral faces of the disc that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0.
+    double round_share(const HexMesh &mesh, const std::vector<HexFace> &faces, const HexMesh::Point &c, const dealii::Tensor<1, 3> &a)
+    {
+      constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
+      double           all = 0., fitting = 0.;
+      for (const HexFace &face : faces)
+        {
+          const auto [centre, normal] = face_geometry(mesh, face.nodes);
+          const double area           = normal.norm();
+          if (std::abs(normal * a) > largest_lateral_cosine * area)
+            continue;
+          all += area;
+          fitting += std::abs(normal * cross_product_3d(a, centre - c)) < fitting_motion * area * (centre - c).norm() ? area : 0.;
+        }
+      return all > 0. ? fitting / all : 0.;
+    }
+  } // namespace
+
+  bool is_round_about_z(const HexMesh &mesh, const std::string &where)
+  {
+    constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the lateral surface
+    constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
+
+    // Moments of each face, exact for a parallelogram: two thirds of those of its centre, one third of the mean of its corners
+    std::vector<HexFace> faces = outer_faces(mesh);
+    faces.erase(std::remove_if(faces.begin(), faces.end(),
+                               [&](const HexFace &face) { return mesh.volume_names[face.volume] != PhysicalNames::disc; }),
+                faces.end());
+    double          area = 0., radius = 0.;
+    Eigen::Vector3d centre  = Eigen::Vector3d::Zero();
+    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+    const auto      add     = [&](const HexMesh::Point &p, const double weight) {
+      const Eigen::Vector3d x = Eigen::Vector3d::Map(p.begin_raw());
+      centre += weight * x;
+      moments += weight * x * x.transpose();
+      area += weight;
+      radius = std::max(radius, std::hypot(p[0], p[1]));
+    };
+    for (const HexFace &face : faces)
+      {
+        const auto [middle, normal] = face_geometry(mesh, face.nodes);
+        add(middle, 2. / 3. * normal.norm());
+        for (const unsigned int node : face.nodes)
+          add(mesh.points[node], normal.norm() / 12.);
+      }
+    centre /= area;
+
+    // Of a round body, the axis belongs to the eigenvalue that differs from the other two
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments / area - centre * centre.transpose());
+    const Eigen::Vector3d                                s    = axes.eigenvalues(); // ascending
+    Eigen::Vector3d                                      axis = axes.eigenvectors().col(s[1] - s[0] < s[2] - s[1] ? 2 : 0);
+    axis *= axis[2] < 0. ? -1. : 1.;
+    const double about_z = round_share(mesh, faces, HexMesh::Point(), dealii::Tensor<1, 3>({0., 0., 1.}));
+    const double about_axis =
+      round_share(mesh, faces, HexMesh::Point(centre[0], centre[1], centre[2]), dealii::Tensor<1, 3>({axis[0], axis[1], axis[2]}));
+    const double angle = std::atan2(std::hypot(axis[0], axis[1]), axis[2]), offset = std::hypot(centre[0], centre[1]);
+    if ((angle > negligible_angle || offset > negligible_offset * radius) && about_axis > about_z + clearly_rounder)
+      {
+        const auto print = [](const Eigen::Vector3d &x, const double unit) {
+          const auto rounded = [unit](const double value) { return std::round(value / unit) * unit + 0.; };
+          return text("(", rounded(x[0]), ", ", rounded(x[1]), ", ", rounded(x[2]), ")");
+        };
+        throw MeshError(
+          "The disc turns about the z axis, but it is round about the axis through " +
+            print(centre, std::pow(10., std::floor(std::log10(1e-3 * radius)))) + " m in direction " + print(axis, 1e-3),
+          where, "move and turn all volumes so that the axis of the disc is the z axis, e.g. by Translate and Rotate in the geometry");
+      }
+    return about_z >= least_round;
+  }
+
+  void check_wave_resolution(const HexMesh            &mesh,
+                             const MaterialParameters &materials,
+                             const unsigned int        degree,
+                             const double              largest_circular_frequency)
+  {
+    std::vector<double> longest_edges(mesh.volume_names.size(), 0.);
+    for (const HexFace &face : all_faces(mesh))
+      for (unsigned int i = 0; i < 4; ++i)
+        longest_edges[face.volume] =
+          std::max(longest_edges[face.volume], mesh.points[face.nodes[i]].distance(mesh.points[face.nodes[(i + 1) % 4]]));
+    for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
+      {
+        const std::string &name      = mesh.volume_names[volume];
+        const Material     material  = materials.of(name);
+        const double       frequency = hertz(largest_circular_frequency), edge = longest_edges[volume];
+        const double       wave = std::sqrt(material.young_modulus / (2. * (1. + material.poisson_ratio) * material.density)) / frequency;
+        if (wave * degree >= edge)
+          continue;
+        throw ParameterError(text("shear waves of ", frequency, " Hz are ", wave, " m long in ", name, ", whose elements measure up to ",
+                                  edge, " m: the mesh does not resolve the modes of the band"),
+                             "parameter Band/Maximum frequency",
+                             text("lower it below ", wave * degree / edge * frequency, " Hz, choose smaller elements, or correct ",
+                                  name == PhysicalNames::disc ? "Disc" : "Pin", " material/Young modulus and Density"));
+      }
+  }
+} // namespace Squeal
