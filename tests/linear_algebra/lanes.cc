@@ -5,7 +5,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/factorization.h>
-#include <squeal/linear_algebra/factorization_beside.h>
 #include <squeal/linear_algebra/replicate.h>
 
 #include <gtest/gtest.h>
