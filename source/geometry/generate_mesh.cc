@@ -144,20 +144,18 @@ namespace Squeal
     /// Refuses a mesh whose groups, of the dimensions that count, do not say what they are.
     void check_groups(const GmshMesh &mesh, const std::string &where)
     {
+      const std::string other_formats = "; Gmsh reads no names from formats other than .msh (.unv, .inp, .bdf, ...): name the parts in the "
+                                        ".geo after Merge, or convert to a .msh with physical names";
       if (mesh.dimension() < 2)
-        throw MeshError(
-          mesh.n_unnamed_volume_elements == 0 ?
-            "The geometry has neither physical volumes nor physical surfaces" :
-            text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical group"),
-          where,
-          "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'; Gmsh reads no names from meshes of "
-          "other formats than .msh (.unv, .inp, .bdf, ...): name their parts in the .geo after Merge, or convert them to a "
-          ".msh with physical names");
+        throw MeshError(mesh.n_unnamed_volume_elements == 0 ?
+                          "The geometry has neither physical volumes nor physical surfaces" :
+                          text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical group"),
+                        where, "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'" + other_formats);
       constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))
           throw MeshError(text("Physical ", kinds[group.dimension], ' ', group.number, " has no name"), where,
-                          "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh");
+                          "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh" + other_formats);
     }
 
     HexMesh mesh_once(const GeometryParameters       &parameters,
