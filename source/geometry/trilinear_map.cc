@@ -65,14 +65,18 @@ namespace Squeal
         xi += change;
         if (largest(change) < converged)
           {
-            // Row i of the inverse is the gradient of coordinate i
-            Depth depth{1., std::numeric_limits<double>::infinity()};
+            // Row i of the inverse is the gradient of coordinate i; outside, where it may be singular, the nearest point counts
+            Depth  depth{1., std::numeric_limits<double>::infinity()};
+            Vector nearest;
             for (unsigned int i = 0; i < 3; ++i)
               {
                 const double inside = 1. - std::abs(xi[i]);
+                nearest[i]          = std::max(-1., std::min(1., xi[i]));
                 depth.relative      = std::min(depth.relative, inside / 2.);
                 depth.length        = std::min(depth.length, inside / inverse[i].norm());
               }
+            if (depth.relative < 0.)
+              depth.length = -(x - position(nearest)).norm();
             return depth;
           }
       }
