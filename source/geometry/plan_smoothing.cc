@@ -125,6 +125,12 @@ namespace Squeal
     for (const Plan::Pin &pin : plan.pins)
       fix(pin, plan, fixed);
     smooth(plan.faces, fixed, plan.points);
+    std::set<std::vector<unsigned int>> done; // pins of both sides may be above the same faces
+    std::vector<TurningPart>            parts;
+    for (const Plan::Pin &pin : plan.pins)
+      if (pin.is_round && done.insert(pin.faces).second)
+        parts.push_back(turning_part(pin, plan, plan.points));
+    untangle(plan.faces, fixed, parts, plan.points);
   }
 
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side)

@@ -52,6 +52,23 @@ TEST(Layouts, PinsThatOverlapAskewAreMeshed)
         }
 }
 
+TEST(Layouts, ClosePinsAreMeshed)
+{
+  // The pad of a railway brake: 18 pins, 2.56 mm apart
+  GeometryParameters parameters;
+  parameters.disc_inner_radius = 0.175;
+  parameters.disc_outer_radius = 0.320;
+  parameters.pin_diameter      = 0.0376;
+  parameters.element_size      = 0.02;
+  parameters.top.radii         = {0.215696546, 0.258936286, 0.259755654, 0.207761883, 0.282256975, 0.243074063,
+                                  0.281964537, 0.242958844, 0.20135789,  0.259083545, 0.201359622, 0.242962314,
+                                  0.281974332, 0.243130647, 0.207846669, 0.259855518, 0.282322054, 0.215831818};
+  parameters.top.angles = {7.19091141, 4.87389642, 14.0362435, 18.5221569, 21.8391041, 24.0342882, 31.6607511, 33.7554736, 33.4533095,
+                           75.1843979, 46.63198,   46.3157819, 48.4000408, 56.0360735, 61.5582833, 66.0272128, 58.2217852, 72.881462};
+  parameters.bottom     = {};
+  EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
+}
+
 TEST(Layouts, OppositePinsStayWhereThePlanHasThem)
 {
   for (const unsigned int nodes : {7, 19})
