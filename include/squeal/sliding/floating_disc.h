@@ -10,10 +10,10 @@ namespace Squeal
 {
   /**
    * Motions of the disc that its mounts leave free and the reactions can balance,
-   * n × k, M-orthonormal; nothing if there are none. Those that leave the gaps as they
-   * are do not count: of them the drive takes the moment about the axis.
+   * n × k, M-orthonormal; nothing if there are none. Turning about the axis does
+   * not count, whose moment the drive takes, nor do those that leave the gaps as they are.
    *
-   * Throws SolverError if friction (@p mu > 0) acts on another one.
+   * Throws SolverError if friction (@p mu > 0) acts on one of the latter.
    */
   std::optional<MultiVector> balanced_disc_motions(const Model             &model,
                                                    const ContactOperators  &contact,
