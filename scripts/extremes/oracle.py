@@ -11,7 +11,7 @@ Three steps:
    Systems beyond `largest_dense` are solved by ARPACK on the shifted and inverted companion form.
 2. Each cluster is refined by block inverse iteration from both sides about its centre c; the eigenvalues then follow from
    W^H Q(c + delta) V, whose entries are computed with 64 bits of mantissa. Their error is the product of those of V and W.
-3. Again, where this changes them by more than 1e-9: how much they change at last is the error of the oracle.
+3. Again, where this changes them by more than 1e-10: how much they change at last is the error of the oracle.
 """
 
 import dataclasses
@@ -31,7 +31,7 @@ N_ITERATIONS = 4
 # |lambda| / end of the band of what counts as zero, and is not refined
 ZERO = 0.9e-4
 # Change in a refinement from which there is no need of another
-CONVERGED = 1e-9
+CONVERGED = 1e-10
 
 
 @dataclasses.dataclass
