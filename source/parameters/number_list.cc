@@ -46,15 +46,17 @@ namespace Squeal
     }
 
     /**
-     * Whether commas look like decimal ones: digits behind one begin with zero; or some commas have a blank on some side and all others
-     * join digits, several of them or behind a zero.
+     * Whether commas look like decimal ones: digits behind one begin with zero; semicolons separate the numbers; or some commas have a
+     * blank on some side and all others join digits, several of them or behind a zero.
      */
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
-      if (std::any_of(joined.begin(), joined.end(), std::mem_fn(&JoinedDigits::is_fraction)))
+      if (joined.empty())
+        return false;
+      if (list.find(';') != std::string::npos || std::any_of(joined.begin(), joined.end(), std::mem_fn(&JoinedDigits::is_fraction)))
         return true;
       const auto n_commas = std::count(list.begin(), list.end(), ','), n_joined = static_cast<std::ptrdiff_t>(joined.size());
-      return n_joined > 0 && n_joined < n_commas && n_joined + n_spaced_commas(list) == n_commas &&
+      return n_joined < n_commas && n_joined + n_spaced_commas(list) == n_commas &&
              (n_joined > 1 || std::any_of(joined.begin(), joined.end(), std::mem_fn(&JoinedDigits::begins_with_zero)));
     }
   } // namespace

@@ -110,13 +110,15 @@ namespace Squeal
     }
 
     /// Why a design is refused; nothing if it is not.
-    std::optional<ParameterError> refusal(const Parameters               &scene,
+    std::optional<ParameterError> refusal(const Parameters               &parameters,
                                           const std::vector<std::string> &names,
                                           const std::vector<std::string> &values)
     {
       try
         {
-          with_design(scene, names, values).check();
+          Parameters design = with_design(parameters, names, values);
+          design.study      = &sweep_study; // whose check does not come back here
+          design.check();
           return {};
         }
       catch (const ParameterError &error)
@@ -127,22 +129,20 @@ namespace Squeal
 
     void check_values(const Parameters &parameters, const DesignPlan &plan)
     {
-      Parameters scene    = parameters;
-      scene.study         = &sweep_study; // whose check does not come back here
-      const auto of_scene = refusal(scene, {}, {});
+      const auto of_scene = refusal(parameters, {}, {});
       for (std::size_t v = 0; v < plan.names.size(); ++v)
         {
-          std::set<std::string> fine;
+          std::set<std::string> seen;
           for (std::size_t i = 0; i < plan.designs.size(); ++i)
             {
               const std::string &value = plan.designs[i][v];
-              if (value.empty() || !fine.insert(value).second)
+              if (value.empty() || !seen.insert(value).second)
                 continue;
-              const auto alone = refusal(scene, {plan.names[v]}, {value});
+              const auto alone = refusal(parameters, {plan.names[v]}, {value});
               if (!alone)
                 continue;
               if (std::any_of(plan.designs.begin(), plan.designs.end(), [&](const std::vector<std::string> &design) {
-                    return design[v] == value && !refusal(scene, plan.names, design);
+                    return design[v] == value && !refusal(parameters, plan.names, design);
                   }))
                 continue;
               if (of_scene && of_scene->reason == alone->reason)

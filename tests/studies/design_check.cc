@@ -109,7 +109,7 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
                  "Disc material/Density = 1, 2; Geometry/Pin height = 0.03, -0.01");
   expect_refusal({"integer", "Geometry/Disc layers = 1.5"}, "Geometry/Disc layers = 1 to 3 in 5");
   // With parameters that do not vary
-  expect_refusal({"overlap", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
+  expect_refusal({"beyond the inner radius", "Geometry/Pin diameter = 0.2"}, "Geometry/Pin diameter = 0.05, 0.2");
   // Samples of a range
   expect_refusal({"Poisson", "Pin material/Poisson ratio = 0."}, "Pin material/Poisson ratio = 0.2 to 0.8",
                  {"Designs/Plan=Latin hypercube"});
