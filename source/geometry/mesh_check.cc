@@ -49,7 +49,7 @@ namespace Squeal
       HexMesh::Point             centre;
       for (const unsigned int node : hexahedron.nodes)
         centre += mesh.points[node] / 8.;
-      return text("element ", element, " of volume '",
+      return text("element ", mesh.element_tags.empty() ? element : mesh.element_tags[element], " of volume '",
                   mesh.volume_names[hexahedron.volume], "', near (", centre[0], ", ", centre[1], ", ", centre[2], ") m");
     }
 

@@ -105,6 +105,7 @@ namespace Squeal
         for (unsigned int &node : nodes)
           node = new_index[node];
         result.hexahedra.push_back({nodes, volume});
+        result.element_tags.push_back(tag);
       }
     for (auto &[tag, quadrilateral] : quadrilaterals)
       {

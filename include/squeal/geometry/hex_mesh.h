@@ -36,7 +36,8 @@ namespace Squeal
     std::vector<Quadrilateral> quadrilaterals; ///< faces on named surfaces only; once for each name that a face bears
     std::vector<std::string>   volume_names;   ///< "disc", then "pin_..."
     std::vector<std::string>   surface_names;
-    std::vector<std::string>   notes; ///< what was corrected, for the user
+    std::vector<std::string>   notes;        ///< what was corrected, for the user
+    std::vector<std::size_t>   element_tags; ///< of the hexahedra in the file, for messages; empty without one
   };
 
   /// Of the places of the nodes, to 1e-8 of the size or less (a nanometre for some decimetres): tells two meshes with the same
