@@ -18,6 +18,9 @@ namespace Squeal
     /// Residual of a rigid-body mode, beside the largest eigenvalue wanted, that is accepted.
     constexpr double largest_rigid_residual = 1e-8;
 
+    /// Steps of inverse iteration, which converge slowly at the end of the band; more than three are needed next to modes of almost no frequency.
+    constexpr int most_refinements = 20;
+
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_fruitless_starts = 4;
 
@@ -211,7 +214,7 @@ namespace Squeal
     if (is_dense())
       pairs = rayleigh_ritz(*pairs.vectors);
     Residuals result = residuals(pairs);
-    for (int step = 0; step < 3 && !(result.excess <= 1.); ++step)
+    for (int step = 0; step < most_refinements && !(result.excess <= 1.); ++step)
       {
         const int   n = pairs.vectors->n_columns();
         MultiVector W(pairs.vectors->map(), n);

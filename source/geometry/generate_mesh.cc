@@ -20,6 +20,7 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -32,6 +33,12 @@ namespace Squeal
     namespace fs = std::filesystem;
 
     constexpr const char *built_in_geometry = "disc_pins.geo";
+
+    /// Whether Gmsh's Include takes a path, which ends at quotes in its lexer.
+    bool can_be_included(const std::string &path)
+    {
+      return path.find_first_of("\"'\\%$~#\n") == std::string::npos;
+    }
 
     /// A .geo that sets the parameters before the geometry, which keeps values that exist.
     std::string driver(const GeometryParameters &parameters)
@@ -54,6 +61,16 @@ namespace Squeal
       if (!is_script(geometry))
         return {geometry, "", {}};
       MesherInput input{geometry, driver(parameters), {}};
+      // Gmsh loses the last line of a file without a line break at its end, unless the file is included
+      if (can_be_included(geometry))
+        {
+          input.script += "Include \"" + geometry + "\";\n";
+          input.file.clear();
+        }
+      else if (std::ifstream stream(geometry, std::ios::binary | std::ios::ate);
+               stream.tellg() > 0 && stream.seekg(-1, std::ios::cur).peek() != '\n')
+        throw MeshError("The file does not end with a line break, without which Gmsh ignores its last line", geometry,
+                        "add one, or choose a path without quotes, backslashes and $ % ~ #");
       for (const GeometryParameters::Variable &variable : parameters.variables)
         if (variable.value && !variable.declaration.onelab_name.empty())
           input.numbers[variable.declaration.onelab_name] = *variable.value;

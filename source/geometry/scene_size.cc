@@ -130,27 +130,31 @@ namespace Squeal
 
   namespace
   {
-    /// Share of the lateral faces of the disc that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0.
+    /**
+     * Share of the disc's faces that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0: of the lateral ones, which tell where
+     * the axis is, or of the others, which tell how it is inclined, whichever is less.
+     */
     double round_share(const HexMesh &mesh, const std::vector<HexFace> &faces, const HexMesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
-      double           all = 0., fitting = 0.;
+      double           all[2] = {0., 0.}, fitting[2] = {0., 0.};
       for (const HexFace &face : faces)
         {
-          const auto [centre, normal] = face_geometry(mesh, face.nodes);
-          const double area           = normal.norm();
-          if (std::abs(normal * a) > largest_lateral_cosine * area)
-            continue;
-          all += area;
-          fitting += std::abs(normal * cross_product_3d(a, centre - c)) < fitting_motion * area * (centre - c).norm() ? area : 0.;
+          const auto [centre, normal]           = face_geometry(mesh, face.nodes);
+          const dealii::Tensor<1, 3> motion     = cross_product_3d(a, centre - c);
+          const double               area       = normal.norm();
+          const bool                 is_lateral = std::abs(normal * a) < largest_lateral_cosine * area;
+          all[is_lateral] += area;
+          if (std::abs(normal * motion) < fitting_motion * area * motion.norm())
+            fitting[is_lateral] += area;
         }
-      return all > 0. ? fitting / all : 0.;
+      return std::min(all[0] > 0. ? fitting[0] / all[0] : 0., all[1] > 0. ? fitting[1] / all[1] : 0.);
     }
   } // namespace
 
   bool is_round_about_z(const HexMesh &mesh, const std::string &where)
   {
-    constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the lateral surface
+    constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the surface
     constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
 
     // Moments of each face, exact for a parallelogram: two thirds of those of its centre, one third of the mean of its corners

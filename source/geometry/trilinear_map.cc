@@ -12,7 +12,7 @@ namespace Squeal
     constexpr int signs[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
 
     constexpr int    max_steps = 20;
-    constexpr double converged = 1e-8;
+    constexpr double negligible_change = 1e-8;
     constexpr double far       = 2.5; // the next node of a regular grid is at 3
 
     double largest(const dealii::Tensor<1, 3> &xi)
@@ -63,7 +63,7 @@ namespace Squeal
         const Jacobian inverse = invert(jacobian(xi));
         const Vector   change  = inverse * (x - position(xi));
         xi += change;
-        if (largest(change) < converged)
+        if (largest(change) < negligible_change)
           {
             // Row i of the inverse is the gradient of coordinate i; outside, where it may be singular, the nearest point counts
             Depth  depth{1., std::numeric_limits<double>::infinity()};

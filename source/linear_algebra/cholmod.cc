@@ -18,7 +18,7 @@ namespace Squeal
     constexpr int rows_for_dissection = 2000;
 
     /// Right-hand sides of a task: the factor is read once for all of them.
-    constexpr int columns_together = 8;
+    constexpr int columns_of_task = 32;
 
     class CholmodFactorization : public Factorization
     {
@@ -56,7 +56,7 @@ namespace Squeal
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        run_parts(X.n_columns(), columns_together, [&](const int first, const int n) {
+        run_parts(X.n_columns(), columns_of_task, [&](const int first, const int n) {
           cholmod_common own;
           cholmod_start(&own);
           cholmod_dense  right_sides = columns(X, first, n);

@@ -82,7 +82,7 @@ namespace Squeal
       throw FileError("the name of the result folder is empty", "--output", "name a folder");
     try
       {
-        place      = fs::absolute(directory);
+        place      = (fs::absolute(directory) / "").parent_path(); // without the slash at the end
         unfinished = place / unfinished_name;
         open(command);
       }
@@ -230,7 +230,7 @@ namespace Squeal
     std::vector<std::string> remarks;
     const auto               move = [&](const std::string &name) {
       const fs::path target = place / name;
-      if (is_there(target) && former.count(name) == 0)
+      if (is_there(target) && (former.count(name) == 0 || fs::is_directory(fs::symlink_status(target))))
         {
           const fs::path kept = free_name(target);
           fs::rename(target, kept);

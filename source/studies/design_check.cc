@@ -116,8 +116,9 @@ namespace Squeal
     {
       try
         {
-          Parameters design = with_design(parameters, names, values);
-          design.study      = &sweep_study; // whose check does not come back here
+          Parameters design          = with_design(parameters, names, values);
+          design.study               = &sweep_study; // whose check does not come back here
+          design.sweep.map_parameter = MapParameter::none;
           design.check();
           return {};
         }

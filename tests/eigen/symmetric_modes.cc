@@ -199,20 +199,6 @@ TEST(SymmetricModes, SolversLibrariesAndSeedsAgree)
     }
 }
 
-TEST(SymmetricModes, AFactorThatWasBegunBeforeGivesTheSame)
-{
-  const Body            body  = plate({{14, 8, 2}}, 0.02, 1e10);
-  const double          limit = std::pow(2. * M_PI * 15e3, 2);
-  SymmetricModesOptions options;
-  const auto            expected = symmetric_modes(*body.stiffness, *body.mass, limit, options);
-  options.factor                 = factor_of_stiffness(*body.stiffness, options);
-  ASSERT_TRUE(options.factor.valid());
-  for (int time = 0; time < 2; ++time) // it serves more than once
-    expect_values(symmetric_modes(*body.stiffness, *body.mass, limit, options).eigenvalues, expected.eigenvalues, 1e-10);
-  options.shift = 1.;
-  EXPECT_FALSE(factor_of_stiffness(*body.stiffness, options).valid());
-}
-
 namespace
 {
   /// While it lives, tasks have two threads.

@@ -179,7 +179,7 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
      {"Output/Write matrices", "maybe", "must be true or false, not `maybe`\n"},
      {"Operation/Rotation", "clockwise", "must be one of positive, negative, not `clockwise`\n"},
      {"Study", "noise",
-      "Study must be one of stability, dissipation, paper, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, not `noise`\n"},
+      "Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, not `noise`\n"},
      {"Geometry/Top pin radii", "0.2, x", "Geometry/Top pin radii, value 2, must be a number >= 0 m, not `x`\n"},
      {"Sweep/Count modes at", "0.1, 11", "Sweep/Count modes at, value 2, must lie in 0 ... 10, not 11\n"}})
     {

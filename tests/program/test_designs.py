@@ -195,7 +195,7 @@ class DesignsTest(ProgramTest):
         settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
         process = self.call("scene.prm", "--output", "former", *settings)
         self.assertEqual(process.returncode, 1)
-        self.assertIn("another version of the program lies there: `squeal designs 1` there, `squeal designs 2` here", process.stderr)
+        self.assertIn("another version of the program lies there: `squeal designs 1` there, `squeal designs 3` here", process.stderr)
         shutil.rmtree(self.folder / "former.checkpoint")
 
     def test_designs_that_their_parameters_refuse_need_no_process(self):

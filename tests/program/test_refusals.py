@@ -80,15 +80,15 @@ class Refusals(ProgramTest):
         self.scene_refused(["must be a number in 0 ... 10, not `abc`"], "Operation/Friction coefficient=abc")
 
     def test_limit_of_threads(self):
-        """With a stack larger than the address space no thread can be started."""
+        """With a stack larger than the address space no thread can be started: one does the work."""
         stack, (_, most) = 1 << 47, resource.getrlimit(resource.RLIMIT_STACK)
         if most != resource.RLIM_INFINITY:
             self.skipTest("the size of stacks is limited")
-        process = subprocess.run([EXECUTABLE, "--version"], env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
+        process = subprocess.run([EXECUTABLE, "scene.prm", "--output", "limited", "--set", "Linear algebra/Threads=2"], cwd=self.folder,
+                                 env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}, capture_output=True, text=True,
                                  preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (stack, most)), timeout=60)
-        self.assertEqual(process.returncode, 1, process.stderr)
-        for word in ("error: ", "thread", "OMP_NUM_THREADS", "ulimit -u"):
-            self.assertIn(word, process.stderr)
+        self.addCleanup(shutil.rmtree, self.folder / "limited", ignore_errors=True)
+        self.assertEqual(process.returncode, 0, process.stderr)
         self.assertNotIn("defect", process.stderr)
 
     # -------------------------------------------------------------- parameters
@@ -259,7 +259,8 @@ class Refusals(ProgramTest):
         dimension, entity = mesh.entity("pin_top_1")
         element = next(iter(mesh.elements[dimension, entity]))
         nodes = mesh.element_nodes(dimension, entity, element)
-        mesh.set_element_nodes(dimension, entity, element, nodes[4:] + nodes[:4])
+        nodes[0], nodes[2] = nodes[2], nodes[0]
+        mesh.set_element_nodes(dimension, entity, element, nodes)
         self.mesh_refused(["inverted", "scaled Jacobian -", "'pin_top_1'"], mesh)
 
     # ----------------------------------------------------------- result folder
@@ -291,7 +292,6 @@ class Refusals(ProgramTest):
         copy = self.folder / "copy"
         shutil.copytree(self.results, copy)
         self.addCleanup(shutil.rmtree, copy)
-        (copy / "matrices").mkdir()
         self.run_scene("copy")
         self.assertEqual(sorted(path.name for path in copy.iterdir()), sorted(path.name for path in self.results.iterdir()))
         self.assertEqual([path for path in self.folder.iterdir() if pathlib.Path(path).suffix], [self.folder / "scene.prm"])
