@@ -171,7 +171,7 @@ namespace Squeal
         for (const Node *partner : {&node.disc_node, &node.pin_node})
           for (const int dof : partner->dofs)
             if (dof < 0)
-              throw MeshError("a contact node is clamped", "contact node at " + place(p),
+              throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(p),
                               "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
         interface.push_back(node);
       }

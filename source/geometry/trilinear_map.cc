@@ -11,9 +11,9 @@ namespace Squeal
     /// Of the nodes, in Gmsh's order.
     constexpr int signs[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
 
-    constexpr int    max_steps = 20;
+    constexpr int    max_steps         = 20;
     constexpr double negligible_change = 1e-8;
-    constexpr double far       = 2.5; // the next node of a regular grid is at 3
+    constexpr double far               = 2.5; // the next node of a regular grid is at 3
 
     double largest(const dealii::Tensor<1, 3> &xi)
     {

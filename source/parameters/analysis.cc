@@ -52,8 +52,7 @@ namespace Squeal
     declarations.add("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", {1});
 
     declarations.enter("Linear algebra");
-    declarations.add("Factorization", library,
-                     "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
+    declarations.add("Factorization", library, "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads,
       "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and large factors. 0: as many as "

@@ -11,9 +11,12 @@ namespace Squeal
     declarations.add("Gyroscopic forces", rotating_disc,
                      "Whether the equations of motion of the disc contain its rotation, seen from the fixed frame: gyroscopic forces and "
                      "convective stiffness.");
-    declarations.add("Load per side", load_per_side, "Force with which a backplate presses its pins towards the disc: those above and those below the disc have one each, along the axis; "
-                     "a body whose mean contact normal is more than 45 degrees from the axis, such as a shoe on a rim, has its own, along that "
-                     "normal. Units: N.", {0.});
+    declarations.add(
+      "Load per side", load_per_side,
+      "Force with which a backplate presses its pins towards the disc: those above and those below the disc have one each, along the axis; "
+      "a body whose mean contact normal is more than 45 degrees from the axis, such as a shoe on a rim, has its own, along that "
+      "normal. Units: N.",
+      {0.});
     declarations.add("Radial dissipation", radial_dissipation,
                      "Contact damping along b per node: none; consistent, c_b = mu R_n0 / w_0 (linearised Coulomb friction); "
                      "published, c_b = R_n0 / w_0 (as the paper prints it). R_n0 follows from Steady sliding/Contact state. c_b in N s/m.");

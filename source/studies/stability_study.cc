@@ -184,6 +184,7 @@ namespace Squeal
     run.finish();
   }
 
-  extern const Study stability_study{
-    "stability", run_stability_study, {"Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
+  extern const Study stability_study{"stability",
+                                     run_stability_study,
+                                     {"Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
 } // namespace Squeal

@@ -14,7 +14,7 @@ using namespace Squeal::Testing;
 namespace
 {
   /// Two pins above, one below, of different sizes.
-  HexMesh flat_mesh()
+  HexMesh unequal_pins()
   {
     return extrude(
       polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::top, -3, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 2}}),
@@ -24,7 +24,7 @@ namespace
   /// The disc with faces as cones of a slope, and wavy around the axis.
   HexMesh inclined_mesh(const double slope)
   {
-    return mapped(flat_mesh(), [slope](const Point3 &p) {
+    return mapped(unequal_pins(), [slope](const Point3 &p) {
       return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.2 * slope * p[1]}};
     });
   }
@@ -98,7 +98,7 @@ TEST(Travel, ShoesOutsideAndInsideOfARingAreSidesOfTheirOwn)
 {
   for (const Rotation rotation : {Rotation::positive, Rotation::negative})
     {
-      const Pressed s(turned_to_rims(flat_mesh()), 0.4, rotation);
+      const Pressed s(turned_to_rims(unequal_pins()), 0.4, rotation);
       const auto    e = travels(s.model, s.interface);
       const auto    r = equal_load_shares(s.model, s.interface, s.operation);
       EXPECT_EQ(backplate_numbers(e, false), (std::vector<int>{-1, 0, 1, 2}));
@@ -123,7 +123,7 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
     {
       HexMesh mesh =
         is_equal ? extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 1}}), layers(1, 2)) :
-                   flat_mesh();
+                   unequal_pins();
       for (auto &hexahedron : mesh.hexahedra)
         hexahedron.volume = std::min(hexahedron.volume, 1u);
       mesh.volume_names = {mesh.volume_names[0], "pin_caliper"};
@@ -133,13 +133,13 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
       EXPECT_NE(message.find("pin_caliper"), std::string::npos) << message;
       EXPECT_NE(message.find("of its " + std::to_string(s.interface.size()) + " contact nodes"), std::string::npos) << message;
     }
-  EXPECT_TRUE(have_travels(Pressed(flat_mesh()).model, Pressed(flat_mesh()).interface));
+  EXPECT_TRUE(have_travels(Pressed(unequal_pins()).model, Pressed(unequal_pins()).interface));
 }
 
 TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
 {
   // Faces that rise along the sliding direction: with enough friction they hold the pin without any load
-  const HexMesh mesh = mapped(flat_mesh(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
+  const HexMesh mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
   const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
   EXPECT_EQ(refusal(weak), "");
   for (const Pressed *s : {&strong, &reversed}) // one side or the other

@@ -237,8 +237,8 @@ TEST(SymmetricModes, DoNotDependOnThreads)
 {
   const auto            copies = laplacian(5, 12), unit = diagonal(copies->rows(), [](int) { return 1.; });
   SymmetricModesOptions by_parts;
-  by_parts.by_parts   = true;
-  const auto of_parts = symmetric_modes(*copies, *unit, 1.7, by_parts);
+  by_parts.by_parts         = true;
+  const auto       of_parts = symmetric_modes(*copies, *unit, 1.7, by_parts);
   const TwoThreads two;
   expect_same(symmetric_modes(*copies, *unit, 1.7, by_parts), of_parts);
 }

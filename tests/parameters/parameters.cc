@@ -160,28 +160,27 @@ struct RefusedValue
 
 TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
 {
-  for (
-    const RefusedValue &c :
-    {RefusedValue{"Operation/Friction coefficient", "-0.1", "error: Operation/Friction coefficient must lie in 0 ... 10, not -0.1\n"},
-     {"Operation/Friction coefficient", "much", "must be a number in 0 ... 10, not `much`\n"},
-     {"Operation/Friction coefficient", "0,4", "must be a number in 0 ... 10, not `0,4`\n"},
-     {"Operation/Friction coefficient", "nan", "must be a number in 0 ... 10, not `nan`\n"},
-     {"Operation/Friction coefficient", "", "must be a number in 0 ... 10, but is empty\n"},
-     {"Geometry/Pin height", "-1", "Geometry/Pin height must be >= 0 m, not -1\n"},
-     {"Geometry/Pin height", "30 mm", "must be a number >= 0 m, not `30 mm`\n"},
-     {"Disc material/Density", "-2", "must be >= 0 kg/m^3, not -2\n"},
-     {"Linear algebra/Threads", "-1", "must lie in 0 ... 1024"},
-     {"Linear algebra/BLAS threads", "257", "must lie in 1 ... 256, not 257\n"},
-     {"Linear algebra/BLAS threads", "1.5", "must be an integer in 1 ... 256, not 1.5\n"},
-     {"Discretization/Element", "2", "must be one of trilinear, incompatible modes, quadratic, not 2\n"},
-     {"Geometry/Pin layers", "0", "must be >= 1, not 0\n"},
-     {"Geometry/Pin layers", "3000000000", "must be at most 2147483647, not 3000000000\n"},
-     {"Output/Write matrices", "maybe", "must be true or false, not `maybe`\n"},
-     {"Operation/Rotation", "clockwise", "must be one of positive, negative, not `clockwise`\n"},
-     {"Study", "noise",
-      "Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, not `noise`\n"},
-     {"Geometry/Top pin radii", "0.2, x", "Geometry/Top pin radii, value 2, must be a number >= 0 m, not `x`\n"},
-     {"Sweep/Count modes at", "0.1, 11", "Sweep/Count modes at, value 2, must lie in 0 ... 10, not 11\n"}})
+  for (const RefusedValue &c :
+       {RefusedValue{"Operation/Friction coefficient", "-0.1", "error: Operation/Friction coefficient must lie in 0 ... 10, not -0.1\n"},
+        {"Operation/Friction coefficient", "much", "must be a number in 0 ... 10, not `much`\n"},
+        {"Operation/Friction coefficient", "0,4", "must be a number in 0 ... 10, not `0,4`\n"},
+        {"Operation/Friction coefficient", "nan", "must be a number in 0 ... 10, not `nan`\n"},
+        {"Operation/Friction coefficient", "", "must be a number in 0 ... 10, but is empty\n"},
+        {"Geometry/Pin height", "-1", "Geometry/Pin height must be >= 0 m, not -1\n"},
+        {"Geometry/Pin height", "30 mm", "must be a number >= 0 m, not `30 mm`\n"},
+        {"Disc material/Density", "-2", "must be >= 0 kg/m^3, not -2\n"},
+        {"Linear algebra/Threads", "-1", "must lie in 0 ... 1024"},
+        {"Linear algebra/BLAS threads", "257", "must lie in 1 ... 256, not 257\n"},
+        {"Linear algebra/BLAS threads", "1.5", "must be an integer in 1 ... 256, not 1.5\n"},
+        {"Discretization/Element", "2", "must be one of trilinear, incompatible modes, quadratic, not 2\n"},
+        {"Geometry/Pin layers", "0", "must be >= 1, not 0\n"},
+        {"Geometry/Pin layers", "3000000000", "must be at most 2147483647, not 3000000000\n"},
+        {"Output/Write matrices", "maybe", "must be true or false, not `maybe`\n"},
+        {"Operation/Rotation", "clockwise", "must be one of positive, negative, not `clockwise`\n"},
+        {"Study", "noise",
+         "Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, not `noise`\n"},
+        {"Geometry/Top pin radii", "0.2, x", "Geometry/Top pin radii, value 2, must be a number >= 0 m, not `x`\n"},
+        {"Sweep/Count modes at", "0.1, 11", "Sweep/Count modes at, value 2, must lie in 0 ... 10, not 11\n"}})
     {
       const std::string message = "error: " + refusal("", {std::string(c.name) + "=" + c.value});
       EXPECT_NE(message.find(c.message), std::string::npos) << message;

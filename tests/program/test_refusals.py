@@ -259,8 +259,8 @@ class Refusals(ProgramTest):
         dimension, entity = mesh.entity("pin_top_1")
         element = next(iter(mesh.elements[dimension, entity]))
         nodes = mesh.element_nodes(dimension, entity, element)
-        nodes[0], nodes[2] = nodes[2], nodes[0]
-        mesh.set_element_nodes(dimension, entity, element, nodes)
+        _, (x, y, z) = mesh.nodes[nodes[4]]
+        mesh.move(nodes[4], [x, y, z - 0.1])
         self.mesh_refused(["inverted", "scaled Jacobian -", "'pin_top_1'"], mesh)
 
     # ----------------------------------------------------------- result folder

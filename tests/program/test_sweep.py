@@ -508,7 +508,7 @@ class Interrupted(SweepTest):
                 self.assertLess(time.monotonic(), deadline)
                 time.sleep(0.002)
             process.kill()
-        self.assertFalse((self.folder / output).exists())
+        self.assertFalse((self.folder / output / "run.json").exists())
         self.assertEqual({path.name for path in checkpoint.iterdir()}, {"sweep.archive", "points.csv"})
         return checkpoint
 
@@ -547,7 +547,7 @@ class Interrupted(SweepTest):
                 self.assertEqual(message.count("error: "), 1)
                 self.assertIn(override.split("/")[1].split("=")[0], message)
                 self.assertEqual(contents(checkpoint), kept)
-                self.assertFalse((self.folder / "changed").exists())
+                self.assertFalse((self.folder / "changed" / "run.json").exists())
         # As if a geometry of one's own had been edited
         archive = checkpoint / "sweep.archive"
         archive.write_bytes(re.sub(rb" nodes \w+", b" nodes 0", kept[archive.name], count=1))

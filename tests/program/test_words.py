@@ -73,7 +73,7 @@ class Words(ProgramTest):
     def test_printed_parameters_say_what_they_accept(self):
         text = re.sub(r"\s*\n\s*#? *", " ", self.call("--print-parameters").stdout)
         self.assertIn("Coulomb's coefficient mu. Units: none. Accepts a number in 0 ... 10. set Friction coefficient", text)
-        self.assertIn("Accepts one of stability, dissipation, paper, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search. set Study", text)
+        self.assertIn("Accepts one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search. set Study", text)
 
     # ------------------------------------------------------------------- files
 

@@ -27,9 +27,7 @@ namespace Squeal
    * pivot that is negative, or rounding error of its diagonal entry) or if the
    * library cannot be used here.
    */
-  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix  &A,
-                                                             FactorizationLibrary library,
-                                                             const std::string   &what);
+  std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
   /**
    * LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws

@@ -17,10 +17,10 @@ namespace Squeal
   {
     HexMesh                mesh;
     std::unique_ptr<Model> model;
-    ContactInterface       interface;           ///< all pairs of contact nodes
-    ContactOperators       contact;             ///< of all pairs
-    std::vector<Term>      bodies;              ///< merged terms of the uncoupled bodies
-    SecondOrderSystem      system;              ///< M, C, K: their sum
+    ContactInterface       interface; ///< all pairs of contact nodes
+    ContactOperators       contact;   ///< of all pairs
+    std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
+    SecondOrderSystem      system;    ///< M, C, K: their sum
 
     /// Sum of the mounts' stiffnesses on the uncoupled dofs, each in units of its largest entry; null: none.
     std::shared_ptr<const SparseMatrix> mounts;
