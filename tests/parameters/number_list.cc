@@ -8,7 +8,7 @@ using namespace Squeal;
 namespace
 {
   /// The message with which an override is refused, or "accepted".
-  std::string refusal(const std::string &setting)
+  std::string list_refusal(const std::string &setting)
   {
     try
       {
@@ -23,7 +23,7 @@ namespace
 
   void expect_decimal_point(const std::string &setting, const std::string &number)
   {
-    const std::string message = refusal(setting);
+    const std::string message = list_refusal(setting);
     EXPECT_NE(message.find("decimal"), std::string::npos) << setting << ": " << message;
     EXPECT_NE(message.find(number), std::string::npos) << setting << ": " << message;
     EXPECT_NE(message.find(setting.substr(0, setting.find('='))), std::string::npos) << message;
@@ -54,7 +54,7 @@ TEST(NumberLists, RealListsAreRead)
   for (const char *angles :
        {"0, 60, 120, 180, 240, 300", "0,60,120,180,240,300", "-150,-90,-30,30,90,150", "0.5,60.5,120.5,180.5,240.5,300.5",
         "0,60,120, 180,240,300", "-150,-90, -30,30, 90,150", "0 , 60 , 120 , 180 , 240 , 300"})
-    EXPECT_EQ(refusal(std::string("Geometry/Top pin angles=") + angles), "accepted") << angles;
+    EXPECT_EQ(list_refusal(std::string("Geometry/Top pin angles=") + angles), "accepted") << angles;
   const auto read = [](const std::string &setting) { return Parameters::read("/dev/null", {setting}); };
   EXPECT_EQ(read("Accuracy study/Mesh factors=1,2").accuracy.factors, (std::vector<double>{1., 2.}));
   EXPECT_EQ(read("Accuracy study/Mesh factors=1, 2, 3").accuracy.factors, (std::vector<double>{1., 2., 3.}));
@@ -71,10 +71,10 @@ TEST(NumberLists, ListsOfPointsNameEachOnce)
 {
   for (const char *list : {"Sweep/Mode shapes at", "Sweep/Complex plane at", "Sweep/Count modes at", "Reduction/Snapshots"})
     {
-      const std::string message = refusal(list + std::string("=0,0.3,0,0.4"));
+      const std::string message = list_refusal(list + std::string("=0,0.3,0,0.4"));
       EXPECT_NE(message.find("0 is given twice"), std::string::npos) << message;
       EXPECT_NE(message.find(list), std::string::npos) << message;
     }
   // Other lists may have equal numbers
-  EXPECT_EQ(refusal("Mounts/Elastic mounts=disc_bore: 0, 0, 1e10"), "accepted");
+  EXPECT_EQ(list_refusal("Mounts/Elastic mounts=disc_bore: 0, 0, 1e10"), "accepted");
 }
