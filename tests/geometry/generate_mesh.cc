@@ -198,9 +198,10 @@ TEST(GenerateMesh, WrittenMeshReadsBackUnchanged)
   expect_same(mesh, generate_mesh(parameters));
 }
 
-TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
+namespace
 {
-  const std::string  blocks = R"(
+  /// Two blocks one upon the other, of 16 hexahedra.
+  const char *const two_blocks = R"(
     SetFactory("OpenCASCADE");
     Box(1) = {0, 0, 0, 2, 1, 0.5};
     Box(2) = {0, 0, 0.5, 2, 1, 0.25};
@@ -211,10 +212,13 @@ TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
     Physical Surface("pin_contact") = {11};
     Physical Surface("pin_clamp") = {12};
     Physical Surface("ground") = {5};
-    Physical Surface("wall") = {1, 5};
   )";
+} // namespace
+
+TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
+{
   GeometryParameters parameters;
-  const File         file("blocks.geo", blocks);
+  const File         file("blocks.geo", std::string(two_blocks) + "Physical Surface(\"wall\") = {1, 5};\n");
   parameters.file    = file.string();
   const HexMesh mesh = generate_mesh(parameters, {"ground", "wall"});
   EXPECT_NEAR(area(mesh, "ground"), 2., 1e-12);
@@ -238,18 +242,7 @@ TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
 TEST(GenerateMesh, SolidGeometryIsTakenAsItIs)
 {
   GeometryParameters parameters;
-  const File         file("blocks.geo", R"(
-    SetFactory("OpenCASCADE");
-    Box(1) = {0, 0, 0, 2, 1, 0.5};
-    Box(2) = {0, 0, 0.5, 2, 1, 0.25};
-    Transfinite Curve{:} = 3; Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};
-    Physical Volume("disc") = {1};
-    Physical Volume("pin_block") = {2};
-    Physical Surface("disc_contact") = {6};
-    Physical Surface("pin_contact") = {11};
-    Physical Surface("pin_clamp") = {12};
-    Physical Surface("ground") = {5};
-  )");
+  const File         file("blocks.geo", two_blocks);
   parameters.file    = file.string();
   const HexMesh mesh = generate_mesh(parameters, {"ground"});
   EXPECT_EQ(mesh.hexahedra.size(), 16u);
