@@ -18,8 +18,13 @@ namespace Squeal
     /// Residual of a rigid-body mode, beside the largest eigenvalue wanted, that is accepted.
     constexpr double largest_rigid_residual = 1e-8;
 
-    /// Steps of inverse iteration, which converge slowly at the end of the band; more than three are needed next to modes of almost no frequency.
-    constexpr int most_refinements = 20;
+    /// Lowest eigenvalue over the end of the band, below which K⁻¹ magnifies its mode so much that those of the others lose digits.
+    constexpr double almost_rigid = 1e-6;
+
+    /// s over the end of the band where a body can move rigidly, or almost.
+    constexpr double shift_of_free_bodies = 0.01;
+
+    constexpr int most_refinements = 3;
 
     /// Starts that may find nothing new, the last of them with the other solver.
     constexpr int most_fruitless_starts = 4;
@@ -30,6 +35,7 @@ namespace Squeal
     : K(K)
     , M(M)
     , options(options)
+    , shift(options.shift)
     , count(options.count ? *options.count : count_below(K, M, limit, options.what))
     , hidden_square(unresolved_square(K, M))
   {}
@@ -55,7 +61,13 @@ namespace Squeal
     SymmetricModes modes;
     if (count.n_modes > 0)
       {
-        RitzPairs       pairs  = find_all();
+        RitzPairs pairs = find_all();
+        if (!is_dense() && options.inverse == nullptr && shift == 0. && pairs.values.front() < almost_rigid * count.limit)
+          {
+            factorization.reset();
+            shift = shift_of_free_bodies * count.limit;
+            pairs = find_all();
+          }
         const Residuals result = refine(pairs);
         modes                  = accept(pairs, result);
       }
@@ -69,7 +81,7 @@ namespace Squeal
       return *options.inverse;
     if (factorization)
       return *factorization;
-    if (options.shift == 0.)
+    if (shift == 0.)
       try
         {
           factorization = factorize_positive_definite(K, options.library, options.what);
@@ -80,8 +92,9 @@ namespace Squeal
           // The body can move rigidly, so it seems: a shift helps. If the
           // reason was another one, the next attempt says so.
         }
-    const double shift = options.shift > 0. ? options.shift : 0.01 * count.limit;
-    factorization      = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what);
+    if (shift == 0.)
+      shift = shift_of_free_bodies * count.limit;
+    factorization = factorize_positive_definite(*add(1., K, shift, M), options.library, options.what);
     return *factorization;
   }
 

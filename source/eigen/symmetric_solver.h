@@ -75,6 +75,7 @@ namespace Squeal
 
     const SparseMatrix            &K, &M;
     const SymmetricModesOptions    options;
+    double                         shift; ///< s in K + s M, of the factor that is made here [rad²/s²]
     ModeCount                      count;
     const double                   hidden_square; ///< eigenvalues up to this are zero: rounding errors of K
     bool                           lifted = false;

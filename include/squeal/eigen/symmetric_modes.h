@@ -31,7 +31,7 @@ namespace Squeal
 
     /**
      * s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, where
-     * that is not positive definite, s = largest eigenvalue / 100. Giving a
+     * that is not positive definite or almost singular, s = largest eigenvalue / 100. Giving a
      * shift avoids an attempt that fails for bodies that can move rigidly.
      */
     double shift = 0.;
