@@ -7,8 +7,8 @@
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/parameters/parameters.h>
-#include <squeal/studies/parameter_usage.h>
-#include <squeal/studies/run.h>
+#include <squeal/studies/steps/parameter_usage.h>
+#include <squeal/studies/steps/run.h>
 
 #include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>

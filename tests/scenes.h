@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/assembly/elasticity.h>
+#include <squeal/model/elasticity.h>
 #include <squeal/contact/coupled_system.h>
 #include <squeal/contact/travel.h>
 #include <squeal/geometry/extrusion.h>

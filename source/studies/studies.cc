@@ -1,5 +1,5 @@
 #include <squeal/parameters/study.h>
-#include <squeal/studies/scene.h>
+#include <squeal/studies/steps/scene.h>
 
 namespace Squeal
 {

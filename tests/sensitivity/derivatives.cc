@@ -1,7 +1,7 @@
 #include "flutter.h"
 #include "solutions.h"
 
-#include <squeal/assembly/rotation.h>
+#include <squeal/model/rotation.h>
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
 #include <squeal/sensitivity/term_products.h>
 

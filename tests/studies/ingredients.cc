@@ -1,9 +1,9 @@
 #include "printed.h"
 
 #include <squeal/base/conventions.h>
-#include <squeal/studies/ingredient_effects.h>
-#include <squeal/studies/ingredient_selection.h>
-#include <squeal/studies/ingredients.h>
+#include <squeal/studies/ingredients/ingredient_effects.h>
+#include <squeal/studies/ingredients/ingredient_selection.h>
+#include <squeal/studies/ingredients/ingredients.h>
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include <squeal/studies/parameter_usage.h>
+#include <squeal/studies/steps/parameter_usage.h>
 
 #include <gtest/gtest.h>
 

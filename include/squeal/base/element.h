@@ -8,7 +8,7 @@ namespace Squeal
   enum class Element
   {
     trilinear,          ///< 8 nodes, straight edges
-    incompatible_modes, ///< the same, with quadratic displacements inside each element (assembly/cell_stiffness.h)
+    incompatible_modes, ///< the same, with quadratic displacements inside each element (model/cell_stiffness.h)
     quadratic           ///< 27 nodes, edges that follow named cylinders
   };
 

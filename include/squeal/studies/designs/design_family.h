@@ -1,0 +1,99 @@
+#pragma once
+
+#include <squeal/parameters/design_plan.h>
+#include <squeal/studies/sweep/sweep_charts.h>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// What must agree for designs to share a mesh and its matrices: their parameters but for those that are coefficients of terms. Empty
+  /// where a design cannot share them.
+  std::string family_key(Parameters design);
+
+  /**
+   * A reduced model that serves several designs on one mesh, which differ in moduli, densities, Rayleigh's coefficients, stiffnesses of
+   * mounts, load and speed: they are coefficients θ of terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k.
+   *
+   * Its basis starts from the real modes in the middle of the family and grows by the residuals of each design in turn until these
+   * meet the tolerance, by one factor of the middle, so that the modes of a design follow from small matrices: S⁻¹ of the middle
+   * stands for K_c⁻¹ of the design in its errors. What is found for a design depends on those before it.
+   */
+  class DesignFamily
+  {
+  public:
+    /**
+     * Meshes and assembles what the designs share, and finds the real modes in the middle.
+     *
+     * @param designs of which family_key() says the same; they and @p run must outlive it
+     */
+    DesignFamily(const std::vector<Parameters> &designs, Run &run);
+
+    /// A design's chart of branches and thresholds, with its model; they refer to each other.
+    struct Member
+    {
+      std::size_t                 design = 0;
+      std::unique_ptr<Run>        run;
+      std::unique_ptr<SweepPlan>  plan;
+      SystemMember                system;
+      std::unique_ptr<SweepModel> model;
+      SweepChart                  chart;
+      int                         n_counted = 0; ///< real modes in the band by inertia
+
+      // By all vectors of the family:
+      DenseMatrix                 Z; ///< M-orthonormal coordinates of the basis of the family, the first those of real modes
+      std::unique_ptr<ChartModel> whole;
+    };
+
+    /**
+     * Grows the basis for a design and follows its modes over the friction coefficients of its sweep. Throws SolverError if the
+     * design is too far from the others for one basis.
+     */
+    Member solve(std::size_t design);
+
+    /// Grows the basis by what it once has grown by.
+    void extend(const MultiVector &vectors);
+
+    /// What the basis has grown by since this was asked for last.
+    std::vector<MultiVector> take_growth();
+
+    const Scene &shared_scene() const
+    {
+      return scene;
+    }
+
+    const RowMap &map() const
+    {
+      return middle.linearisation.coupled.map();
+    }
+
+    /// Vectors in the basis.
+    int size() const
+    {
+      return model->size();
+    }
+
+  private:
+    void                        find_whole_model(Member &member) const;
+    std::unique_ptr<ChartModel> restricted(const SystemMember &member, const DenseMatrix &Z) const;
+
+    /// A point by all vectors of the family, which grow until it meets the tolerance.
+    ChartPoint accurate_point(const OperatingPoint &point, Member &member);
+
+    /// Adds to the basis of a member, coordinates in its Z, the principal parts of what it lacks of the modes of some points.
+    void learn(const std::vector<ChartPoint> &charts, double compression, DenseMatrix &basis, const Member &member) const;
+
+    const std::vector<Parameters>      &designs;
+    Run                                &run;
+    Scene                               scene;
+    const double                        largest_circular_frequency; ///< end of the band [rad/s]
+    TermFamily                          terms;
+    FrictionlessModes                   middle; ///< with the system of the family
+    std::unique_ptr<ReducedModel>       model;
+    std::unique_ptr<ProjectedResiduals> residuals;
+    std::vector<MultiVector>            grown;
+  };
+} // namespace Squeal

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <squeal/bases/reduced_basis.h>
+#include <squeal/estimates/reduction_errors.h>
+#include <squeal/output/table.h>
+#include <squeal/studies/steps/reduction_sets.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// A basis of a study with what was measured of it.
+  struct Candidate
+  {
+    const BasisRecipe     *recipe;
+    std::string            name;       ///< with the variant where there are several
+    std::string            truncation; ///< of the component modes
+    ReducedBasis           basis;      ///< its vectors go when it has been measured
+    int                    n_r           = 0;
+    double                 build_seconds = 0., solve_seconds = 0.;
+    std::vector<ModeError> errors = {};
+  };
+
+  /// The modes of full order that bases are measured against.
+  struct Reference
+  {
+    ComplexModes                          modes;
+    std::vector<ModeLabel>                labels;      ///< of the modes
+    std::vector<double>                   disc_shares; ///< of their energy [-]
+    std::vector<std::string>              groups;
+    std::vector<std::vector<std::string>> joined; ///< groups whose maxima the paper takes together
+    std::vector<bool>                     unstable;
+    double                                seconds; ///< of the processor for the solution, its factorisation included
+  };
+
+  /// Numbers of component modes that a truncation has led to.
+  struct TruncatedModes
+  {
+    ModeTruncation             truncation;
+    std::map<BasisSource, int> n;
+  };
+
+  /// Largest errors in each group of modes, and times.
+  Table reduction_error_table(const std::vector<Candidate> &candidates, const Reference &reference);
+
+  /**
+   * Columns, sizes, decisions on rank, gains and times.
+   *
+   * @param n            dofs of the whole structure before it is coupled, as in the paper
+   * @param full_seconds of the solution at full order
+   */
+  Table reduction_basis_table(const std::vector<Candidate> &candidates, int n, double full_seconds);
+
+  /// Every mode of every basis beside the reference.
+  Table reduction_mode_table(const std::vector<Candidate> &candidates, const Reference &reference);
+
+  /// How far the estimates are to be trusted: they know nothing of the reference.
+  Table reduction_estimate_table(const std::vector<Candidate> &candidates, const Reference &reference);
+
+  /// What everything that bases rest on has cost.
+  Table reduction_cost_table(const std::vector<Charge> &charges);
+
+  /// Numbers of component modes below each truncation.
+  Table reduction_truncation_table(const std::vector<TruncatedModes> &truncations);
+} // namespace Squeal

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <squeal/bases/component_modes.h>
+#include <squeal/contact/updated_inverse.h>
+#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/studies/steps/scene.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Modes of the linearised scene without friction, and the inverse that serves them and every μ.
+  struct FrictionlessModes
+  {
+    Linearisation                   linearisation;
+    ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
+    double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
+    std::shared_ptr<UpdatedInverse> inverse;
+    SymmetricModes                  real;                    ///< coupled, in the band and its margin
+    Cost                            factorisation, solution; ///< of the inverse, and of the real modes
+    std::vector<ModeLabel>          labels;                  ///< of the coupled modes
+
+    /// Component modes that give coupled ones their names.
+    std::vector<const ComponentModes *> references() const
+    {
+      return {&disc, &pins_sliding};
+    }
+
+    /// What coupled modes have of them; @p imaginary_part may be null.
+    std::vector<ShapeShares> shape_shares(const MultiVector &real_part, const MultiVector *imaginary_part) const;
+
+    /// Products of the references with vectors of the coupled system, n_coupled × r, for shape_shares() of reduced models.
+    std::vector<DenseMatrix> reference_products(const MultiVector &vectors) const;
+
+    /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
+    std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
+  };
+
+  /**
+   * The number of real coupled modes by inertia, component modes, the factorisation, and the real coupled modes up to
+   * (1 + @p margin) times the end of the band, as steps of the run. Throws ParameterError if
+   * there are more modes than the parameters allow.
+   */
+  FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0.);
+
+  /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
+  SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
+
+  /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
+  void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters);
+
+  /// A mode of a component in the band, as the tables list it.
+  struct ListedComponentMode
+  {
+    const char           *component, *contact; ///< "disc" or "pins", "free" or "sliding"
+    const ComponentModes *set;
+    int                   number; ///< in the set, from 0
+    ModeLabel             label;  ///< with the sign of a doublet
+
+    double frequency() const; ///< [Hz]
+  };
+
+  /// Component modes with ω² ≤ @p largest_eigenvalue: of the free disc, the sliding pins and the free pins, each set ascending.
+  std::vector<ListedComponentMode> listed_component_modes(const FrictionlessModes &modes, double largest_eigenvalue);
+
+  /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
+  std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);
+} // namespace Squeal

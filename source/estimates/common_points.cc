@@ -1,0 +1,240 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/estimates/common_points.h>
+#include <squeal/estimates/point_location.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <boost/serialization/utility.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+
+namespace Squeal
+{
+  using namespace dealii;
+
+  namespace
+  {
+    /// Where every row of E is: body, number of the point there, direction.
+    struct Row
+    {
+      unsigned int body, point, direction;
+    };
+
+    /// Points in a cell.
+    struct CellPoints
+    {
+      types::coarse_cell_id cell;
+      unsigned int          body;
+      std::vector<Point<3>> points;
+      std::vector<double>   masses;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &cell &body &points &masses;
+      }
+    };
+
+    std::vector<Row> all_rows(const CommonPoints &points)
+    {
+      std::vector<Row> rows;
+      for (unsigned int body = 0; body < points.bodies.size(); ++body)
+        for (unsigned int point = 0; point < points.bodies[body].points.size(); ++point)
+          for (unsigned int direction = 0; direction < 3; ++direction)
+            rows.push_back({body, point, direction});
+      return rows;
+    }
+
+    /// Unit vector along a component of the displacement of a point.
+    Tensor<1, 3> unit_vector(const Point<3> &point, const unsigned int direction, const Directions directions)
+    {
+      Tensor<1, 3> result;
+      const double radius = std::hypot(point[0], point[1]);
+      if (directions == Directions::cartesian || direction == 2 || radius == 0.)
+        result[direction] = 1.;
+      else
+        {
+          const double cosine = point[0] / radius, sine = point[1] / radius;
+          result[0] = direction == 0 ? cosine : -sine;
+          result[1] = direction == 0 ? sine : cosine;
+        }
+      return result;
+    }
+  } // namespace
+
+  int CommonPoints::n() const
+  {
+    std::size_t sum = 0;
+    for (const Body &body : bodies)
+      sum += body.points.size();
+    return static_cast<int>(sum);
+  }
+
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials, const unsigned int points_per_direction)
+  {
+    CommonPoints        result;
+    std::vector<double> densities;
+    for (const std::string &name : model.component_names())
+      {
+        result.bodies.push_back({name, {}, {}});
+        densities.push_back(materials.of(name).density);
+      }
+    FEValues<3>             values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(points_per_direction),
+                                   update_quadrature_points | update_JxW_values);
+    std::vector<CellPoints> here;
+    for (const auto &cell : model.dof_handler().active_cell_iterators())
+      if (cell->is_locally_owned())
+        {
+          values.reinit(cell);
+          CellPoints of_cell{cell->id().get_coarse_cell_id(), cell->material_id(), {}, {}};
+          for (const unsigned int q : values.quadrature_point_indices())
+            {
+              of_cell.points.push_back(values.quadrature_point(q));
+              of_cell.masses.push_back(densities[cell->material_id()] * values.JxW(q));
+            }
+          here.push_back(of_cell);
+        }
+    // In the order of the cells, however they are distributed
+    std::vector<CellPoints> all;
+    for (const auto &part : Utilities::MPI::all_gather(model.communicator(), here))
+      all.insert(all.end(), part.begin(), part.end());
+    std::sort(all.begin(), all.end(), [](const CellPoints &x, const CellPoints &y) { return x.cell < y.cell; });
+    for (const CellPoints &of_cell : all)
+      {
+        CommonPoints::Body &body = result.bodies[of_cell.body];
+        body.points.insert(body.points.end(), of_cell.points.begin(), of_cell.points.end());
+        body.masses.insert(body.masses.end(), of_cell.masses.begin(), of_cell.masses.end());
+      }
+    return result;
+  }
+
+  namespace
+  {
+    /// Entries of a row of E, which the process that has the cell of its point sends to the one that has the row.
+    struct RowEntries
+    {
+      int               number;
+      SparseMatrix::Row entries;
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &number &entries;
+      }
+    };
+
+    /// Which process has a row of a map by whose pieces the rows are numbered.
+    class RowOwners
+    {
+    public:
+      explicit RowOwners(const RowMap &map)
+        : ends(Utilities::MPI::all_gather(map.communicator(), map.n_local()))
+      {
+        std::partial_sum(ends.begin(), ends.end(), ends.begin());
+      }
+
+      unsigned int owner(const std::size_t number) const
+      {
+        return std::upper_bound(ends.begin(), ends.end(), static_cast<int>(number)) - ends.begin();
+      }
+
+    private:
+      std::vector<int> ends;
+    };
+
+    /// Points in the cells of this process, and which process has each of them in a cell, or nearest to one: of several the first.
+    std::pair<std::vector<PointInCell>, std::vector<int>> located(const CommonPoints              &points,
+                                                                  const std::vector<unsigned int> &bodies,
+                                                                  const PointLocation             &location,
+                                                                  const MPI_Comm                   communicator)
+    {
+      std::vector<PointInCell> found;
+      std::vector<double>      distances;
+      for (unsigned int body = 0; body < bodies.size(); ++body)
+        for (const Point<3> &point : points.bodies[body].points)
+          {
+            found.push_back(location.find(bodies[body], point, PointSearch::inside));
+            distances.push_back(found.back().distance);
+          }
+      std::vector<double> nearest(distances.size());
+      Utilities::MPI::min(distances, communicator, nearest);
+      std::size_t i = 0;
+      for (unsigned int body = 0; body < bodies.size(); ++body)
+        for (const Point<3> &point : points.bodies[body].points)
+          {
+            if (nearest[i] > 0.)
+              {
+                found[i]     = location.find(bodies[body], point, PointSearch::nearest);
+                distances[i] = found[i].distance;
+              }
+            ++i;
+          }
+
+      Utilities::MPI::min(distances, communicator, nearest);
+      std::vector<int> process;
+      for (i = 0; i < nearest.size(); ++i)
+        {
+          if (nearest[i] == std::numeric_limits<double>::infinity())
+            throw MeshError("no cell is near a point of another mesh", "displacements at the points of another mesh",
+                            "compare meshes of the same geometry");
+          process.push_back(distances[i] == nearest[i] ? static_cast<int>(Utilities::MPI::this_mpi_process(communicator)) :
+                                                         std::numeric_limits<int>::max());
+        }
+      Utilities::MPI::min(process, communicator, process);
+      return {std::move(found), std::move(process)};
+    }
+  } // namespace
+
+  std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points, const Model &model, const Directions directions)
+  {
+    const PointLocation       location(model);
+    std::vector<unsigned int> numbers; // of the bodies in this mesh
+    for (const CommonPoints::Body &body : points.bodies)
+      numbers.push_back(location.body(body.name));
+
+    const auto                          &fe           = model.dof_handler().get_fe();
+    const MPI_Comm                       communicator = model.communicator();
+    const std::vector<Row>               rows         = all_rows(points);
+    const RowMap                         map          = RowMap::even(rows.size(), communicator);
+    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
+    const auto [found, processes] = located(points, numbers, location, communicator);
+
+    // Rows whose points are in cells of this process
+    const RowOwners                                 owners(map);
+    std::map<unsigned int, std::vector<RowEntries>> sent;
+    const int                                       me = map.rank();
+    for (std::size_t number = 0; number < rows.size(); ++number)
+      if (processes[number / 3] == me)
+        {
+          const Row                 row   = rows[number];
+          const CommonPoints::Body &body  = points.bodies[row.body];
+          const PointInCell        &place = found[number / 3];
+          const Tensor<1, 3> factors = std::sqrt(body.masses[row.point]) * unit_vector(body.points[row.point], row.direction, directions);
+          RowEntries         result{static_cast<int>(number), {}};
+          place.cell->get_dof_indices(cell_dofs);
+          for (unsigned int component = 0; component < 3; ++component)
+            if (factors[component] != 0.)
+              for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
+                if (const int dof = model.free_dof(cell_dofs[fe.component_to_system_index(component, i)]); dof >= 0)
+                  result.entries.emplace_back(dof, factors[component] * fe.base_element(0).shape_value(i, place.reference));
+          sent[owners.owner(number)].push_back(result);
+        }
+    std::vector<SparseMatrix::Row> own(map.n_local());
+    for (auto &[process, part] : Utilities::MPI::some_to_some(communicator, sent))
+      for (const RowEntries &row : part)
+        own[map.place(row.number)] = row.entries;
+    return std::make_unique<const SparseMatrix>(map, model.free_map(),
+                                                [&](const int place, SparseMatrix::Row &entries) { entries = own[place]; });
+  }
+
+  ModesAtPoints at_points(const SparseMatrix &displacements, const SparseMatrix &kernel, const ComplexModes &modes)
+  {
+    return {modes.lambda, displacements * (kernel * *modes.real_part), displacements * (kernel * *modes.imaginary_part)};
+  }
+} // namespace Squeal

@@ -1,0 +1,203 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/resident_memory.h>
+#include <squeal/bases/reduced_basis.h>
+#include <squeal/estimates/reduction_errors.h>
+#include <squeal/modes/reduced_modes.h>
+#include <squeal/parameters/mesh_family.h>
+#include <squeal/studies/accuracy/accuracy_solutions.h>
+#include <squeal/studies/steps/mesh_estimate.h>
+#include <squeal/studies/steps/reduction_sets.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr const char *full_order = "full order";
+
+    Cost operator+(const Cost &a, const Cost &b)
+    {
+      return {a.seconds + b.seconds, a.cpu_seconds + b.cpu_seconds, std::max(a.peak_memory, b.peak_memory)};
+    }
+
+    /// Memory that work takes beside what other meshes have left, of all processes [byte].
+    class MemoryMeter
+    {
+    public:
+      MemoryMeter(const MPI_Comm communicator, const double resident_before)
+        : communicator(communicator)
+        , has_peak(reset_peak_memory())
+        , left_by_others(resident_memory() - resident_before)
+      {}
+
+      double peak() const
+      {
+        return dealii::Utilities::MPI::sum((has_peak ? peak_resident_memory() : resident_memory()) - left_by_others, communicator);
+      }
+
+    private:
+      const MPI_Comm communicator;
+      const bool     has_peak;
+      const double   left_by_others;
+    };
+
+    std::vector<double> algebraic_errors(const ComplexModes &modes)
+    {
+      if (!modes.estimated_errors.empty())
+        return modes.estimated_errors;
+      std::vector<double> errors;
+      for (const double residual : modes.energy_residuals)
+        errors.push_back(0.5 * std::sqrt(residual));
+      return errors;
+    }
+
+    /// Costs of the modes without friction but for factorisation and real modes, for which bases are charged one by one.
+    Cost before_modes(const Cost &frictionless, const FrictionlessModes &modes)
+    {
+      return {frictionless.seconds - modes.factorisation.seconds - modes.solution.seconds,
+              frictionless.cpu_seconds - modes.factorisation.cpu_seconds - modes.solution.cpu_seconds, frictionless.peak_memory};
+    }
+
+    ModesByMethod reduced(const BasisRecipe &recipe, ReductionSets &sets, const ComplexModes &full, const MemoryMeter &memory)
+    {
+      const ReductionParameters &reduction = sets.run.parameters.reduction;
+      if (recipe.is_connected())
+        sets.truncate(reduction.truncations.front());
+      if (recipe.rests_on(BasisSource::residuals))
+        sets.grow(reduction.grown_tolerances.front());
+      BasisOptions options;
+      options.tolerance     = reduction.rank_tolerance;
+      options.pod_tolerance = reduction.pod_tolerance;
+      const Stopwatch    watch;
+      const ReducedBasis basis = reduced_basis(recipe, sets.ingredients(), options);
+      ReducedModel       model(sets.system);
+      model.extend(*basis.vectors);
+      const ReducedModes modes = reduced_modes(model, sets.plan.friction_coefficient, sets.plan.largest_circular_frequency, BandEnd::open);
+      Cost               cost  = watch.cost();
+      const double       beforehand = sets.cost(recipe);
+      cost                          = cost + Cost{beforehand, beforehand, 0.};
+      cost.peak_memory              = memory.peak();
+
+      ModesByMethod result{recipe.name, basis.size(), cost, {}, {}};
+      for (const ModeError &error : reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, full))
+        result.lambda.push_back(error.reduced);
+      result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems: rounding errors
+      return result;
+    }
+  } // namespace
+
+  std::string MeshAndElement::family() const
+  {
+    return to_string(element) + (element == Element::quadratic ? "" : ", " + to_string(outlines));
+  }
+
+  std::string MeshAndElement::text() const
+  {
+    return family() + ", x " + exact_text(factor);
+  }
+
+  std::vector<MeshAndElement> meshes_and_elements(const Parameters &parameters)
+  {
+    const AccuracyStudyParameters &study   = parameters.accuracy;
+    std::vector<double>            factors = study.factors;
+    std::sort(factors.begin(), factors.end());
+    std::vector<MeshAndElement> result;
+    for (const double factor : factors)
+      for (const Element element : study.elements)
+        for (const Outlines outlines : study.outlines)
+          if (element != Element::quadratic || outlines == study.outlines.front())
+            result.push_back({element, outlines, factor});
+    return result;
+  }
+
+  AccuracySolver::AccuracySolver(Run &run)
+    : run(run)
+    , resident_before(resident_memory())
+  {}
+
+  Parameters AccuracySolver::with(const MeshAndElement &mesh) const
+  {
+    Parameters result                       = run.parameters;
+    result.geometry                         = refined(result.geometry, mesh.factor);
+    result.geometry.outlines                = mesh.outlines;
+    result.discretization.element           = mesh.element;
+    result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
+    result.reduction                        = {}; // that section belongs to another study
+    result.reduction.problem                = ReductionProblem::friction;
+    result.reduction.bases                  = result.accuracy.bases;
+    result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};
+    return result;
+  }
+
+  std::optional<SolvedMesh> AccuracySolver::solve(const MeshAndElement &mesh)
+  {
+    run.progress.begin(mesh.text());
+    const auto leave_out = [&](const std::string &reason) {
+      run.progress.finish("left out: " + reason);
+      missing.push_back({mesh, reason});
+    };
+    try
+      {
+        return solved(mesh);
+      }
+    catch (const Error &error)
+      {
+        leave_out(error.reason);
+      }
+    catch (const std::runtime_error &error) // of another process
+      {
+        leave_out(error.what());
+      }
+    return {};
+  }
+
+  SolvedMesh AccuracySolver::solved(const MeshAndElement &mesh)
+  {
+    const Parameters  parameters = with(mesh);
+    Progress          silent;
+    Run               part(parameters, run, silent);
+    const MemoryMeter memory(run.communicator, resident_before);
+
+    Stopwatch watch;
+    Scene     scene  = mesh_scene(part);
+    const int n_dofs = scene.model->n_dofs();
+    if (n_dofs > parameters.accuracy.largest_dofs)
+      throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
+    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
+    add_modal_damping(frictionless, parameters);
+    Cost to_real_modes        = watch.cost();
+    to_real_modes.peak_memory = memory.peak();
+    const FrictionModes full  = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
+    Cost                cost  = watch.cost();
+    cost.peak_memory          = memory.peak();
+
+    if (!points)
+      points = common_points(*scene.model, parameters.materials);
+    SolvedMesh result{
+      mesh, n_dofs, static_cast<int>(scene.interface.size()), modes_at(*points, frictionless, full), full.labels, full.n_unstable(), {}};
+    const int n_coupled = frictionless.linearisation.coupled.kernel->n_columns();
+    result.methods.push_back({full_order, n_coupled, cost, full.modes.lambda, algebraic_errors(full.modes)});
+
+    if (!parameters.accuracy.bases.empty())
+      {
+        const ReductionPlan plan = reduction_plan(parameters);
+        ReductionSets       sets(plan, frictionless, frictionless.linearisation.coupled, part);
+        for (const BasisRecipe *recipe : plan.recipes)
+          {
+            const MemoryMeter of_basis(run.communicator, resident_before);
+            ModesByMethod     modes = reduced(*recipe, sets, full.modes, of_basis);
+            modes.cost              = modes.cost + before_modes(to_real_modes, frictionless);
+            result.methods.push_back(std::move(modes));
+          }
+      }
+    run.progress.finish(Squeal::text(n_dofs, " dofs, ", result.n_contact_nodes, " contact nodes, ", full.modes.lambda.size(), " modes, ",
+                                     result.n_unstable, " unstable, ", cost.peak_memory / 1e9, " GB"));
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,219 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
+#include <squeal/base/progress.h>
+#include <squeal/base/text.h>
+#include <squeal/base/worker_process.h>
+#include <squeal/studies/designs/design_queue.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <thread>
+
+namespace Squeal
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    constexpr const char *key_file = "study.key";
+    constexpr const char *title    = "squeal designs 3\n"; ///< with the version of the format
+
+    std::string content(const fs::path &file)
+    {
+      std::ifstream stream(file, std::ios::binary);
+      return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+    void open(const fs::path &folder, const std::string &key)
+    {
+      const std::string name = folder.string();
+      if (fs::exists(folder) && !fs::is_directory(folder))
+        throw FileError("`" + name + "` is a file, but an unfinished study is kept in a folder of that name", "file " + name,
+                        "choose another --output, or move the file");
+      if (fs::exists(folder) && !fs::is_empty(folder))
+        {
+          const std::string there = content(folder / key_file);
+          if (there.rfind("squeal designs", 0) != 0)
+            throw FileError("the folder `" + name + "` holds files that are not those of an unfinished study of designs", "folder " + name,
+                            "choose another --output, or empty the folder");
+          if (there != title + key)
+            throw FileError("an unfinished study of other designs, another mesh or another version of the program lies there: " +
+                              first_difference(there, title + key),
+                            "folder " + name,
+                            "run it to the end with its own parameters, with which `" + (folder / key_file).string() +
+                              "` begins; choose another --output; or delete the folder");
+        }
+      fs::create_directories(folder);
+      replace_file(folder / key_file, title + key);
+    }
+
+    /// The sentence with which a process ended: what stands behind "error: " in what it printed, in one line.
+    std::string last_error(const fs::path &log)
+    {
+      const std::string text  = content(log);
+      const std::string mark  = "error: ";
+      const auto        place = text.rfind(mark);
+      return place == std::string::npos ? "" : single_spaced(text.substr(place + mark.size()));
+    }
+
+    /// Designs that are being solved by one process, one after the other.
+    struct Worker
+    {
+      std::vector<int>               designs; ///< all of them
+      std::vector<int>               left;    ///< of which no result has been seen
+      fs::path                       log;
+      std::unique_ptr<WorkerProcess> process;
+      Stopwatch                      stopwatch;
+    };
+
+    std::string list_of(const std::vector<int> &numbers)
+    {
+      std::string result;
+      for (const int number : numbers)
+        result += (result.empty() ? "" : ",") + std::to_string(number);
+      return result;
+    }
+  } // namespace
+
+  DesignStore::DesignStore(const fs::path &folder, const std::string &key, const MPI_Comm communicator)
+    : folder(folder)
+  {
+    std::vector<std::string> problem;
+    if (dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+      try
+        {
+          open(folder, key);
+        }
+      catch (const FileError &error)
+        {
+          problem = {error.reason, error.where, error.change};
+        }
+      catch (const fs::filesystem_error &error)
+        {
+          problem = {"what the study finds cannot be kept: " + error.code().message(), "folder " + folder.string(),
+                     "check permissions and free space"};
+        }
+    problem = dealii::Utilities::MPI::broadcast(communicator, problem, 0);
+    if (!problem.empty())
+      throw FileError(problem[0], problem[1], problem[2]);
+  }
+
+  DesignStore::DesignStore(const fs::path &folder)
+    : folder(folder)
+  {}
+
+  fs::path DesignStore::folder_of(const int design) const
+  {
+    return folder / text("design-", design);
+  }
+
+  fs::path DesignStore::folder_of(const std::vector<int> &designs) const
+  {
+    return designs.size() == 1 ? folder_of(designs.front()) : folder / text("designs-from-", designs.front());
+  }
+
+  std::optional<DesignResult> DesignStore::find(const int design) const
+  {
+    const fs::path file = folder_of(design) / result_file;
+    if (!fs::exists(file))
+      return {};
+    const std::string packed = content(file);
+    return dealii::Utilities::unpack<DesignResult>(std::vector<char>(packed.begin(), packed.end()), false);
+  }
+
+  std::size_t DesignStore::n_known(const std::vector<int> &designs) const
+  {
+    return std::count_if(designs.begin(), designs.end(), [&](const int design) { return find(design).has_value(); });
+  }
+
+  void DesignStore::keep(const DesignResult &result) const
+  {
+    const fs::path          place  = folder_of(result.number);
+    const std::vector<char> packed = dealii::Utilities::pack(result, false);
+    fs::create_directories(place);
+    replace_file(place / result_file, {packed.data(), packed.size()});
+  }
+
+  void DesignStore::remove() const
+  {
+    fs::remove_all(folder);
+  }
+
+  void solve_side_by_side(const std::vector<std::vector<int>>             &batches,
+                          const unsigned int                               n_side_by_side,
+                          const DesignStore                               &store,
+                          const std::function<DesignResult(int)>          &unfinished,
+                          const std::function<void(const DesignResult &)> &report,
+                          const std::vector<std::string>                  &given)
+  {
+    const auto start = [&](const std::vector<int> &designs, const std::vector<int> &left) {
+      const fs::path           folder    = store.folder_of(designs);
+      std::vector<std::string> arguments = given;
+      arguments.push_back("--designs=" + list_of(designs));
+      arguments.push_back("--output=" + folder.string());
+      const fs::path log = folder.string() + ".log";
+      return Worker{designs,
+                    left,
+                    log,
+                    std::make_unique<WorkerProcess>(arguments, log, std::max(1u, n_usable_cores() / n_side_by_side)),
+                    {}};
+    };
+    const auto report_found = [&](Worker &worker) {
+      const auto is_found = [&](const int design) {
+        const std::optional<DesignResult> result = store.find(design);
+        if (result)
+          report(*result);
+        return result.has_value();
+      };
+      worker.left.erase(std::remove_if(worker.left.begin(), worker.left.end(), is_found), worker.left.end());
+    };
+    /// What a process leaves when it ends is the fault of the design that it was at.
+    const auto blame_next = [&](Worker &worker, const std::string &end) {
+      const std::string error  = last_error(worker.log);
+      DesignResult      result = unfinished(worker.left.front());
+      result.reason            = error.empty() ? "its process was " + end : error;
+      result.seconds           = worker.stopwatch.cost().seconds;
+      store.keep(result);
+      report(result);
+      worker.left.erase(worker.left.begin());
+    };
+
+    std::vector<Worker> workers;
+    for (auto next = batches.begin(); next != batches.end() || !workers.empty();)
+      {
+        for (; next != batches.end() && workers.size() < n_side_by_side; ++next)
+          {
+            std::vector<int> left;
+            std::copy_if(next->begin(), next->end(), std::back_inserter(left), [&](const int design) { return !store.find(design); });
+            if (!left.empty())
+              workers.push_back(start(*next, left));
+          }
+        for (auto worker = workers.begin(); worker != workers.end();)
+          {
+            const auto end = worker->process->end();
+            report_found(*worker);
+            if (!end)
+              {
+                ++worker;
+                continue;
+              }
+            if (!worker->left.empty())
+              blame_next(*worker, *end);
+            if (worker->left.empty())
+              worker = workers.erase(worker);
+            else
+              {
+                *worker = start(worker->designs, worker->left);
+                ++worker;
+              }
+          }
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      }
+  }
+} // namespace Squeal

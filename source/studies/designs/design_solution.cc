@@ -1,0 +1,241 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/studies/designs/design_solution.h>
+#include <squeal/studies/sweep/sweep_charts.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    bool is_in_band(const SweepModel &model, const ChartPoint &point, const int mode)
+    {
+      return mode >= 0 && model.is_in_band(point.lambda[mode]);
+    }
+
+    DesignGrowth growth_at(const ChartPoint &point, const int mode, const std::string &label)
+    {
+      const ModalQuantities quantities = modal_quantities(point.lambda[mode]);
+      return {point.friction_coefficient, 0., label, quantities.frequency, quantities.divergence_rate, point.errors[mode]};
+    }
+
+    /// Names of the branches of a chart by the reference modes, found where each branch begins.
+    std::vector<ReferenceName> names_of_branches(const SweepModel &model, const SweepChart &chart, const ReferenceModes &reference)
+    {
+      const std::vector<Branch>              &branches = chart.chart.branches;
+      std::vector<ReferenceName>              result(branches.size());
+      std::map<std::size_t, std::vector<int>> branches_from; // by the point at which they begin
+      for (std::size_t b = 0; b < branches.size(); ++b)
+        branches_from[std::find_if(branches[b].modes.begin(), branches[b].modes.end(), [](const int mode) { return mode >= 0; }) -
+                      branches[b].modes.begin()]
+          .push_back(static_cast<int>(b));
+      const Linearisation &linearisation = model.frictionless.linearisation;
+      for (const auto &[i, members] : branches_from)
+        {
+          // All modes of the point: how much of a mode is left to others depends on them
+          const ChartPoint &point = chart.chart.points[i];
+          ComplexModes      modes;
+          std::vector<int>  all;
+          for (std::size_t j = 0; j < point.lambda.size(); ++j)
+            all.push_back(static_cast<int>(j));
+          auto [re, im]                          = model.shapes(point, all);
+          modes.lambda                           = point.lambda;
+          modes.real_part                        = std::make_shared<MultiVector>(std::move(re));
+          modes.imaginary_part                   = std::make_shared<MultiVector>(std::move(im));
+          const std::vector<ReferenceName> names = names_by(reference, *linearisation.scene->model, *linearisation.coupled.kernel, modes);
+          for (const int b : members)
+            result[b] = names[branches[b].modes[i]];
+        }
+      return result;
+    }
+
+    /// The first of the onsets of several charts: @p found becomes that of one more chart if it is earlier.
+    void keep_first(const std::optional<GrowthOnset> &onset, const std::vector<std::string> &labels, boost::optional<DesignGrowth> &found)
+    {
+      if (!onset || (found && found->friction_coefficient <= onset->friction_coefficient))
+        return;
+      const ModalQuantities quantities = modal_quantities(onset->lambda);
+      found                            = DesignGrowth{onset->friction_coefficient, onset->uncertainty,         labels[onset->branch],
+                           quantities.frequency,        quantities.divergence_rate, 0.};
+    }
+
+    boost::optional<double> overlap(const ReferenceName &name)
+    {
+      return name.in_cluster || name.name.empty() ? boost::optional<double>() : name.overlap;
+    }
+
+    /// Takes over what a chart says of its design. There are several, of parts of the friction coefficients, where the contact set changes.
+    void take_over(SweepModel           &model,
+                   const SweepChart     &sweep,
+                   const ReferenceModes &reference,
+                   double               &largest_friction_coefficient,
+                   DesignResult         &result)
+    {
+      const StabilityChart            &chart = sweep.chart;
+      const std::vector<ReferenceName> names = names_of_branches(model, sweep, reference);
+      std::vector<std::string>         labels;
+      for (std::size_t b = 0; b < names.size(); ++b)
+        labels.push_back(names[b].name.empty() ? to_string(sweep.labels[b]) : names[b].name);
+
+      keep_first(sweep.onset, labels, result.onset);
+      keep_first(sweep.weak_onset, labels, result.weak_onset);
+      for (const Threshold &threshold : chart.thresholds)
+        {
+          const int b = threshold.branch;
+          result.thresholds.push_back(
+            {threshold.friction_coefficient, threshold.uncertainty, to_string(threshold.event), to_string(threshold.mechanism), labels[b],
+             overlap(names[b]), threshold.partner >= 0 ? labels[threshold.partner] : "", modal_quantities(threshold.lambda).frequency});
+        }
+      for (std::size_t b = 0; b < chart.branches.size(); ++b)
+        {
+          DesignMode mode;
+          mode.label     = labels[b];
+          mode.own_label = to_string(sweep.labels[b]);
+          mode.overlap   = overlap(names[b]);
+          bool is_seen = false, grows = false;
+          for (std::size_t i = 0; i < chart.points.size(); ++i)
+            if (const ChartPoint &point = chart.points[i]; is_in_band(model, point, chart.branches[b].modes[i]))
+              {
+                const int             j          = chart.branches[b].modes[i];
+                const ModalQuantities quantities = modal_quantities(point.lambda[j]);
+                if (!is_seen)
+                  mode.first_frequency = quantities.frequency;
+                is_seen                        = true;
+                mode.last_friction_coefficient = point.friction_coefficient;
+                mode.last_frequency            = quantities.frequency;
+                mode.last_growth_rate          = quantities.growth_rate;
+                mode.last_divergence_rate      = quantities.divergence_rate;
+                mode.last_error                = point.errors[j];
+                mode.verdict                   = to_string(point.verdicts[j]);
+                mode.largest_divergence_rate   = std::max(mode.largest_divergence_rate, quantities.divergence_rate);
+                grows                          = grows || point.verdicts[j] == Verdict::unstable;
+                // Points of refinement lie at coalescences, where errors of λ are large and say nothing of the others
+                if (!chart.is_refinement[i])
+                  {
+                    result.largest_error    = std::max(result.largest_error, point.errors[j]);
+                    result.largest_residual = std::max({result.largest_residual, point.right_residuals[j], point.left_residuals[j]});
+                  }
+                if (point.verdicts[j] == Verdict::unstable && (!result.worst || quantities.divergence_rate > result.worst->divergence_rate))
+                  result.worst = growth_at(point, j, labels[b]);
+              }
+          if (!is_seen)
+            continue;
+          for (const Threshold &threshold : chart.thresholds)
+            if (threshold.branch == static_cast<int>(b) && threshold.event == ThresholdEvent::onset && !mode.onset)
+              mode.onset = threshold.friction_coefficient;
+          result.n_growing += grows;
+          result.modes.push_back(mode);
+        }
+      result.n_doubtful += chart.n_doubtful_steps;
+      for (const ChartCount &count : chart.counts)
+        result.is_complete = result.is_complete && count.n_modes == count.n_expected;
+      const ChartPoint &last = chart.points.back();
+      if (last.friction_coefficient < largest_friction_coefficient)
+        return;
+      largest_friction_coefficient = last.friction_coefficient;
+      result.n_unstable = result.n_undecided = 0;
+      for (std::size_t j = 0; j < last.lambda.size(); ++j)
+        if (model.is_in_band(last.lambda[j]))
+          {
+            result.n_unstable += last.verdicts[j] == Verdict::unstable;
+            result.n_undecided += last.verdicts[j] == Verdict::undecided;
+          }
+    }
+
+    /// Modes in the band at the first friction coefficient beside the real ones that inertia counts, those of a rigid body included.
+    void compare_counts(const SweepModel &model, const SweepChart &sweep, const int n_counted, DesignResult &result)
+    {
+      const ChartCount &first = sweep.chart.counts.front();
+      result.n_modes          = first.n_modes + first.n_overdamped;
+      result.n_counted        = n_counted - model.frictionless.real.n_rigid_body;
+      // Damping and friction move modes across the end of the band
+      if (first.friction_coefficient == 0. && !model.frictionless.linearisation.coupled.has_damping())
+        result.is_complete = result.is_complete && result.n_modes == result.n_counted;
+    }
+    DesignResult begun_result(const Scene &scene)
+    {
+      DesignResult result;
+      result.outcome     = DesignOutcome::solved;
+      result.is_complete = true;
+      result.n_dofs      = scene.model->free_map().n();
+      return result;
+    }
+
+    void sort_thresholds(DesignResult &result)
+    {
+      std::stable_sort(result.thresholds.begin(), result.thresholds.end(),
+                       [](const DesignThreshold &a, const DesignThreshold &b) { return a.friction_coefficient < b.friction_coefficient; });
+    }
+  } // namespace
+
+  Parameters sweep_of(const Parameters &design)
+  {
+    Parameters       result   = design;
+    SweepParameters &sweep    = result.sweep;
+    sweep.compare_dissipation = false;
+    sweep.map_parameter       = MapParameter::none;
+    sweep.mode_shapes         = {};
+    sweep.planes              = {};
+    sweep.counts              = {};
+    result.output             = {};
+    result.designs            = {};
+    return result;
+  }
+
+  DesignResult solve_member(DesignFamily &family, const std::size_t design, const ReferenceModes &reference)
+  {
+    const Stopwatch            stopwatch;
+    const DesignFamily::Member member     = family.solve(design);
+    double                     largest_mu = 0.;
+    DesignResult               result     = begun_result(family.shared_scene());
+    take_over(*member.model, member.chart, reference, largest_mu, result);
+    compare_counts(*member.model, member.chart, member.n_counted, result);
+    sort_thresholds(result);
+    result.seconds = stopwatch.cost().seconds;
+    return result;
+  }
+
+  DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run)
+  {
+    const Stopwatch  stopwatch;
+    const Parameters sweep = sweep_of(parameters);
+    Progress         silent;
+    Run              part(sweep, run, silent);
+    Scene            scene = mesh_scene(part);
+    ChartCheckpoint  checkpoint(folder, sweep_identity(part, scene), part.communicator,
+                                circular_frequency(sweep.discretization.maximum_frequency));
+    assemble_scene(scene, part);
+
+    const SweepPlan                      plan = sweep_plan(scene, part);
+    std::vector<std::vector<SweepChart>> charts(plan.lines.size());
+    double                               largest_friction_coefficient = 0.; // of the charts so far
+    DesignResult                         result                       = begun_result(scene);
+    for (const ContactRegime &regime : plan.regimes)
+      {
+        SweepModel model(plan, regime, part);
+        evaluate_points(model, *store_of(model, checkpoint, "sweep"));
+        if (model.known.size() < regime.points.size())
+          throw SolverError(
+            text(regime.points.size() - model.known.size(), " of ", regime.points.size(), " friction coefficients miss the tolerance"),
+            "sweep", "raise Sweep/Tolerance or Sweep/Maximum basis");
+        const std::size_t before = charts[0].size();
+        follow_branches(model, checkpoint, charts);
+        for (std::size_t s = before; s < charts[0].size(); ++s)
+          {
+            take_over(model, charts[0][s], reference, largest_friction_coefficient, result);
+            if (s == 0)
+              {
+                const double limit = model.largest_circular_frequency * model.largest_circular_frequency;
+                compare_counts(model, charts[0][s], static_cast<int>(n_in_band(model.frictionless.real.eigenvalues, limit)), result);
+              }
+          }
+      }
+    sort_thresholds(result);
+    checkpoint.remove();
+    result.seconds = stopwatch.cost().seconds;
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,242 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/output/chart_checkpoint.h>
+#include <squeal/parameters/design_plan.h>
+#include <squeal/studies/designs/design_check.h>
+#include <squeal/studies/designs/design_solution.h>
+#include <squeal/studies/designs/design_work.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <ostream>
+#include <set>
+#include <utility>
+
+namespace Squeal
+{
+  namespace
+  {
+    namespace fs  = std::filesystem;
+    namespace MPI = dealii::Utilities::MPI;
+
+    /// Numbers of a list such as "3, 7-9".
+    std::vector<int> parse_designs(const std::string &list, const int n)
+    {
+      const auto refuse = [&](const std::string &what) {
+        throw ParameterError(what, "command line, --designs " + legible(list),
+                             text("give numbers from 1 to ", n, ", as in --designs 3,7-9"));
+      };
+      std::set<int> result;
+      for (const std::string &part : dealii::Utilities::split_string_list(list, ','))
+        {
+          const auto          ends = dealii::Utilities::split_string_list(part, '-');
+          std::vector<double> numbers;
+          for (const std::string &end : ends)
+            if (const auto number = parse_number(end); number && *number == std::floor(*number) && *number >= 1. && *number <= n)
+              numbers.push_back(*number);
+          if (numbers.size() != ends.size() || ends.empty() || ends.size() > 2 || numbers.front() > numbers.back())
+            refuse(in_quotes(part) + " names no designs of this study");
+          for (int design = static_cast<int>(numbers.front()); design <= static_cast<int>(numbers.back()); ++design)
+            result.insert(design);
+        }
+      if (result.empty())
+        refuse("the list names no design");
+      return {result.begin(), result.end()};
+    }
+
+    DesignWork work_of(const Run &run)
+    {
+      DesignWork work{design_plan(run.parameters), {}};
+      const int  n = static_cast<int>(work.plan.designs.size());
+      if (!run.options.designs.empty())
+        work.designs = parse_designs(run.options.designs, n);
+      else
+        for (int design = 1; design <= n; ++design)
+          work.designs.push_back(design);
+      return work;
+    }
+
+    /// Names the columns of a file that change nothing.
+    void note_unused(const Run &run, const DesignPlan &plan)
+    {
+      for (const UnusedParameter &variable : unused_variables(run.parameters, plan))
+        run.progress.note(text("  note: changes nothing in the designs: ", variable.path, " (", variable.why, ")"));
+    }
+
+    /// Solves a design in this process, alone; @p folder keeps what is found of an unfinished one.
+    DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference, const std::string &folder)
+    {
+      DesignResult    result = unfinished(run, work.plan, design);
+      const Stopwatch stopwatch;
+      const auto      parameters = parameters_of(run, work.plan, design, result.reason);
+      if (!parameters)
+        {
+          result.outcome = DesignOutcome::refused;
+          return result;
+        }
+      try
+        {
+          DesignResult solved = solve_design(*parameters, reference, folder, run);
+          solved.number       = design;
+          solved.values       = result.values;
+          return solved;
+        }
+      catch (const FileError &)
+        {
+          throw; // nothing that the design is to blame for
+        }
+      catch (const Error &error)
+        {
+          const bool makes_no_sense = dynamic_cast<const MeshError *>(&error) || dynamic_cast<const ParameterError *>(&error);
+          result.outcome            = makes_no_sense ? DesignOutcome::refused : DesignOutcome::failed;
+          result.reason             = in_one_line(error);
+        }
+      result.seconds = stopwatch.cost().seconds;
+      return result;
+    }
+
+    /**
+     * Solves designs that share a mesh one after the other in this process, each by the basis that those before it have left. What
+     * the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
+     */
+    void solve_family_here(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
+    {
+      std::vector<Parameters> designs;
+      for (const int design : work.designs)
+        {
+          std::string reason;
+          designs.push_back(sweep_of(*parameters_of(run, work.plan, design, reason)));
+        }
+      Run                         part(designs.front(), run, run.progress);
+      std::optional<DesignFamily> family;
+      try
+        {
+          family.emplace(designs, part);
+        }
+      catch (const FileError &)
+        {
+          throw;
+        }
+      catch (const Error &)
+        {
+          // What is wrong each of them tells in its row
+          for (const int design : work.designs)
+            if (!store.find(design))
+              store.keep(solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string())));
+          return;
+        }
+      ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
+                                 design_key(run, family->shared_scene(), work.plan), run.communicator,
+                                 circular_frequency(run.parameters.discretization.maximum_frequency));
+      for (std::size_t i = 0; i < designs.size(); ++i)
+        {
+          const int                         design = work.designs[i];
+          const std::unique_ptr<ChartStore> kept   = checkpoint.part(text("design ", design), family->map());
+          if (store.find(design))
+            {
+              for (const MultiVector &block : kept->basis())
+                family->extend(block);
+              family->take_growth();
+              continue;
+            }
+          DesignResult result;
+          try
+            {
+              result = solve_member(*family, i, reference);
+            }
+          catch (const FileError &)
+            {
+              throw;
+            }
+          catch (const Error &error)
+            {
+              run.progress.note(text("  design ", design, " is solved alone: ", in_one_line(error)));
+              result = solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string()));
+            }
+          result.number = design;
+          result.values = unfinished(run, work.plan, design).values;
+          // A run that was ended between both has left the same blocks
+          const bool is_kept = !kept->basis().empty();
+          for (const MultiVector &block : family->take_growth())
+            if (!is_kept)
+              kept->keep(block);
+          store.keep(result);
+        }
+      checkpoint.remove();
+    }
+  } // namespace
+
+  /**
+   * `Study = geometry`: sweeps of many designs, each meshed anew, with their thresholds; modes named by those of the scene that they
+   * resemble. Each design is solved in a process of its own, which is this study of one design; designs that share a mesh are solved
+   * together, in a process that is this study of them.
+   */
+  static void run_design_study(Scene &scene, Run &run)
+  {
+    const DesignWork           work = work_of(run);
+    std::vector<DesignResult>  results;
+    std::optional<DesignStore> store;
+    const fs::path             above   = fs::path(run.folder().name()).parent_path();
+    const bool                 is_part = fs::exists(above / DesignStore::reference_file); // of a study that has left its modes there
+    if (!is_part)
+      note_unused(run, work.plan);
+    if (is_part && work.designs.size() > 1)
+      {
+        solve_family_here(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
+        run.finish();
+        return;
+      }
+    if (work.designs.size() == 1)
+      {
+        const ReferenceModes modes = design_reference(scene, run, above / DesignStore::reference_file);
+        run.progress.begin(text("Design ", work.designs.front()));
+        results.push_back(solve_here(run, work, work.designs.front(), modes, checkpoint_folder(run.folder().name())));
+        run.progress.finish();
+        // For the study of which this is a part
+        if (is_part)
+          {
+            const std::vector<char> packed = dealii::Utilities::pack(results.front(), false);
+            run.folder().write(DesignStore::result_file,
+                               [&](std::ostream &stream) { stream.write(packed.data(), static_cast<std::streamsize>(packed.size())); });
+          }
+      }
+    else
+      {
+        store.emplace(checkpoint_folder(run.folder().name()), design_key(run, scene, work.plan), run.communicator);
+        if (const std::size_t n_known = store->n_known(work.designs); n_known > 0)
+          run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
+        results = solve_all(scene, run, work, *store, run.options.again);
+      }
+    if (!is_part)
+      for (const int design : work.designs)
+        {
+          std::string reason;
+          if (const auto parameters = parameters_of(run, work.plan, design, reason))
+            write_parameter_file(*parameters, text("designs/", design, ".prm"), run);
+        }
+
+    write_designs(work.plan.names, results, run);
+    run.finish([&] {
+      if (store && run.is_root)
+        store->remove();
+    });
+  }
+
+  extern const Study design_study = [] {
+    const auto of_samples = [](const Parameters &p) {
+      return unless(p.designs.is_sampled(), "only a Latin hypercube and a Sobol sequence are samples");
+    };
+    Study study = study_of_designs(
+      "geometry", run_design_study,
+      {{"Designs/File", [](const Parameters &p) { return unless(p.designs.choice == DesignChoice::file, "Designs/Plan is not file"); }},
+       {"Designs/Variables", [](const Parameters &p) { return unless(p.designs.choice != DesignChoice::file, "Designs/Plan = file"); }},
+       {"Designs/Number of designs", of_samples},
+       {"Designs/Seed", of_samples}});
+    study.check = [](const Parameters &p) { check_designs(p, design_plan(p)); };
+    return study;
+  }();
+} // namespace Squeal

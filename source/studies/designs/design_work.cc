@@ -1,0 +1,320 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/file_writing.h>
+#include <squeal/base/memory_limit.h>
+#include <squeal/base/version.h>
+#include <squeal/base/worker_process.h>
+#include <squeal/geometry/scene_size.h>
+#include <squeal/studies/designs/design_solution.h>
+#include <squeal/studies/designs/design_work.h>
+#include <squeal/studies/steps/parameter_usage.h>
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/utilities.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <ostream>
+#include <sstream>
+#include <thread>
+#include <utility>
+
+namespace Squeal
+{
+  extern const Study sweep_study;
+
+  namespace fs  = std::filesystem;
+  namespace MPI = dealii::Utilities::MPI;
+
+  namespace
+  {
+    /// Modes of the scene are found so far beyond the band that those of stiffer and softer designs find their likes [-].
+    constexpr double reference_margin = 0.2;
+
+    /// Vectors in the basis of a family of designs, about.
+    constexpr double usual_family_basis = 500.;
+
+    /// Values of the variables in a design, as the scene has them where the design leaves them open.
+    std::vector<std::string> shown_values(const Parameters &parameters, const DesignPlan &plan, const std::vector<std::string> &values)
+    {
+      std::vector<std::string> result = values;
+      for (std::size_t v = 0; v < values.size(); ++v)
+        if (values[v].empty())
+          result[v] = current_value(parameters, plan.names[v]);
+      return result;
+    }
+
+    /// Designs that one MPI process solves side by side: by cores, and by the memory that each takes.
+    unsigned int n_side_by_side(const Scene &scene, const Run &run, const bool has_families)
+    {
+      if (run.parameters.designs.n_processes > 0)
+        return run.parameters.designs.n_processes;
+      MPI_Comm machine;
+      int      n_here = 1;
+      MPI_Comm_split_type(run.communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+      MPI_Comm_size(machine, &n_here);
+      MPI_Comm_free(&machine);
+      const unsigned int degree = degree_of(run.parameters.discretization.element);
+      // The basis of a family is there twice when it grows
+      const double bytes_of_basis = has_families ? 2. * sizeof(double) * usual_family_basis * scene.model->free_map().n() : 0.;
+      const double bytes          = bytes_of_basis + expected_size(scene.mesh, degree).memory(degree, run.parameters.solvers.maximum_modes);
+      const double by_cores       = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
+      const double by_memory      = available_memory() / bytes / n_here;
+      return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
+    }
+
+    /// Says how a design went, and how long the others may take.
+    class Reporter
+    {
+    public:
+      Reporter(Run &run, const std::size_t n_all, const std::size_t n_known)
+        : run(run)
+        , n_all(n_all)
+        , n_known(n_known)
+      {}
+
+      void operator()(const DesignResult &result)
+      {
+        ++n_done;
+        const std::size_t n_left  = n_all - n_known - n_done;
+        const double      seconds = stopwatch.cost().seconds / static_cast<double>(n_done) * static_cast<double>(n_left);
+        const std::string what =
+          result.outcome != DesignOutcome::solved ? to_string(result.outcome) + ": " + result.reason :
+          result.weak_onset ? text("beyond ", 100. * weak_divergence, " % from mu = ", result.weak_onset->friction_coefficient, " on (",
+                                   result.weak_onset->label, ")") :
+                              text("nowhere beyond ", 100. * weak_divergence, " %");
+        run.progress.note(text("    design ", result.number, ": ", what, "; ", std::round(result.seconds), " s",
+                               n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
+        run.progress.update(text(n_known + n_done, " of ", n_all, " designs"));
+      }
+
+    private:
+      Run              &run;
+      const std::size_t n_all, n_known;
+      std::size_t       n_done = 0;
+      const Stopwatch   stopwatch;
+    };
+
+    /// Designs of fewer than this are solved one by one: what they share costs more than it saves.
+    constexpr std::size_t least_family = 4;
+
+    /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
+    constexpr std::size_t largest_batch = 25;
+
+    /// What becomes of each design.
+    struct Schedule
+    {
+      std::vector<std::vector<int>> batches; ///< designs that one process solves
+      std::vector<DesignResult>     refused; ///< by their parameters: no process is needed to say so
+    };
+
+    /**
+     * Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the
+     * same number; the others alone.
+     */
+    Schedule schedule_of(const Run &run, const DesignWork &work)
+    {
+      std::map<std::string, std::vector<int>> families;
+      std::vector<std::vector<int>>           alone;
+      Schedule                                schedule;
+      auto &[result, refused] = schedule;
+      for (const int design : work.designs)
+        {
+          DesignResult unsolved   = unfinished(run, work.plan, design);
+          const auto   parameters = parameters_of(run, work.plan, design, unsolved.reason);
+          if (!parameters)
+            {
+              unsolved.outcome = DesignOutcome::refused;
+              refused.push_back(std::move(unsolved));
+              continue;
+            }
+          const std::string key = family_key(sweep_of(*parameters));
+          if (key.empty())
+            alone.push_back({design});
+          else
+            families[key].push_back(design);
+        }
+      for (const auto &[key, designs] : families)
+        if (designs.size() < least_family)
+          for (const int design : designs)
+            alone.push_back({design});
+        else
+          {
+            const std::size_t n = (designs.size() + largest_batch - 1) / largest_batch;
+            for (std::size_t i = 0; i < n; ++i)
+              result.emplace_back(designs.begin() + static_cast<std::ptrdiff_t>(designs.size() * i / n),
+                                  designs.begin() + static_cast<std::ptrdiff_t>(designs.size() * (i + 1) / n));
+          }
+      std::sort(result.begin(), result.end());
+      std::sort(alone.begin(), alone.end());
+      result.insert(result.end(), alone.begin(), alone.end());
+      return schedule;
+    }
+  } // namespace
+
+  std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
+  {
+    Parameters parameters          = run.parameters;
+    parameters.output              = {};
+    parameters.designs.n_processes = 0;
+    parameters.solvers.n_threads   = SolverParameters().n_threads;
+    std::ostringstream stream;
+    stream << "# squeal " << version << '\n';
+    parameters.print(stream, false);
+    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(scene.mesh) << '\n';
+    for (const auto &values : plan.designs)
+      {
+        for (const std::string &value : values)
+          stream << value << ", ";
+        stream << '\n';
+      }
+    return stream.str();
+  }
+
+  DesignResult unfinished(const Run &run, const DesignPlan &plan, const int design)
+  {
+    DesignResult result;
+    result.number = design;
+    result.values = shown_values(run.parameters, plan, plan.designs[design - 1]);
+    return result;
+  }
+
+  std::string in_one_line(const Error &error)
+  {
+    return error.reason + "; where: " + error.where + "; change: " + error.change;
+  }
+
+  std::optional<Parameters> parameters_of(const Run &run, const DesignPlan &plan, const int design, std::string &reason)
+  {
+    try
+      {
+        Parameters result = with_design(run.parameters, plan.names, plan.designs[design - 1]);
+        result.study      = &sweep_study;
+        result.check();
+        return result;
+      }
+    catch (const ParameterError &error)
+      {
+        reason = in_one_line(error);
+        return {};
+      }
+  }
+
+  ReferenceModes design_reference(Scene &scene, Run &run, const fs::path &file)
+  {
+    if (fs::exists(file))
+      {
+        std::ifstream           stream(file, std::ios::binary);
+        const std::vector<char> packed{std::istreambuf_iterator<char>(stream), {}};
+        return dealii::Utilities::unpack<ReferenceModes>(packed, false);
+      }
+    run.progress.begin("Reference modes");
+    Progress   silent;
+    Parameters parameters             = run.parameters;
+    parameters.solvers.complex_solver = ComplexSolver::residual_iteration; // which asks for no attachment modes in advance
+    Run                     part(parameters, run, silent);
+    const FrictionlessModes modes  = frictionless_modes(linearised_scene(scene, part), part, reference_margin);
+    ReferenceModes          result = reference_modes(modes, run.parameters.materials);
+    run.progress.finish(text(result.names.size(), " modes of the scene as it is, by which those of designs are named"));
+    return result;
+  }
+
+  std::vector<DesignResult> solve_all(Scene                          &scene,
+                                      Run                            &run,
+                                      const DesignWork               &work,
+                                      const DesignStore              &store,
+                                      const std::vector<std::string> &arguments)
+  {
+    const fs::path file = store.folder / DesignStore::reference_file;
+    if (!MPI::broadcast(run.communicator, run.is_root && fs::exists(file), 0))
+      {
+        const ReferenceModes modes = design_reference(scene, run, file);
+        if (run.is_root)
+          {
+            const std::vector<char> packed = dealii::Utilities::pack(modes, false);
+            replace_file(file, {packed.data(), packed.size()});
+          }
+      }
+    run.progress.begin("Designs");
+    const auto [batches, refused] = schedule_of(run, work);
+    const std::size_t n_known     = store.n_known(work.designs);
+    MPI_Barrier(run.communicator);
+    const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
+              me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
+    std::vector<std::vector<int>> mine;
+    std::size_t                   n_mine = 0;
+    for (std::size_t i = 0; i < batches.size(); ++i)
+      if (static_cast<int>(i) % n_ranks == me)
+        {
+          mine.push_back(batches[i]);
+          n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
+        }
+    std::vector<DesignResult> to_keep; // of this process
+    if (run.is_root)
+      std::copy_if(refused.begin(), refused.end(), std::back_inserter(to_keep),
+                   [&](const DesignResult &design) { return !store.find(design.number); });
+    n_mine += to_keep.size();
+    const bool has_families   = std::any_of(batches.begin(), batches.end(), [](const std::vector<int> &batch) { return batch.size() > 1; });
+    const unsigned int n_here = n_side_by_side(scene, run, has_families);
+    Reporter           report(run, n_known + n_mine, n_known);
+    for (const DesignResult &design : to_keep)
+      {
+        store.keep(design);
+        report(design);
+      }
+    solve_side_by_side(
+      mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);
+    MPI_Barrier(run.communicator);
+    std::vector<DesignResult> results;
+    for (const int design : work.designs)
+      if (auto result = store.find(design))
+        results.push_back(*std::move(result));
+    run.progress.finish(text(results.size(), " designs, ", n_here * n_ranks, " side by side"));
+    return results;
+  }
+
+  void write_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &results, Run &run)
+  {
+    run.count("designs", results.size());
+    run.screen << '\n';
+    for (const std::string &line : verdict(names, results))
+      run.progress.note(line);
+    run.screen << "\n  the quietest designs, all in designs.csv\n\n";
+    quietest_designs(names, results).print(run.screen);
+    run.screen << '\n';
+    run.store_table("designs", design_table(names, results));
+    run.store_table("design_thresholds", design_threshold_table(results));
+    run.store_table("design_modes", design_mode_table(results));
+  }
+
+  void write_parameter_file(Parameters design, const std::string &name, const Run &run)
+  {
+    const GeometryCopy copy = copy_of(design.geometry.path());
+    // Seen from the file; where nothing was copied, the geometry is found by its name from everywhere
+    const bool is_below  = name.find('/') != std::string::npos;
+    design.geometry.file = (is_below && !copy.files.empty() ? "../" : "") + copy.name;
+    design.designs       = {};
+    design.search        = {};
+    run.folder().write(name, [&](std::ostream &stream) { design.print(stream, false); });
+  }
+
+  Study study_of_designs(const char *name, void (*run)(Scene &, Run &), std::vector<UsageRule> own_rules)
+  {
+    Study study{name, run, {"Designs/", "Sweep/"}};
+    study.rules = std::move(own_rules);
+    study.rules.push_back({"Operation/Friction coefficient",
+                           [](const Parameters &) { return "designs go from Sweep/First to Sweep/Last friction coefficient"; }});
+    study.rules.push_back({"Operation/Rotation speed", no_sliding_speed});
+    study.rules.push_back({"Complex modes/", [](const Parameters &) { return "designs are solved as reduced models"; }});
+    for (const char *path :
+         {"Sweep/Compare dissipation", "Sweep/Mode shapes at", "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter",
+          "Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
+      study.rules.push_back({path, [](const Parameters &) { return "designs have no maps, planes and mode shapes; Study = sweep has"; }});
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; };
+    return study;
+  }
+} // namespace Squeal

@@ -1,0 +1,172 @@
+#include <squeal/base/assignment.h>
+#include <squeal/base/conventions.h>
+#include <squeal/estimates/mode_pairing.h>
+#include <squeal/studies/ingredients/ingredient_effects.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// |λ_1 − λ_2| / |λ_1| up to which modes of one name may be counterparts whatever their shapes [-].
+    constexpr double same_name_within = 0.1;
+
+    /**
+     * Pairs modes without counterpart by shape that bear one name, nearest λ first: members of a doublet or of equal pins that a
+     * change turns among each other so much that one shape stands for both.
+     */
+    void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
+    {
+      std::vector<int>  left_1, left_2;
+      std::vector<bool> is_paired(second.labels.size(), false);
+      for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (pairs[i].partner >= 0)
+          is_paired[pairs[i].partner] = true;
+        else
+          left_1.push_back(static_cast<int>(i));
+      for (std::size_t j = 0; j < is_paired.size(); ++j)
+        if (!is_paired[j])
+          left_2.push_back(static_cast<int>(j));
+      if (left_1.empty() || left_2.empty())
+        return;
+
+      const bool is_wide = left_1.size() <= left_2.size();
+      const auto gain    = [&](const int i, const int j) {
+        const double distance = std::abs(second.modes.lambda[j] - first.modes.lambda[i]) / std::abs(first.modes.lambda[i]);
+        const bool   same     = first.labels[i].family != ModeFamily::unnamed && first.labels[i].shape() == second.labels[j].shape();
+        return same && distance < same_name_within ? 1. - distance : 0.;
+      };
+      const auto &few = is_wide ? left_1 : left_2, &many = is_wide ? left_2 : left_1;
+      const auto  of = [&](const int row, const int column) {
+        return is_wide ? std::make_pair(few[row], many[column]) : std::make_pair(many[column], few[row]);
+      };
+      const std::vector<int> columns = best_assignment(few.size(), many.size(), [&](const int row, const int column) {
+        const auto [i, j] = of(row, column);
+        return gain(i, j);
+      });
+      for (std::size_t row = 0; row < few.size(); ++row)
+        if (const auto [i, j] = of(row, columns[row]); gain(i, j) > 0.)
+          pairs[i] = {j, 0., true};
+    }
+
+    bool grows_strongly(const std::optional<std::complex<double>> &lambda, const bool unstable)
+    {
+      return unstable && lambda && modal_quantities(*lambda).divergence_rate >= weak_divergence;
+    }
+
+    /// The mode with the largest value of a quantity; null if there is none.
+    template <typename Quantity>
+    const ModeChange *largest(const std::vector<ModeChange> &modes, const Quantity &quantity)
+    {
+      const ModeChange *result  = nullptr;
+      double            highest = -1.;
+      for (const ModeChange &mode : modes)
+        if (const std::optional<double> value = quantity(mode); value && std::abs(*value) > highest)
+          {
+            highest = std::abs(*value);
+            result  = &mode;
+          }
+      return result;
+    }
+  } // namespace
+
+  double ModeChange::frequency(const double band_end) const
+  {
+    const double from = reference ? reference->imag() : band_end, to = variant ? variant->imag() : band_end;
+    return 100. * (to / from - 1.);
+  }
+
+  std::optional<double> ModeChange::divergence() const
+  {
+    if (!reference || !variant)
+      return std::nullopt;
+    return 100. * (modal_quantities(*variant).divergence_rate - modal_quantities(*reference).divergence_rate);
+  }
+
+  bool ModeChange::changes_verdict() const
+  {
+    return (grows_strongly(reference, unstable_reference) && !unstable_variant) ||
+           (grows_strongly(variant, unstable_variant) && !unstable_reference);
+  }
+
+  const ModeChange *Effect::largest_frequency() const
+  {
+    return largest(modes, [&](const ModeChange &mode) -> std::optional<double> {
+      return mode.reference && mode.reference->imag() <= band_end ? std::make_optional(mode.frequency(band_end)) : std::nullopt;
+    });
+  }
+
+  const ModeChange *Effect::largest_divergence() const
+  {
+    return largest(modes, [](const ModeChange &mode) { return mode.divergence(); });
+  }
+
+  double Effect::frequency() const
+  {
+    const ModeChange *mode = largest_frequency();
+    return mode == nullptr ? 0. : std::abs(mode->frequency(band_end));
+  }
+
+  double Effect::divergence() const
+  {
+    const ModeChange *mode = largest_divergence();
+    return mode == nullptr ? 0. : std::abs(*mode->divergence());
+  }
+
+  std::size_t Effect::n_unstable(const bool in_variant) const
+  {
+    return std::count_if(modes.begin(), modes.end(),
+                         [&](const ModeChange &mode) { return in_variant ? mode.unstable_variant : mode.unstable_reference; });
+  }
+
+  std::size_t Effect::n_lost() const
+  {
+    return std::count_if(modes.begin(), modes.end(), [](const ModeChange &mode) { return !mode.variant; });
+  }
+
+  bool Effect::changes_verdict() const
+  {
+    return n_growing_real_reference != n_growing_real_variant ||
+           std::any_of(modes.begin(), modes.end(), [](const ModeChange &mode) { return mode.changes_verdict(); });
+  }
+
+  double Effect::severity(const IngredientsParameters &accuracy) const
+  {
+    if (changes_verdict())
+      return std::numeric_limits<double>::infinity();
+    return std::max(frequency() / accuracy.frequency_tolerance, divergence() / accuracy.divergence_tolerance);
+  }
+
+  Effect effect_of(const SolvedModel &reference, const SolvedModel &variant)
+  {
+    const FrictionModes    &first = reference.friction, &second = variant.friction;
+    std::vector<PairedMode> pairs = pair_modes(*reference.shapes, *variant.shapes).coarse;
+    pair_by_name(pairs, first, second);
+
+    Effect result;
+    result.band_end                 = circular_frequency(variant.parameters.discretization.maximum_frequency);
+    result.n_growing_real_reference = first.n_growing_real();
+    result.n_growing_real_variant   = second.n_growing_real();
+    std::vector<bool> is_paired(second.labels.size(), false);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+      {
+        ModeChange mode{first.labels[i], first.modes.lambda[i], std::nullopt, first.unstable[i]};
+        mode.in_cluster = pairs[i].in_cluster;
+        if (const int partner = pairs[i].partner; partner >= 0)
+          {
+            mode.variant          = second.modes.lambda[partner];
+            mode.unstable_variant = second.unstable[partner];
+            mode.overlap          = pairs[i].overlap;
+            is_paired[partner]    = true;
+          }
+        result.modes.push_back(mode);
+      }
+    for (std::size_t j = 0; j < is_paired.size(); ++j)
+      if (!is_paired[j])
+        result.modes.push_back({second.labels[j], std::nullopt, second.modes.lambda[j], false, second.unstable[j]});
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,246 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/parameters/parameter_file.h>
+#include <squeal/studies/ingredients/ingredient_selection.h>
+#include <squeal/studies/ingredients/ingredient_tables.h>
+#include <squeal/studies/steps/parameter_usage.h>
+
+#include <limits>
+#include <set>
+#include <ostream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Solvers count as faster where the processor time of the whole model falls at least to this part [-].
+    constexpr double clearly_faster = 0.95;
+
+    std::vector<std::string> answer_of(const SolvedModel &model)
+    {
+      return verdict(model.friction, model.parameters.operation.friction_coefficient, model.parameters.discretization.maximum_frequency);
+    }
+
+    /// Solves a variant and compares it, as a step of the run; what refuses it becomes an obstacle.
+    void measure(IngredientResult &result, const ReferenceModel &reference, const Variation &variation, Run &run)
+    {
+      run.progress.begin(result.name + ": " + result.tried);
+      try
+        {
+          const SolvedModel variant = solve_variant(reference, variation, run);
+          result.effect             = effect_of(reference, variant);
+          result.severity           = result.effect.severity(run.parameters.ingredients);
+          result.costs              = variant.costs;
+          result.n_dofs             = variant.n_dofs();
+          result.answer             = answer_of(variant);
+        }
+      // A model that cannot be is an answer, too
+      catch (const Error &error)
+        {
+          result.obstacle = error.reason;
+          run.progress.finish("refused");
+          return;
+        }
+      run.progress.finish(largest_changes(result.effect));
+    }
+
+    IngredientResult single_change(const Ingredient &ingredient, const ReferenceModel &reference, Run &run)
+    {
+      const Parameters &p = run.parameters;
+      IngredientResult  result{&ingredient, ingredient.name, ingredient.here(p), ingredient.tried(p)};
+      if (ingredient.obstacle != nullptr)
+        if (const Reason reason = ingredient.obstacle(p, reference.frictionless.linearisation.sliding))
+          result.obstacle = reason;
+      if (result.obstacle.empty())
+        measure(result, reference, combined(p, {&ingredient}), run);
+      return result;
+    }
+
+    /// Whether a change is one that the cheapest model may make.
+    bool makes_cheaper(const IngredientResult &result, const ReferenceModel &reference)
+    {
+      if (!result.obstacle.empty())
+        return false;
+      const ChangeKind kind = result.ingredient->kind;
+      return kind == ChangeKind::removes ||
+             (kind == ChangeKind::speeds && result.costs.cpu_seconds() < clearly_faster * reference.costs.cpu_seconds());
+    }
+
+    /// "radial dissipation = none, rotation of the disc = off"
+    std::string changes_text(const std::vector<const IngredientResult *> &changes)
+    {
+      std::string result;
+      for (const IngredientResult *change : changes)
+        result += (result.empty() ? "" : ", ") + change->name + " = " + change->tried;
+      return result;
+    }
+
+    /// The cheapest model that was found, and how.
+    struct CheapestModel
+    {
+      std::vector<const IngredientResult *> changes;
+      std::vector<const IngredientResult *> put_back;
+      IngredientResult                      together; ///< of all changes; empty if there is none
+      Parameters                            parameters;
+    };
+
+    CheapestModel cheapest_model(const std::vector<IngredientResult> &results, const ReferenceModel &reference, Run &run)
+    {
+      std::vector<const IngredientResult *> candidates;
+      for (const IngredientResult &result : results)
+        if (makes_cheaper(result, reference))
+          candidates.push_back(&result);
+      std::vector<CheaperChange> changes;
+      for (const IngredientResult *candidate : candidates)
+        changes.push_back({candidate->name, candidate->severity});
+
+      const auto variation_of = [&](const std::vector<int> &chosen) {
+        std::vector<const Ingredient *> changed;
+        for (const int i : chosen)
+          changed.push_back(candidates[i]->ingredient);
+        return combined(run.parameters, changed);
+      };
+      const auto results_of = [&](const std::vector<int> &chosen) {
+        std::vector<const IngredientResult *> list;
+        for (const int i : chosen)
+          list.push_back(candidates[i]);
+        return list;
+      };
+
+      CheapestModel         model;
+      const ChangesTogether found = cheapest_changes(changes, [&](const std::vector<int> &chosen) {
+        model.together = {nullptr, "together", "", changes_text(results_of(chosen))};
+        measure(model.together, reference, variation_of(chosen), run);
+        return model.together.obstacle.empty() ? model.together.severity : std::numeric_limits<double>::infinity();
+      });
+      model.changes               = results_of(found.changes);
+      model.put_back              = results_of(found.put_back);
+      model.parameters            = variation_of(found.changes).parameters;
+      if (model.changes.size() == 1)
+        model.together = *model.changes.front();
+      if (model.changes.empty())
+        model.together.answer = answer_of(reference);
+      return model;
+    }
+
+    void note_obstacles(const std::vector<IngredientResult> &results, Run &run)
+    {
+      for (const IngredientResult &result : results)
+        if (!result.obstacle.empty())
+          run.progress.note("  not tried: " + result.name + " = " + result.tried + ": " + result.obstacle);
+    }
+
+    /// What the scene leaves out and would change it by more than the accuracy asked for, one line each.
+    void note_missing(const std::vector<IngredientResult> &results, Run &run)
+    {
+      for (const IngredientResult &result : results)
+        if (result.obstacle.empty() && result.ingredient != nullptr && result.ingredient->kind == ChangeKind::adds && result.severity > 1.)
+          run.progress.note("  left out here and not small: " + result.name + " = " + result.tried + " changes up to " +
+                            largest_changes(result.effect));
+    }
+
+    /// Parameters that differ from their defaults and are of use, as a parameter file.
+    void write_changed_parameters(std::ostream &stream, Parameters parameters)
+    {
+      Declarations declarations;
+      parameters.declare(declarations);
+      std::set<std::string> unused;
+      for (const UnusedParameter &parameter : unused_parameters(parameters))
+        unused.insert(parameter.path);
+      std::string section;
+      const auto  end_section = [&] { stream << (section.empty() ? "" : "end\n"); };
+      for (const std::string &path : changed_parameters(parameters))
+        {
+          const auto slash = path.find('/');
+          if (slash == std::string::npos || unused.count(path) > 0)
+            continue; // the study is the default
+          if (path.substr(0, slash) != section)
+            {
+              end_section();
+              section = path.substr(0, slash);
+              stream << "subsection " << section << '\n';
+            }
+          stream << "  set " << path.substr(slash + 1) << " = " << written_value(declarations.find(path)->print()) << '\n';
+        }
+      end_section();
+    }
+
+    void write_parameter_file(const CheapestModel &cheapest, const std::vector<std::string> &lines, const Run &run)
+    {
+      Parameters parameters    = cheapest.parameters;
+      parameters.study         = studies().front();
+      parameters.ingredients   = {};
+      parameters.geometry.file = copy_of(parameters.geometry.path()).name;
+      run.folder().write("cheapest.prm", [&](std::ostream &stream) {
+        for (const auto *part : {&lines, &cheapest.together.answer})
+          for (const std::string &line : *part)
+            stream << '#' << line.substr(1) << '\n';
+        write_changed_parameters(stream, parameters);
+      });
+    }
+
+    /// What the cheapest model is, what it changes, and what it saves.
+    std::vector<std::string> sentences(const CheapestModel &cheapest, const ReferenceModel &reference)
+    {
+      const IngredientsParameters &accuracy = reference.parameters.ingredients;
+      const std::string            asked =
+        text(exact_text(accuracy.frequency_tolerance), " % and ", exact_text(accuracy.divergence_tolerance), " percentage points");
+      if (cheapest.changes.empty())
+        return {text("  cheapest model within ", asked, ": the scene as it is; nothing that it has can be left out")};
+      const double                   here = reference.costs.cpu_seconds(), there = cheapest.together.costs.cpu_seconds();
+      const std::vector<std::string> result = {
+        text("  cheapest model within ", asked, ": ", changes_text(cheapest.changes)),
+        text("    it changes up to ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
+             " unstable modes instead of ", cheapest.together.effect.n_unstable(false)),
+        text("    ", decimal_text(there, 3), " s of processor time instead of ", decimal_text(here, 3), " s")};
+      return result;
+    }
+  } // namespace
+
+  /**
+   * `Study = ingredients`: the scene as it is given, and with each part of the model switched on, off, or over to something else by
+   * itself: what changes in every mode and in the verdict, and what it costs. Ends with the cheapest model that keeps the verdict
+   * and the accuracy asked for, as a parameter file.
+   */
+  static void run_ingredients_study(Scene &scene, Run &run)
+  {
+    const Parameters    &p         = run.parameters;
+    const ReferenceModel reference = solve_reference(std::move(scene), run);
+
+    std::vector<IngredientResult> results;
+    for (const Ingredient *ingredient : ingredients_to_try(p))
+      results.push_back(single_change(*ingredient, reference, run));
+    const CheapestModel cheapest = cheapest_model(results, reference, run);
+    if (cheapest.changes.size() > 1)
+      results.push_back(cheapest.together);
+
+    // ------------------------------------------------------------------- results
+    run.screen << '\n';
+    for (const std::string &line : answer_of(reference))
+      run.progress.note(line);
+    const std::vector<std::string> lines = sentences(cheapest, reference);
+    for (const std::string &line : lines)
+      run.progress.note(line);
+    for (const IngredientResult *back : cheapest.put_back)
+      run.progress.note("    put back, too much together with others: " + back->name + " = " + back->tried);
+    note_missing(results, run);
+    run.screen << '\n';
+    short_ingredient_table(results, reference).print(run.screen);
+    run.screen << '\n';
+    note_obstacles(results, run);
+    run.store_table("ingredients", ingredient_table(results, reference));
+    run.store_table("ingredients_modes", ingredient_mode_table(results));
+    write_parameter_file(cheapest, lines, run);
+    run.progress.note("  parameter file: cheapest.prm");
+    run.finish();
+  }
+
+  extern const Study ingredients_study = [] {
+    Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    // It goes through contact states, dissipations, speeds and solvers on its own, and leaves them to the cheapest model
+    const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
+    for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})
+      study.rules.push_back({path, of_use});
+    return study;
+  }();
+} // namespace Squeal

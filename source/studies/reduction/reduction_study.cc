@@ -1,0 +1,201 @@
+#include <squeal/base/conventions.h>
+#include <squeal/estimates/mode_groups.h>
+#include <squeal/studies/steps/friction_modes.h>
+#include <squeal/studies/steps/reduction_plan.h>
+#include <squeal/studies/reduction/reduction_tables.h>
+
+#include <algorithm>
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Solutions of a reduced problem of which the fastest is reported.
+    constexpr int n_timed_solutions = 3;
+
+    std::vector<double> disc_shares_of(const FrictionlessModes &frictionless, const ComplexModes &modes)
+    {
+      const Scene &scene = *frictionless.linearisation.scene;
+      return disc_shares(*scene.model, scene.system, *frictionless.linearisation.coupled.kernel, modes);
+    }
+
+    /// What each of some real coupled modes is called among the modes of the pins, whether the disc moves more or not.
+    std::vector<ModeLabel> pin_labels(const FrictionlessModes &frictionless, const ComplexModes &modes)
+    {
+      const SparseMatrix    &mass = *frictionless.linearisation.scene->system.mass;
+      const MultiVector      u    = *frictionless.linearisation.coupled.kernel * *modes.real_part;
+      std::vector<ModeLabel> labels;
+      for (int j = 0; j < u.n_columns(); ++j)
+        labels.push_back(
+          identify({&frictionless.pins_sliding}, shape_shares({&frictionless.pins_sliding}, mass, view(u, j, 1), nullptr)).front());
+      return labels;
+    }
+
+    Reference complex_reference(const ReductionPlan &plan, const FrictionlessModes &frictionless, Run &run)
+    {
+      const FrictionModes full   = friction_modes(frictionless, plan.friction_coefficient, run);
+      const auto          shares = disc_shares_of(frictionless, full.modes);
+      return {
+        full.modes,    full.labels,          shares, friction_groups(shares, full.modes.lambda, full.unstable), {{"disc", "unstable pins"}},
+        full.unstable, full.cost.cpu_seconds};
+    }
+
+    Reference real_reference(const FrictionlessModes &frictionless)
+    {
+      const ComplexModes           modes = undamped_modes(frictionless.real);
+      const std::vector<ModeLabel> labels(frictionless.labels.begin() + frictionless.real.n_rigid_body, frictionless.labels.end());
+      const auto                   shares = disc_shares_of(frictionless, modes);
+      return {modes,
+              labels,
+              shares,
+              frictionless_groups(shares, pin_labels(frictionless, modes)),
+              {{"disc", "F1"}},
+              std::vector<bool>(labels.size(), false),
+              frictionless.solution.cpu_seconds};
+    }
+
+    /// Modes of a reduced model with the processor seconds of the fastest of several solutions.
+    ReducedModes timed_modes(const ReductionPlan &plan, const ReducedModel &model, double &seconds)
+    {
+      ReducedModes modes;
+      for (int solution = 0; solution < n_timed_solutions; ++solution)
+        {
+          const Stopwatch watch;
+          modes = plan.has_friction ? reduced_modes(model, plan.friction_coefficient, plan.largest_circular_frequency, BandEnd::open) :
+                                      reduced_real_modes(model, plan.largest_circular_frequency, BandEnd::open);
+          const double latest = watch.cost().cpu_seconds;
+          seconds             = solution == 0 ? latest : std::min(seconds, latest);
+        }
+      return modes;
+    }
+
+    /// Builds a basis and compares its modes with the reference, as a step of the run called @p name.
+    Candidate measured(const ReductionSets &sets,
+                       const Reference     &reference,
+                       const BasisRecipe   &recipe,
+                       const std::string   &name,
+                       const std::string   &truncation = "")
+    {
+      Progress                  &progress  = sets.run.progress;
+      const ReductionParameters &reduction = sets.run.parameters.reduction;
+      progress.begin(name);
+      BasisOptions options;
+      options.tolerance     = reduction.rank_tolerance;
+      options.pod_tolerance = reduction.pod_tolerance;
+      const Stopwatch watch;
+      Candidate       candidate{&recipe, name, truncation, reduced_basis(recipe, sets.ingredients(), options)};
+      ReducedModel    model(sets.system);
+      model.extend(*candidate.basis.vectors);
+      candidate.build_seconds  = sets.cost(recipe) + watch.cost().cpu_seconds;
+      const ReducedModes modes = timed_modes(sets.plan, model, candidate.solve_seconds);
+      candidate.errors         = reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, reference.modes);
+      double largest           = 0.;
+      for (const ModeError &e : candidate.errors)
+        largest = std::max(largest, e.eigenvalue);
+      progress.finish(
+        text(candidate.basis.n_r0, " vectors, ", candidate.basis.size(), " after connection and rank, largest error of lambda ", largest));
+      // Hundreds of vectors each: they are not needed any more
+      candidate.n_r = candidate.basis.size();
+      candidate.basis.vectors.reset();
+      return candidate;
+    }
+
+    bool any_of(const ReductionPlan &plan, bool (BasisRecipe::*const property)() const)
+    {
+      return std::any_of(plan.recipes.begin(), plan.recipes.end(), std::mem_fn(property));
+    }
+
+    /// Bases of component modes with every truncation.
+    void measure_connected(ReductionSets               &sets,
+                           const Reference             &reference,
+                           std::vector<Candidate>      &candidates,
+                           std::vector<TruncatedModes> &truncations)
+    {
+      for (const ModeTruncation &truncation : sets.run.parameters.reduction.truncations)
+        {
+          truncations.push_back({truncation, sets.truncate(truncation)});
+          for (const BasisRecipe *recipe : sets.plan.recipes)
+            if (recipe->is_connected())
+              candidates.push_back(measured(sets, reference, *recipe, recipe->name, truncation.text()));
+        }
+    }
+
+    /// Bases of real coupled modes up to every frequency.
+    void measure_real(ReductionSets &sets, const Reference &reference, std::vector<Candidate> &candidates)
+    {
+      for (const double frequency : sets.run.parameters.reduction.coupled_frequencies)
+        {
+          sets.take_real_modes(frequency);
+          const std::string variant = frequency > 0. ? " (" + exact_text(frequency) + " Hz)" : "";
+          for (const BasisRecipe *recipe : sets.plan.recipes)
+            if (recipe->has_real_modes())
+              candidates.push_back(measured(sets, reference, *recipe, recipe->name + variant));
+        }
+    }
+
+    /// Bases that grow from the real modes of the band, and those of snapshots.
+    void measure_others(ReductionSets &sets, const Reference &reference, std::vector<Candidate> &candidates)
+    {
+      sets.take_real_modes(0.);
+      for (const BasisRecipe *recipe : sets.plan.recipes)
+        if (recipe->rests_on(BasisSource::residuals))
+          for (const double tolerance : sets.run.parameters.reduction.grown_tolerances)
+            {
+              sets.grow(tolerance);
+              candidates.push_back(measured(sets, reference, *recipe, text(recipe->name, " ", tolerance)));
+            }
+        else if (!recipe->is_connected() && !recipe->has_real_modes())
+          candidates.push_back(measured(sets, reference, *recipe, recipe->name));
+    }
+  } // namespace
+
+  /**
+   * `Study = reduction`: reduced bases measured against full-order modes, those
+   * of Tables 2, 4 and 5 of the paper and better ones: sizes, rank decisions,
+   * errors by groups of modes, error estimates with their verdicts, and what
+   * building and solving cost.
+   */
+  static void run_reduction_study(Scene &scene, Run &run)
+  {
+    const ReductionPlan plan         = reduction_plan(run.parameters);
+    FrictionlessModes   frictionless = frictionless_modes(linearised_scene(scene, run), run);
+    add_modal_damping(frictionless, run.parameters);
+    const CoupledSystem &coupled = frictionless.linearisation.coupled;
+    const CoupledSystem  system  = plan.has_friction ? coupled : undamped(coupled);
+
+    Reference                   reference = plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless);
+    ReductionSets               sets(plan, frictionless, system, run);
+    std::vector<Candidate>      candidates;
+    std::vector<TruncatedModes> truncations;
+    reference.seconds += sets.full_order_factorisation();
+    if (any_of(plan, &BasisRecipe::is_connected))
+      measure_connected(sets, reference, candidates, truncations);
+    if (any_of(plan, &BasisRecipe::has_real_modes))
+      measure_real(sets, reference, candidates);
+    measure_others(sets, reference, candidates);
+
+    // ----------------------------------------------------------------- results
+    run.write_table("reduction_bases", reduction_basis_table(candidates, scene.model->free_map().n(), reference.seconds));
+    if (!truncations.empty())
+      run.write_table("reduction_truncations", reduction_truncation_table(truncations));
+    run.write_table("reduction_costs", reduction_cost_table(sets.charges()));
+    run.write_table("reduction_errors", reduction_error_table(candidates, reference));
+    run.write_table("reduction_estimates", reduction_estimate_table(candidates, reference));
+    run.store_table("reduction_modes", reduction_mode_table(candidates, reference));
+    run.screen << '\n';
+    run.progress.note(text("  full order: ", reference.seconds, " s of CPU for ", reference.labels.size(), " modes"));
+    run.finish();
+  }
+
+  extern const Study reduction_study = [] {
+    Study study{"reduction", run_reduction_study, {"Reduction/"}, reduction_usage()};
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.check          = [](const Parameters &p) { reduction_plan(p); };
+    study.has_friction   = [](const Parameters &p) { return p.reduction.problem == ReductionProblem::friction; };
+    return study;
+  }();
+} // namespace Squeal

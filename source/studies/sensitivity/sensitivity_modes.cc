@@ -1,0 +1,202 @@
+#include <squeal/base/conventions.h>
+#include <squeal/studies/sensitivity/sensitivity_modes.h>
+#include <squeal/tracking/mode_links.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace Squeal
+{
+  namespace
+  {
+    using Complex = std::complex<double>;
+
+    /// Condition number κ of an eigenvalue from which it is differentiated together with that which it is about to meet [-].
+    constexpr double coalescing_condition = 1000.;
+
+    /// Growths of the basis.
+    constexpr int most_growths = 6;
+
+    /// Eigenvalues that are differentiated together: the first is that of interest.
+    struct ModeGroup
+    {
+      std::vector<int> modes; ///< of a point
+      Differentiated   kind;
+    };
+
+    ModeGroup group_of(const ChartPoint &point, const int mode, const Complex &D)
+    {
+      const std::vector<int> clusters = mode_clusters(point.lambda);
+      ModeGroup              result{{mode}, Differentiated::eigenvalue};
+      for (int j = 0; j < static_cast<int>(clusters.size()); ++j)
+        if (j != mode && clusters[j] == clusters[mode])
+          {
+            result.modes.push_back(j);
+            result.kind = Differentiated::cluster;
+          }
+      if (result.kind == Differentiated::cluster)
+        return result;
+      // Vectors have unit M-norms
+      if (2. * std::abs(point.lambda[mode]) <= coalescing_condition * std::abs(D))
+        return result;
+      int    partner  = -1;
+      double parallel = 0.;
+      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+        if (const double overlap = std::abs(point.right.col(mode).dot(point.right.col(j))); j != mode && overlap > parallel)
+          {
+            partner  = j;
+            parallel = overlap;
+          }
+      if (partner < 0)
+        return result;
+      return {{mode, partner}, Differentiated::pair};
+    }
+
+    /// Growing modes of the band by divergence rate; where there are none, all by divergence rate.
+    std::vector<int> modes_of_interest(const SweepModel &model, const ChartPoint &point, const std::size_t most)
+    {
+      std::vector<int> growing, all;
+      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+        if (model.is_in_band(point.lambda[j]))
+          {
+            all.push_back(j);
+            if (point.verdicts[j] == Verdict::unstable)
+              growing.push_back(j);
+          }
+      std::vector<int> &result = growing.empty() ? all : growing;
+      std::stable_sort(result.begin(), result.end(), [&](const int a, const int b) {
+        return modal_quantities(point.lambda[a]).divergence_rate > modal_quantities(point.lambda[b]).divergence_rate;
+      });
+      result.resize(std::min(result.size(), most));
+      return result;
+    }
+
+    std::vector<ModeLabel> labels_of(const SweepModel &model, const ChartPoint &point, const std::vector<int> &modes)
+    {
+      std::vector<int>    all;
+      std::vector<double> growth;
+      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+        if (model.is_in_band(point.lambda[j]))
+          {
+            all.push_back(j);
+            growth.push_back(point.verdicts[j] == Verdict::unstable ? point.lambda[j].real() : 0.);
+          }
+      std::vector<ModeLabel> labels = model.labels(point, all), result;
+      mark_doublets(labels, growth);
+      for (const int mode : modes)
+        result.push_back(labels[std::find(all.begin(), all.end(), mode) - all.begin()]);
+      return result;
+    }
+
+    /// The mode of a point nearest to each λ, each once.
+    std::vector<int> nearest_modes(const ChartPoint &point, const std::vector<ModeSensitivity> &modes)
+    {
+      std::vector<int> result;
+      for (const ModeSensitivity &mode : modes)
+        {
+          int nearest = -1;
+          for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+            if (std::find(result.begin(), result.end(), j) == result.end() &&
+                (nearest < 0 || std::abs(point.lambda[j] - mode.lambda) < std::abs(point.lambda[nearest] - mode.lambda)))
+              nearest = j;
+          result.push_back(nearest);
+        }
+      return result;
+    }
+
+    ModeSensitivity sensitivity_of(const SensitivityModel &model, const ChartPoint &point, const int mode)
+    {
+      const SensitivityProducts own      = model.products(point, {mode});
+      const ModeGroup           group    = group_of(point, mode, own.D(0, 0));
+      const SensitivityProducts products = group.modes.size() == 1 ? own : model.products(point, group.modes);
+      std::vector<int>          all(group.modes.size());
+      std::iota(all.begin(), all.end(), 0);
+      ModeSensitivity result{point.lambda[mode], {}, point.verdicts[mode] == Verdict::unstable, group.kind, {}, {}};
+      for (const ComplexDenseMatrix &N : products.N)
+        result.derivatives.push_back(mean_derivative(N, products.D, all));
+      return result;
+    }
+
+    /// Largest modulus of a part of derivatives with respect to ln p.
+    double largest(const std::vector<SensitivityParameter> &parameters,
+                   const std::vector<Complex>              &derivatives,
+                   double (*part)(const Complex &))
+    {
+      double result = 0.;
+      for (std::size_t p = 0; p < parameters.size(); ++p)
+        result = std::max(result, std::abs(parameters[p].value * part(derivatives[p])));
+      return result;
+    }
+
+    double real_part(const Complex &z)
+    {
+      return z.real();
+    }
+
+    double imaginary_part(const Complex &z)
+    {
+      return z.imag();
+    }
+
+    /// Keeps the changes since an earlier basis; returns the largest one over the largest derivative of its mode.
+    double compare(std::vector<ModeSensitivity>            &modes,
+                   const std::vector<ModeSensitivity>      &before,
+                   const std::vector<SensitivityParameter> &parameters)
+    {
+      double result = 0.;
+      for (std::size_t m = 0; m < modes.size(); ++m)
+        {
+          ModeSensitivity &mode = modes[m];
+          for (std::size_t p = 0; p < mode.derivatives.size(); ++p)
+            mode.changes.push_back(mode.derivatives[p] - before[m].derivatives[p]);
+          result =
+            std::max(result, largest(parameters, mode.changes, imaginary_part) / largest(parameters, mode.derivatives, imaginary_part));
+          // A neutral mode has a growth rate by rounding alone, and so have its derivatives
+          if (const double scale = largest(parameters, mode.derivatives, real_part); scale > negligible_divergence * std::abs(mode.lambda))
+            result = std::max(result, largest(parameters, mode.changes, real_part) / scale);
+        }
+      return result;
+    }
+  } // namespace
+
+  std::vector<ModeSensitivity> mode_sensitivities(SensitivityModel &model, Run &run)
+  {
+    SweepModel                  &sweep  = model.sweep;
+    const SensitivityParameters &wanted = run.parameters.sensitivity;
+    std::vector<ModeSensitivity> result;
+    std::string                  why_stopped;
+    int                          n_growths = 0;
+    run.progress.begin("Derivatives of modes");
+    sweep.known.clear();
+    while (true)
+      {
+        const ChartPoint       point = sweep.evaluate(SensitivityModel::main_line, {run.parameters.operation.friction_coefficient}).front();
+        const std::vector<int> modes = result.empty() ? modes_of_interest(sweep, point, wanted.modes) : nearest_modes(point, result);
+        std::vector<ModeSensitivity> now;
+        for (const int mode : modes)
+          now.push_back(sensitivity_of(model, point, mode));
+        const auto labels = labels_of(sweep, point, modes);
+        for (std::size_t m = 0; m < modes.size(); ++m)
+          now[m].label = labels[m];
+        const double change = result.empty() ? std::numeric_limits<double>::infinity() : compare(now, result, model.parameters);
+        result              = std::move(now);
+        run.progress.update(text("change ", change));
+        if (change <= wanted.tolerance)
+          break;
+        if (n_growths == most_growths)
+          why_stopped = text("after ", most_growths, " growths of the basis they still change by ", change);
+        else
+          why_stopped = model.grow({{model.modes_at(point, modes)}}, run.parameters.sweep.maximum_basis);
+        if (!why_stopped.empty())
+          break;
+        ++n_growths;
+      }
+    run.progress.finish(text(result.size(), " modes, ", model.parameters.size(), " parameters; ", sweep.reduced->size(), " vectors after ",
+                             n_growths, n_growths == 1 ? " growth" : " growths"));
+    if (!why_stopped.empty())
+      run.warn("derivatives of modes miss Sensitivity/Tolerance: " + why_stopped);
+    return result;
+  }
+} // namespace Squeal

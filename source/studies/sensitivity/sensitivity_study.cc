@@ -1,0 +1,167 @@
+#include <squeal/base/conventions.h>
+#include <squeal/geometry/scene_size.h>
+#include <squeal/studies/sensitivity/sensitivity_tables.h>
+
+#include <algorithm>
+#include <complex>
+#include <optional>
+#include <ostream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Rows of the ranking on the screen.
+    constexpr std::size_t n_shown_parameters = 12;
+
+    /// Keeps nothing: a study of sensitivities begins anew when it is interrupted.
+    class ForgetfulStore : public ChartStore
+    {
+    public:
+      std::optional<ChartPoint> find(const OperatingPoint &) const override
+      {
+        return {};
+      }
+      void                     keep(const OperatingPoint &, const ChartPoint &) override {}
+      std::vector<MultiVector> basis() const override
+      {
+        return {};
+      }
+      void keep(const MultiVector &) override {}
+    };
+
+    /// Friction coefficients of the sweep where thresholds are wanted, with that of the operation among them.
+    SweepLine line_of(const Parameters &parameters)
+    {
+      SweepLine    line{SweepLine::Kind::main, parameters.operation, 0., {}};
+      const double mu = parameters.operation.friction_coefficient;
+      if (parameters.sensitivity.thresholds)
+        line.friction_coefficients = parameters.sweep.friction_coefficients.linear();
+      auto &grid = line.friction_coefficients;
+      if (const auto place = std::lower_bound(grid.begin(), grid.end(), mu); place == grid.end() || *place != mu)
+        grid.insert(place, mu);
+      return line;
+    }
+
+    void report(const ModeSensitivity &mode, const std::vector<SensitivityParameter> &parameters, Run &run)
+    {
+      const ModalQuantities q = modal_quantities(mode.lambda);
+      run.screen << '\n';
+      run.progress.note(text("  one per cent of each parameter changes ", to_string(mode.label), " at ", decimal_text(q.frequency), " Hz, ",
+                             mode.is_unstable ?
+                               text("which grows with a divergence rate of ", decimal_text(100. * q.divergence_rate), " %") :
+                               "the least damped mode, since none grows",
+                             ", by"));
+      run.screen << '\n';
+      ranking_table(mode, parameters, false, n_shown_parameters).print(run.screen);
+      run.screen << '\n';
+    }
+
+    void note_obstacles(const std::vector<ThresholdSensitivity> &thresholds, Run &run)
+    {
+      const auto n = std::count_if(thresholds.begin(), thresholds.end(),
+                                   [](const ThresholdSensitivity &threshold) { return !threshold.obstacle.empty(); });
+      if (n > 0)
+        run.progress.note(
+          text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
+    }
+
+    // Fit of further_memory() to runs of 5 700 and 32 000 dofs
+    constexpr int    n_lengths        = 5;     ///< of disc and pins
+    constexpr double bytes_per_length = 2.1e3; ///< and dof: K' and M', and those of the moved meshes
+    constexpr double bytes_per_place  = 2e2;   ///< the same of the place of one pin, which little of the mesh goes along with
+    constexpr double vectors_per_mode = 5.;    ///< of the basis as it has grown, which is copied then
+    constexpr double points_per_given = 2.3;   ///< points of the sweep, with those that branches and thresholds want
+    constexpr double points_per_mode  = 2.;    ///< six for each threshold
+    constexpr double bytes_per_entry  = 2. * sizeof(std::complex<double>); ///< of a right and a left vector
+
+    /// What moved meshes, the basis and evaluated points take.
+    double further_memory(const Parameters &parameters, const ProblemSize &size, const double n_modes)
+    {
+      const GeometryParameters &geometry = parameters.geometry;
+      const double              vectors  = vectors_per_mode * n_modes;
+      double                    result   = 2. * sizeof(double) * vectors * size.dofs;
+      if (parameters.sensitivity.thresholds)
+        result += bytes_per_entry * n_modes * vectors *
+                  (points_per_given * double(parameters.sweep.friction_coefficients.linear().size()) + points_per_mode * n_modes);
+      if (geometry.file == GeometryParameters().file && parameters.sensitivity.geometry != GeometrySensitivities::none)
+        result += n_lengths * bytes_per_length * size.dofs;
+      if (geometry.file == GeometryParameters().file && parameters.sensitivity.geometry == GeometrySensitivities::sizes_and_places)
+        result += 2. * double(geometry.top.radii.size() + geometry.bottom.radii.size()) * bytes_per_place * size.dofs;
+      return result;
+    }
+
+    /// Of the modal damping that the coupled system of a sweep has; nothing without it.
+    std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
+    {
+      if (damping.modal_ratios.empty())
+        return {};
+      const FrictionlessModes &modes   = sweep.frictionless;
+      const CoupledSystem     &coupled = modes.linearisation.coupled;
+      return std::optional<ModalDampingDerivatives>(std::in_place, coupled, modes.inverse->frictionless(), modes.real, damping,
+                                                    static_cast<int>(coupled.values.at(SystemParameter::modal_damping).size()));
+    }
+  } // namespace
+
+  /**
+   * `Study = sensitivity`: derivatives of λ and of the thresholds with respect to every continuous parameter, from right and left vectors.
+   */
+  static void run_sensitivity_study(Scene &scene, Run &run)
+  {
+    const Parameters                 &p          = run.parameters;
+    const double                      mu         = p.operation.friction_coefficient;
+    const BodyTerms                   bodies     = assemble_scene(scene, run);
+    std::vector<SensitivityParameter> parameters = sensitivity_parameters(scene, p);
+    for (SensitivityParameter &parameter : geometry_sensitivity_parameters(scene, bodies, run))
+      parameters.push_back(std::move(parameter));
+
+    const SweepPlan plan   = sweep_plan(scene, {line_of(p)}, run);
+    const auto      closed = plan.closed_at(mu);
+    const auto      regime =
+      std::find_if(plan.regimes.begin(), plan.regimes.end(), [&](const ContactRegime &other) { return other.closed == closed; });
+    if (plan.regimes.size() > 1)
+      run.progress.note(text("  note: thresholds are those with the contact set at mu = ", exact_text(mu), "; there are ",
+                             plan.regimes.size(), " over the range"));
+    SweepModel     sweep(plan, *regime, run);
+    ForgetfulStore store;
+    evaluate_points(sweep, store);
+    std::optional<SweepChart> chart;
+    if (p.sensitivity.thresholds)
+      {
+        std::vector<double> grid;
+        for (const int i : regime->on_line(0))
+          if (sweep.known.count({0, regime->points[i].friction_coefficient}) > 0)
+            grid.push_back(regime->points[i].friction_coefficient);
+        chart = follow_branches(sweep, 0, grid, &store);
+      }
+
+    SensitivityModel                   model{sweep, bodies, parameters, modal_damping_derivatives(sweep, p.damping)};
+    const std::vector<ModeSensitivity> modes = mode_sensitivities(model, run);
+    report(modes.front(), parameters, run);
+    run.store_table("sensitivities", mode_sensitivity_table(modes, parameters));
+    run.store_table("sensitivity_ranking", ranking_table(modes.front(), parameters, true, 0));
+    if (chart)
+      {
+        const std::vector<ThresholdSensitivity> thresholds = threshold_sensitivities(model, *chart, run);
+        note_obstacles(thresholds, run);
+        run.store_table("sensitivities_thresholds", threshold_sensitivity_table(thresholds, *chart, parameters));
+      }
+    run.finish();
+  }
+
+  extern const Study sensitivity_study = [] {
+    const auto no_thresholds = [](const Parameters &p) { return unless(p.sensitivity.thresholds, "Sensitivity/Thresholds = false"); };
+    Study      study{"sensitivity",
+                run_sensitivity_study,
+                {"Sensitivity/", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
+                      "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance"}};
+    study.rules          = {{"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
+                            {"Sweep/First friction coefficient", no_thresholds},
+                            {"Sweep/Last friction coefficient", no_thresholds},
+                            {"Sweep/Number of friction coefficients", no_thresholds},
+                            {"Sweep/Threshold tolerance", no_thresholds}};
+    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.further_memory = further_memory;
+    return study;
+  }();
+} // namespace Squeal

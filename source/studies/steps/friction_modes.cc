@@ -1,0 +1,276 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/modes/krylov_modes.h>
+#include <squeal/modes/verdict.h>
+#include <squeal/studies/steps/friction_modes.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
+    constexpr double fastest_oscillating_divergence = 1.;
+
+    /// |λ|² up to this many times what rounding hides: a slow mode, whose digits cancellation takes [-].
+    constexpr double slow_square = 1e4;
+
+    bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda)
+    {
+      return std::norm(lambda) <= slow_square * system.hidden_square;
+    }
+
+    /// Largest error of the modes that are not slow.
+    double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
+    {
+      double result = 0.;
+      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+        if (!is_slow(system, modes.lambda[j]))
+          result = std::max(result, conditioning.errors[j]);
+      return result;
+    }
+
+    /// Verdicts with these relative errors. Without damping growth needs a second mode within reach of the errors.
+    std::vector<Verdict> verdicts_of(const ComplexModes &modes, const std::vector<double> &errors, const bool has_damping)
+    {
+      const auto          &lambda = modes.lambda;
+      const auto           error  = [&](const std::size_t j) { return errors[j] * std::abs(lambda[j]); };
+      std::vector<Verdict> result;
+      for (std::size_t i = 0; i < lambda.size(); ++i)
+        {
+          bool alone = true;
+          for (std::size_t j = 0; j < lambda.size(); ++j)
+            alone = alone && (j == i || std::abs(lambda[i] - lambda[j]) > error_safety * (error(i) + error(j)));
+          result.push_back(verdict_of(lambda[i], error(i), alone && !has_damping));
+        }
+      return result;
+    }
+
+    /// Growth rates of the unstable modes [1/s]; zero for the others.
+    std::vector<double> growth_rates(const FrictionModes &friction)
+    {
+      std::vector<double> result;
+      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
+        result.push_back(friction.unstable[j] ? friction.modes.lambda[j].real() : 0.);
+      return result;
+    }
+  } // namespace
+
+  std::size_t FrictionModes::n_unstable() const
+  {
+    return n_of(Verdict::unstable);
+  }
+
+  std::size_t FrictionModes::n_of(const Verdict verdict) const
+  {
+    return std::count(verdicts.begin(), verdicts.end(), verdict);
+  }
+
+  std::size_t FrictionModes::n_growing_real() const
+  {
+    return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
+  }
+
+  std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
+  {
+    const double        largest = largest_error(system, modes, conditioning);
+    std::vector<double> result  = conditioning.errors;
+    for (std::size_t j = 0; j < result.size(); ++j)
+      if (!is_slow(system, modes.lambda[j]))
+        result[j] = largest;
+    return result;
+  }
+
+  FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes)
+  {
+    const CoupledSystem &coupled = frictionless.linearisation.coupled;
+    FrictionModes        result;
+    result.modes = std::move(modes);
+    result.conditioning =
+      estimate_conditioning(coupled, *frictionless.inverse, frictionless.shift, result.modes, modal_products(coupled, result.modes));
+    // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
+    result.n_slow             = std::max(0, result.modes.n_rigid_body - frictionless.real.n_rigid_body);
+    result.modes.n_rigid_body = frictionless.real.n_rigid_body;
+    result.verdicts           = verdicts_of(result.modes, uncertainties(coupled, result.modes, result.conditioning), coupled.has_damping());
+    for (const Verdict one : result.verdicts)
+      result.unstable.push_back(one == Verdict::unstable);
+    result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
+    mark_doublets(result.labels, growth_rates(result));
+    return result;
+  }
+
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run)
+  {
+    const Parameters     &parameters = run.parameters;
+    const CoupledSystem  &coupled    = frictionless.linearisation.coupled;
+    const SymmetricModes &real       = frictionless.real;
+    const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
+
+    run.progress.begin("Complex modes");
+    ComplexModes modes;
+    if (parameters.solvers.complex_solver == ComplexSolver::krylov)
+      modes = krylov_modes(coupled, *frictionless.inverse, frictionless.shift, mu, omega_max, real.eigenvalues.size(), parameters.solvers,
+                           run.progress, real.vectors.get());
+    else
+      {
+        ResidualIterationOptions iteration;
+        iteration.largest_circular_frequency = omega_max;
+        iteration.tolerance                  = parameters.solvers.iteration_tolerance;
+        iteration.maximum_basis              = parameters.solvers.maximum_basis;
+        modes = residual_iteration(coupled, *frictionless.inverse, *real.vectors, mu, iteration, run.progress);
+      }
+    if (modes.lambda.empty())
+      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
+    FrictionModes       result = named_modes(frictionless, std::move(modes));
+    const ComplexModes &found  = result.modes;
+    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
+                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
+                                           found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
+                                           found.summary));
+    return result;
+  }
+
+  namespace
+  {
+    /// Summary of the unstable modes, led by the one that grows fastest among those that oscillate.
+    std::string squeal(const FrictionModes &friction, const double mu)
+    {
+      const auto &lambda = friction.modes.lambda;
+      std::size_t n_weak = 0, n_monotonic = 0, leading = lambda.size();
+      double      highest = 0.;
+      for (std::size_t j = 0; j < lambda.size(); ++j)
+        if (friction.unstable[j])
+          {
+            const double rate = modal_quantities(lambda[j]).divergence_rate;
+            n_weak += rate < weak_divergence;
+            n_monotonic += rate > fastest_oscillating_divergence;
+            if (rate > highest && rate <= fastest_oscillating_divergence)
+              {
+                leading = j;
+                highest = rate;
+              }
+          }
+      const std::size_t n      = friction.n_unstable();
+      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", exact_text(mu));
+      if (leading < lambda.size())
+        result += text(", led by ", to_string(friction.labels[leading]), " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
+                       " Hz with a divergence rate of ", decimal_text(100. * highest), " %");
+      if (n_weak > 0)
+        result += text("; ", n_weak, " below ", 100. * weak_divergence, " %");
+      if (n_monotonic > 0)
+        result += text("; ", n_monotonic, " grow faster than they oscillate, above ", 100. * fastest_oscillating_divergence, " %");
+      return result;
+    }
+  } // namespace
+
+  std::vector<std::string> verdict(const FrictionModes &friction, const double mu, const double maximum_frequency)
+  {
+    std::vector<std::string> lines;
+    if (const std::size_t n = friction.n_growing_real(); n > 0)
+      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ",
+                           exact_text(mu), ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
+    if (friction.n_unstable() > 0)
+      lines.push_back(squeal(friction, mu));
+    if (const std::size_t n = friction.n_of(Verdict::undecided); n > 0)
+      lines.push_back(text("  undecided: ", n, n == 1 ? " mode grows or decays" : " modes grow or decay", " at mu = ", exact_text(mu),
+                           " by less than the estimated error of the eigenvalue"));
+    if (lines.empty())
+      lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz at mu = ", exact_text(mu)));
+    return lines;
+  }
+
+  std::string note_on_count(const FrictionModes &friction, const std::size_t n_real_modes)
+  {
+    const ComplexModes &modes     = friction.modes;
+    const std::size_t   n_complex = modes.lambda.size() + modes.n_rigid_body, n_values = modes.real_values.size();
+    if (n_complex == n_real_modes)
+      return "";
+    const std::string counts = text("  note: ", n_real_modes, " real but ", n_complex, " complex modes lie in the band: ");
+    std::string       rest;
+    if (n_values > 0)
+      rest = text(n_values, " real eigenvalues stand for modes that do not oscillate");
+    if (friction.n_slow > 0)
+      rest += text(rest.empty() ? "" : ", and ", "modes that creep, |lambda| below ", zero_frequency, " of the band's end, are not listed");
+    if (friction.n_slow == 0 && 2 * n_complex + n_values != 2 * n_real_modes)
+      rest += text(rest.empty() ? "" : ", and ", "with friction modes crossed its end");
+    return counts + rest;
+  }
+
+  std::string note_on_weak_damping(const CoupledSystem &system, const FrictionModes &friction)
+  {
+    const std::size_t n = system.has_damping() ? friction.n_of(Verdict::neutral) : 0;
+    if (n == 0)
+      return "";
+    return text("  note: ", n, " of ", friction.verdicts.size(), " modes grow or decay by less than ", 100. * negligible_divergence,
+                " % of omega, which rounding errors hide: the damping is too weak to tell, and they count as stable");
+  }
+
+  void record_conditioning(const CoupledSystem &system,
+                           const ComplexModes  &modes,
+                           const Conditioning  &conditioning,
+                           const double         tolerance,
+                           Run                 &run)
+  {
+    const double kappa = std::accumulate(conditioning.modes.begin(), conditioning.modes.end(), 1.,
+                                         [](const double a, const double b) { return std::max(a, b); });
+    run.measure("condition number of the stiffness [-]", conditioning.stiffness);
+    run.measure("condition number of the mass [-]", conditioning.mass);
+    run.measure("condition number of the span of the modes [-]", conditioning.span);
+    run.measure("largest condition number of an eigenvalue [-]", kappa);
+    run.measure("largest cancellation in the stiffness [-]", conditioning.largest_cancellation);
+    run.measure("largest root of eps_res [-]", conditioning.largest_residual);
+    run.measure("digits of the eigenvalues [-]", conditioning.digits());
+    const auto slowest =
+      std::count_if(modes.lambda.begin(), modes.lambda.end(), [&](const auto &lambda) { return is_slow(system, lambda); });
+    if (conditioning.largest_error() > tolerance)
+      run.warn(text("the eigenvalues keep some ", std::floor(conditioning.digits()), " of 16 digits: growth rates below ",
+                    100. * largest_error(system, modes, conditioning), " % of omega are not told from zero",
+                    slowest > 0 ? text(", of ", slowest, slowest == 1 ? " mode" : " modes", " below ",
+                                       decimal_text(hertz(std::sqrt(slow_square * system.hidden_square))), " Hz those below ",
+                                       100. * conditioning.largest_error(), " %") :
+                                  "",
+                    " (condition numbers: stiffness ", conditioning.stiffness, ", eigenvalues up to ", kappa,
+                    "; cancellation in the stiffness ", conditioning.largest_cancellation, "; energy of the residuals up to ",
+                    conditioning.largest_residual, ")"));
+  }
+
+  std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
+                                                             const FrictionModes     &friction,
+                                                             const Rotation           rotation)
+  {
+    const Scene        &scene  = *frictionless.linearisation.scene;
+    const SparseMatrix &T_c    = *frictionless.linearisation.coupled.kernel;
+    auto                result = wave_shares(*scene.model, nodal_masses(*scene.model, *scene.system.mass), friction.labels,
+                                             T_c * *friction.modes.real_part, T_c * *friction.modes.imaginary_part);
+    if (rotation == Rotation::negative)
+      for (auto &shares : result)
+        if (shares)
+          std::swap(shares->positive, shares->negative);
+    return result;
+  }
+
+  ModeField mode_field(const Linearisation        &linearisation,
+                       const std::string          &name,
+                       const std::complex<double> &lambda,
+                       const MultiVector          &real_part,
+                       const MultiVector          &imaginary_part)
+  {
+    const CoupledSystem             &system    = linearisation.coupled;
+    const std::vector<unsigned int> &closed    = linearisation.closed;
+    const auto                       reactions = normal_reactions(system, {lambda}, real_part, imaginary_part);
+    const MultiVector                re = *system.kernel * real_part, im = *system.kernel * imaginary_part;
+
+    ModeField field{name, lambda, {}, std::vector<std::complex<double>>(linearisation.scene->interface.size())};
+    for (int i = 0; i < re.n_local_rows(); ++i)
+      field.displacement.emplace_back(re(i, 0), im(i, 0));
+    for (std::size_t c = 0; c < closed.size(); ++c)
+      field.reactions[closed[c]] = reactions(c, 0);
+    return field;
+  }
+} // namespace Squeal

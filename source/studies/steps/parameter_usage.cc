@@ -1,0 +1,216 @@
+#include <squeal/studies/steps/parameter_usage.h>
+
+#include <boost/algorithm/string.hpp>
+
+#include <algorithm>
+#include <optional>
+
+namespace Squeal
+{
+  bool concerns(const std::string &path, const std::string &parameter)
+  {
+    return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
+  }
+
+  namespace
+  {
+    // --------------------------------------------------------------------- rules
+
+    Reason no_damping(const Parameters &p)
+    {
+      return unless(p.has_friction(), "the frictionless problem has no damping");
+    }
+
+    Reason no_friction(const Parameters &p)
+    {
+      return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless");
+    }
+
+    Reason no_krylov(const Parameters &p)
+    {
+      return unless(p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
+    }
+
+    Reason no_iteration(const Parameters &p)
+    {
+      return unless(p.solves_by(ComplexSolver::residual_iteration), "of the solver residual iteration");
+    }
+
+    Reason no_steady_sliding(const Parameters &p)
+    {
+      return unless(p.needs_steady_sliding(), "Steady sliding/Contact state = equal load");
+    }
+
+    Reason no_mode_shapes(const Parameters &p)
+    {
+      return p.study->no_mode_shapes == nullptr ? nullptr : p.study->no_mode_shapes(p);
+    }
+
+    Reason no_complex_shapes(const Parameters &p)
+    {
+      return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
+    }
+
+    Reason no_frames(const Parameters &p)
+    {
+      return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_complex_shapes(p);
+    }
+
+    /// What holds for all studies that have no rule of their own.
+    const std::vector<UsageRule> &general_rules()
+    {
+      static const std::vector<UsageRule> table = {
+        {"Geometry/Outlines",
+         [](const Parameters &p) -> Reason {
+           return p.discretization.element == Element::quadratic ? "quadratic elements follow the circles" :
+                                                                   unless(p.geometry.is_plan(), "the geometry is a solid");
+         }},
+
+        {"Disc material/Rayleigh alpha", no_damping},
+        {"Disc material/Rayleigh beta", no_damping},
+        {"Pin material/Rayleigh alpha", no_damping},
+        {"Pin material/Rayleigh beta", no_damping},
+        {"Damping/", no_damping},
+
+        {"Operation/Friction coefficient", no_friction},
+        {"Operation/Rotation", no_friction},
+        {"Operation/Rotation speed",
+         // Tables of the steady sliding state show the sliding speeds
+         [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
+        {"Operation/Gyroscopic forces",
+         [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem leaves the rotation out"); }},
+        {"Operation/Load per side",
+         [](const Parameters &p) {
+           // Pins without an entry in Steady sliding/Loads share it
+           const bool is_shared = p.needs_steady_sliding() && p.sliding.control == BackplateControl::load_per_pin;
+           return unless(is_shared || (p.uses_load_per_side() && (p.has_friction() || p.needs_steady_sliding())),
+                         p.needs_steady_sliding() ? "Steady sliding/Control = displacement" : "no contact damping");
+         }},
+        {"Operation/Radial dissipation", no_damping},
+        {"Operation/Friction slope", no_damping},
+
+        {"Steady sliding/Control", no_steady_sliding},
+        {"Steady sliding/Displacement", no_steady_sliding},
+        {"Steady sliding/Loads", no_steady_sliding},
+        {"Steady sliding/Gaps", no_steady_sliding},
+
+        {"Complex modes/Solver", [](const Parameters &p) { return unless(p.has_friction(), "the problem is frictionless"); }},
+        {"Complex modes/Shift inverse", no_krylov},
+        {"Complex modes/Tolerance", no_krylov},
+        {"Complex modes/Iteration tolerance", no_iteration},
+        {"Complex modes/Maximum basis", no_iteration},
+
+        {"Output/Mode shapes",
+         // Who wants none gets none
+         [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
+        {"Output/Field format",
+         [](const Parameters &p) {
+           const bool has_others = p.study->no_mode_shapes == nullptr && (p.output.real_fields || p.output.component_fields);
+           return has_others ? nullptr : no_complex_shapes(p);
+         }},
+        {"Output/Animation frames",
+         // Who wants none gets none
+         [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},
+        {"Output/Animation periods", no_frames},
+        {"Output/Animation growth", no_frames}};
+      return table;
+    }
+
+    /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
+    std::string why_unused(const std::string &path, const Parameters &parameters)
+    {
+      const auto has = [&path](const Study &study) {
+        return std::any_of(study.own_parameters.begin(), study.own_parameters.end(), [&](const char *own) { return concerns(own, path); });
+      };
+      for (const Study *other : studies())
+        if (has(*other) && !has(*parameters.study))
+          return std::string("of Study = ") + other->name;
+      for (const auto *table : {&parameters.study->rules, &general_rules()})
+        for (const UsageRule &rule : *table)
+          if (concerns(rule.path, path))
+            {
+              const Reason reason = rule.why_unused(parameters);
+              return reason == nullptr ? "" : reason;
+            }
+      return "";
+    }
+
+    // ------------------------------------------------------------------ geometry
+
+    /// The variable by which a script takes over a parameter: that of "Geometry/Pin height" is pin_height.
+    std::string script_variable(const std::string &path)
+    {
+      const std::string section = "Geometry/";
+      return boost::starts_with(path, section) ? boost::replace_all_copy(boost::to_lower_copy(path.substr(section.size())), " ", "_") : "";
+    }
+  } // namespace
+
+  std::vector<std::string> changed_parameters(Parameters parameters)
+  {
+    Parameters   defaults;
+    Declarations known, present;
+    defaults.declare(known);
+    parameters.declare(present);
+    std::vector<std::string> changed;
+    for (const DeclaredParameter &parameter : present.parameters())
+      if (const DeclaredParameter *other = known.find(parameter.path); other == nullptr || other->print() != parameter.print())
+        changed.push_back(parameter.path);
+    return changed;
+  }
+
+  Reason no_sliding_speed(const Parameters &parameters)
+  {
+    return unless(parameters.has_friction() && (parameters.has_contact_damping() || parameters.operation.rotating_disc),
+                  "neither contact damping nor gyroscopic forces");
+  }
+
+  std::vector<UnusedParameter> unused_among(const std::vector<std::string> &paths, const Parameters &parameters)
+  {
+    const auto                           variables = parameters.geometry.script_variables();
+    std::optional<std::set<std::string>> used; // found out only where it matters
+    std::vector<UnusedParameter>         unused;
+    for (const std::string &path : paths)
+      {
+        std::string reason = why_unused(path, parameters);
+        if (const std::string variable = script_variable(path); variables.count(variable) > 0)
+          {
+            if (!used)
+              used = parameters.geometry.used_variables();
+            if (used->count(variable) == 0)
+              reason = "the geometry does not use it";
+          }
+        if (!reason.empty())
+          unused.push_back({path, reason});
+      }
+    return unused;
+  }
+
+  std::vector<UnusedParameter> unused_parameters(const Parameters &parameters)
+  {
+    return unused_among(changed_parameters(parameters), parameters);
+  }
+
+  std::string unused_parameters_note(const Parameters &parameters)
+  {
+    std::string note;
+    for (const UnusedParameter &parameter : unused_parameters(parameters))
+      note += (note.empty() ? "  note: not used here: " : ", ") + parameter.path + " (" + parameter.why + ")";
+    for (const std::string &path : parameters.replaced)
+      note += (note.empty() ? "  note: not used here: " : ", ") + path + " (Accuracy = " + to_string(parameters.goal) + " chooses it)";
+    return note;
+  }
+
+  std::vector<std::string> conditional_parameters()
+  {
+    std::vector<std::string> paths;
+    for (const UsageRule &rule : general_rules())
+      paths.emplace_back(rule.path);
+    for (const Study *study : studies())
+      {
+        paths.insert(paths.end(), study->own_parameters.begin(), study->own_parameters.end());
+        for (const UsageRule &rule : study->rules)
+          paths.emplace_back(rule.path);
+      }
+    return paths;
+  }
+} // namespace Squeal

@@ -1,0 +1,242 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/estimates/residual_iteration.h>
+#include <squeal/modes/krylov_modes.h>
+#include <squeal/studies/steps/reduction_sets.h>
+
+#include <algorithm>
+#include <functional>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Numbers of component modes are searched for up to this multiple of the end of the band [-].
+    constexpr double furthest_band = 16.;
+  } // namespace
+
+  ReductionSets::ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run)
+    : plan(plan)
+    , frictionless(frictionless)
+    , system(system)
+    , run(run)
+    , scene(*frictionless.linearisation.scene)
+    , linearisation(frictionless.linearisation)
+    , disc_shift(stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency))
+  {
+    available.uncoupled            = &scene.system;
+    available.contact              = &linearisation.contact;
+    available.coupled              = &system;
+    available.inverse              = frictionless.inverse.get();
+    available.friction_coefficient = plan.friction_coefficient;
+    charge_coupled_factor();
+    take_real_modes(0.);
+    compute_static_modes();
+    if (plan.rests_on(BasisSource::snapshots))
+      compute_snapshots();
+  }
+
+  double ReductionSets::cost(const BasisRecipe &recipe) const
+  {
+    double sum = 0.;
+    for (const auto &[source, cost] : seconds)
+      if (recipe.rests_on(source))
+        sum += cost;
+    return sum;
+  }
+
+  double ReductionSets::full_order_factorisation() const
+  {
+    return seconds.at(BasisSource::coupled_factor) + (plan.has_friction ? seconds.at(BasisSource::coupled_attachment) : 0.);
+  }
+
+  void ReductionSets::book(const Charge &charge)
+  {
+    seconds[charge.source] = charge.seconds;
+    const auto is_same     = [&](const Charge &other) { return other.source == charge.source && other.variant == charge.variant; };
+    if (plan.rests_on(charge.source) && std::none_of(charged.begin(), charged.end(), is_same))
+      charged.push_back(charge);
+  }
+
+  template <typename Function>
+  auto ReductionSets::timed(const BasisSource source, const std::string &variant, Function &&function)
+  {
+    const Stopwatch watch;
+    auto            result = function();
+    Charge          charge{source, variant, {}, {}, {}, watch.cost().cpu_seconds};
+    if constexpr (std::is_same_v<decltype(result), MultiVector>)
+      charge.n_vectors = result.n_columns();
+    book(charge);
+    return result;
+  }
+
+  int ReductionSets::keep(const BasisSource source, std::unique_ptr<MultiVector> set)
+  {
+    vectors[source]        = std::move(set);
+    available.sets[source] = vectors[source].get();
+    return vectors[source]->n_columns();
+  }
+
+  // ------------------------------------------------------------- for all bases
+
+  void ReductionSets::charge_coupled_factor()
+  {
+    // The inverse computes the factor of K_c together with K_c⁻¹ A, which not every basis needs: that part is measured once more
+    const Stopwatch   watch;
+    const MultiVector attachment = frictionless.inverse->solve_frictionless(system.friction_forces->columns(0, system.n_contact()));
+    const double      share      = std::min(watch.cost().cpu_seconds, frictionless.factorisation.cpu_seconds);
+    book({BasisSource::coupled_factor, "", {}, {}, {}, frictionless.factorisation.cpu_seconds - share});
+    book({BasisSource::coupled_attachment, "", attachment.n_columns(), {}, {}, share});
+  }
+
+  void ReductionSets::take_real_modes(const double frequency)
+  {
+    if (frequency == 0.)
+      {
+        const SymmetricModes &real = frictionless.real;
+        const int             n    = real.vectors->n_columns();
+        book({BasisSource::real, "", n, run.parameters.discretization.maximum_frequency, n, frictionless.solution.cpu_seconds});
+        available.sets[BasisSource::real] = real.vectors.get();
+        return;
+      }
+    run.progress.begin("Real modes for bases");
+    const double                omega   = circular_frequency(frequency);
+    const CoupledSystem        &coupled = linearisation.coupled;
+    const SymmetricModesOptions options =
+      real_modes_options(run.parameters.solvers, "real modes of the coupled system for reduced bases", frictionless.shift);
+    const Stopwatch      watch;
+    const SymmetricModes modes   = symmetric_modes(*coupled.stiffness, *coupled.mass, omega * omega, options);
+    const double         seconds = watch.cost().cpu_seconds;
+    if (modes.eigenvalues.empty())
+      throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
+                        "raise it, or give 0 for the modes of the band");
+    const int n = keep(BasisSource::real, std::make_unique<MultiVector>(*modes.vectors));
+    book({BasisSource::real, exact_text(frequency) + " Hz", n, frequency, n, seconds});
+    run.progress.finish(text(n, " below ", frequency, " Hz"));
+  }
+
+  void ReductionSets::compute_static_modes()
+  {
+    run.progress.begin("Static modes");
+    const FactorizationLibrary library = run.parameters.solvers.library;
+    response                           = timed(BasisSource::uncoupled_factor, "", [&] {
+      return std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
+    });
+    static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
+                                                 plan.largest_circular_frequency, library);
+    const StaticModes &modes = *static_modes;
+
+    using Set                                = std::function<const MultiVector &()>;
+    const std::pair<BasisSource, Set> sets[] = {
+      {BasisSource::normal_attachment, [&]() -> const MultiVector & { return modes.normal_attachment(); }},
+      {BasisSource::tangential_attachment, [&]() -> const MultiVector & { return modes.tangential_attachment(); }},
+      {BasisSource::constraint_disc, [&]() -> const MultiVector & { return modes.constraint(Component::disc); }},
+      {BasisSource::constraint_pins, [&]() -> const MultiVector & { return modes.constraint(Component::pins); }}};
+    for (const auto &[source, set] : sets)
+      if (plan.rests_on(source))
+        {
+          const Stopwatch watch;
+          const int       n = set().n_columns();
+          book({source, "", n, {}, {}, watch.cost().cpu_seconds});
+        }
+    available.static_modes = static_modes.get();
+    run.progress.finish(text(modes.n_contact(), " contact nodes"));
+  }
+
+  void ReductionSets::compute_snapshots()
+  {
+    run.progress.begin("Snapshots");
+    const std::vector<double> &values = run.parameters.reduction.snapshots;
+    MultiVector                set    = timed(BasisSource::snapshots, "", [&] {
+      std::vector<ComplexModes>        modes;
+      std::vector<const MultiVector *> parts;
+      for (const double value : values)
+        {
+          run.progress.update(text("mu = ", value));
+          modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
+                                                         plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
+                                                         run.progress, frictionless.real.vectors.get()));
+          for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
+            parts.push_back(part.get());
+        }
+      return join(parts);
+    });
+    const int                  n      = keep(BasisSource::snapshots, std::make_unique<MultiVector>(std::move(set)));
+    run.progress.finish(text(n, " vectors from ", values.size(), " friction coefficients"));
+  }
+
+  // ------------------------------------------------------------- for some bases
+
+  std::map<BasisSource, int> ReductionSets::truncate(const ModeTruncation &truncation)
+  {
+    run.progress.begin("Component modes for bases");
+    const double frequency = truncation.frequency > 0. ? truncation.frequency : run.parameters.discretization.maximum_frequency;
+    std::map<BasisSource, int> n;
+    const auto compute_if = [&](const bool is_used, const BasisSource source, const Component component, const ContactBoundary boundary,
+                                const int count) {
+      if (!is_used)
+        return;
+      ChargedModes modes   = lowest_modes(component, boundary, frequency, count);
+      modes.charge.source  = source;
+      modes.charge.variant = truncation.text();
+      book(modes.charge);
+      n[source] = keep(source, std::move(modes.vectors));
+    };
+    // The disc has as many sliding as free modes in a basis (Table 3)
+    using Source      = BasisSource;
+    const bool slides = plan.rests_on(Source::disc_sliding);
+    compute_if(slides || plan.rests_on(Source::disc_free), Source::disc_free, Component::disc, ContactBoundary::free, truncation.disc);
+    compute_if(slides, Source::disc_sliding, Component::disc, ContactBoundary::sliding, n[Source::disc_free]);
+    compute_if(plan.rests_on(Source::pins_free), Source::pins_free, Component::pins, ContactBoundary::free, truncation.pins_free);
+    compute_if(plan.rests_on(Source::pins_sliding), Source::pins_sliding, Component::pins, ContactBoundary::sliding,
+               truncation.pins_sliding);
+    const auto number = [&](const Source source) { return n[source] > 0 ? std::to_string(n[source]) : "-"; };
+    run.progress.finish(truncation.text() + ": disc " + number(Source::disc_free) + ", pins free " + number(Source::pins_free) +
+                        ", pins sliding " + number(Source::pins_sliding));
+    return n;
+  }
+
+  void ReductionSets::grow(const double tolerance)
+  {
+    run.progress.begin("Growing a basis");
+    ResidualIterationOptions iteration;
+    iteration.largest_circular_frequency = plan.largest_circular_frequency;
+    iteration.tolerance                  = tolerance;
+    iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
+    MultiVector basis                    = timed(BasisSource::residuals, exact_text(tolerance), [&] {
+      return MultiVector(
+                           grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)
+                             .model.basis());
+    });
+    const int   n                        = keep(BasisSource::residuals, std::make_unique<MultiVector>(std::move(basis)));
+    run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));
+  }
+
+  ReductionSets::ChargedModes ReductionSets::lowest_modes(const Component       component,
+                                                          const ContactBoundary boundary,
+                                                          const double          frequency,
+                                                          const int             count) const
+  {
+    const bool            is_disc = component == Component::disc;
+    const std::string     what    = std::string("modes of the ") + (is_disc ? "disc" : "pins") + " for reduced bases";
+    SymmetricModesOptions options = real_modes_options(run.parameters.solvers, what, is_disc ? disc_shift : 0.);
+    options.by_parts              = !is_disc; // pins are alike: one by one there are no multiple modes
+
+    const auto   T = component_kernel(*scene.model, linearisation.interface, component, boundary);
+    const auto   K = congruence(*scene.system.stiffness, *T), M = congruence(*scene.system.mass, *T);
+    const double omega = circular_frequency(frequency);
+    const double end   = count > 0 ? end_of_lowest(*K, *M, count, omega * omega, std::pow(furthest_band * omega, 2), what) : omega * omega;
+
+    const Stopwatch      watch;
+    const SymmetricModes modes    = symmetric_modes(*K, *M, end, options);
+    const int            n_solved = modes.eigenvalues.size();
+    if (n_solved == 0)
+      throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
+                        "raise the truncation frequency");
+    const int    n       = count > 0 ? count : n_solved;
+    auto         vectors = std::make_unique<MultiVector>(*T * view(*modes.vectors, 0, n));
+    const double seconds = watch.cost().cpu_seconds;
+    return {std::move(vectors), {BasisSource::disc_free, "", n, hertz(std::sqrt(end)), n_solved, seconds}};
+  }
+} // namespace Squeal

@@ -1,0 +1,105 @@
+#include <squeal/base/tasks.h>
+#include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/parameters/design_file.h>
+#include <squeal/studies/steps/run.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <cmath>
+#include <fstream>
+#include <ostream>
+
+namespace Squeal
+{
+  namespace
+  {
+    unsigned int n_processes_here(const MPI_Comm communicator)
+    {
+      MPI_Comm machine;
+      int      result = 1;
+      MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+      MPI_Comm_size(machine, &result);
+      MPI_Comm_free(&machine);
+      return result;
+    }
+  } // namespace
+
+  Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
+    : parameters(parameters)
+    , communicator(communicator)
+    , progress(progress)
+    , screen(screen)
+    , is_dry(options.dry_run)
+    , is_root(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
+    , options(options)
+    , record{options.command,
+             static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator)),
+             usable_threads(parameters.solvers.n_threads, n_processes_here(communicator)),
+             set_blas_threads(parameters.solvers.blas_threads),
+             {},
+             {},
+             {},
+             {},
+             options.revision}
+  {
+    set_task_threads(record.n_threads);
+    if (!is_dry)
+      results = std::make_unique<ResultFolder>(options.output, is_root, options.command);
+  }
+
+  Run::Run(const Parameters &parameters, const Run &whole, Progress &progress)
+    : parameters(parameters)
+    , communicator(whole.communicator)
+    , progress(progress)
+    , screen(whole.screen)
+    , is_dry(true)
+    , is_root(whole.is_root)
+    , options(whole.options)
+  {}
+
+  void Run::keep_geometry()
+  {
+    for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)
+      results->write(file.to, [&](std::ostream &stream) { stream << std::ifstream(file.from, std::ios::binary).rdbuf(); });
+  }
+
+  void Run::warn(const std::string &text)
+  {
+    progress.note("    warning: " + text);
+    record.warnings.push_back(text);
+  }
+
+  void Run::store_table(const std::string &name, const Table &table)
+  {
+    results->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+    tables.push_back(name + ".csv");
+  }
+
+  void Run::write_table(const std::string &name, const Table &table)
+  {
+    screen << "\n  " << name << ".csv\n\n";
+    table.print(screen);
+    store_table(name, table);
+  }
+
+  void Run::finish(const std::function<void()> &afterwards)
+  {
+    Parameters repeated    = parameters;
+    repeated.geometry.file = copy_of(parameters.geometry.path()).name;
+    if (const std::string designs = designs_file(parameters); !designs.empty())
+      {
+        repeated.designs.file = "designs/given.csv";
+        results->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
+      }
+    results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
+    record.files = results->files();
+    results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
+    for (const std::string &remark : results->commit(afterwards))
+      progress.note("  note: " + remark);
+    std::string names;
+    for (const std::string &name : tables)
+      names += (names.empty() ? "" : ", ") + name;
+    progress.note("  tables: " + names);
+    progress.note(text("  results in ", results->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
+  }
+} // namespace Squeal

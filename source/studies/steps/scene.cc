@@ -1,0 +1,191 @@
+#include <squeal/model/rotation.h>
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/geometry/scene_size.h>
+#include <squeal/bases/rigid_body.h>
+#include <squeal/contact/travel.h>
+#include <squeal/geometry/generate_mesh.h>
+#include <squeal/geometry/mesh_check.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/studies/steps/scene.h>
+#include <squeal/studies/steps/scene_summary.h>
+
+#include <algorithm>
+
+namespace Squeal
+{
+  namespace
+  {
+    /**
+     * Poisson's ratio from which trilinear elements lock: bending frequencies of pins on the default mesh are 1.4 % higher
+     * beside those of quadratic elements than at 0.25, at 0.499 it is 3.6 %.
+     */
+    constexpr double locking_poisson_ratio = 0.47;
+
+    void warn_of_locking(Run &run)
+    {
+      for (const auto &[section, material] : run.parameters.materials.all())
+        if (run.parameters.discretization.element == Element::trilinear && material.poisson_ratio >= locking_poisson_ratio)
+          run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
+                                 locking_poisson_ratio,
+                                 " on bending frequencies are more than 1 % too high, growth rates less accurate "
+                                 "still; set Discretization/Element = incompatible modes"));
+    }
+
+    /// The mounts that hold something, however soft, in units of their own.
+    std::shared_ptr<const SparseMatrix> unit_mounts(const BodyTerms &bodies, const MaterialParameters &materials)
+    {
+      std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
+      for (const ElasticMount &mount : materials.mounts)
+        for (const char *direction : {"radial", "tangential", "axial"})
+          for (const Term &term : bodies.terms)
+            if (term.coefficient.contains(BodyParameter::mount_stiffness(direction, mount.surface)))
+              if (const double size = max_norm(*term.matrix); size > 0.)
+                summands.emplace_back(1. / size, term.matrix);
+      return sum(summands);
+    }
+
+    bool is_free_disc(const Scene &scene, const SecondOrderSystem &system, const Parameters &parameters)
+    {
+      return stabilizing_shift(*scene.model, system, circular_frequency(parameters.discretization.maximum_frequency)) > 0.;
+    }
+  } // namespace
+
+  Scene mesh_scene(Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    Scene             scene;
+    warn_of_locking(run);
+    run.progress.begin("Mesh");
+    GeometryParameters geometry = parameters.geometry;
+    if (parameters.discretization.element == Element::quadratic)
+      geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
+    scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator);
+    const MeshQuality quality = check_mesh(scene.mesh);
+    for (const PinMaterial &single : parameters.materials.single_pins)
+      pin_number(scene.mesh.volume_names, single.pin, "Pin material/Single pins");
+    run.count("elements", scene.mesh.hexahedra.size());
+    run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
+    run.progress.finish(
+      text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
+    for (const std::string &note : scene.mesh.notes)
+      run.progress.note("  note: " + note);
+    summarise_scene(scene.mesh, run);
+    // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
+    check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
+                          circular_frequency(parameters.discretization.maximum_frequency));
+    if (!run.is_dry)
+      run.keep_geometry();
+
+    run.progress.begin("Contact");
+    scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.element, run.communicator);
+    scene.interface = pair_contact_nodes(*scene.model, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
+    scene.contact   = contact_operators(*scene.model, scene.interface);
+    if (parameters.needs_steady_sliding())
+      check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
+    if (parameters.sliding.state == ContactState::equal_load && parameters.has_contact_damping())
+      equal_load_shares(*scene.model, scene.interface, parameters.operation); // refuses bodies without travel
+    const int n = scene.model->free_map().n(), n_coupled = scene.contact.kernel->n_columns();
+    run.count("dofs, clamped included", scene.model->n_dofs());
+    run.count("dofs", n);
+    run.count("contact nodes", scene.interface.size());
+    run.count("coupled dofs", n_coupled);
+    run.progress.finish(text(scene.interface.size(), " contact nodes, ", n, " dofs, ", n_coupled, " coupled"));
+    return scene;
+  }
+
+  BodyTerms assemble_scene(Scene &scene, Run &run)
+  {
+    run.progress.begin("Assembly");
+    const Parameters &parameters = run.parameters;
+    BodyTerms         bodies     = body_terms(*scene.model, parameters.materials);
+    if (parameters.operation.rotating_disc && parameters.has_friction())
+      {
+        if (is_free_disc(scene, sparse_matrices(bodies.terms, bodies.values), parameters))
+          throw ParameterError("the disc is free or held softly: its motions as a rigid body are not stable in the fixed frame",
+                               "parameter Operation/Gyroscopic forces",
+                               "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
+        add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
+      }
+    scene.mounts = unit_mounts(bodies, parameters.materials);
+    scene.bodies = merged(bodies.terms, bodies.values);
+    scene.system = sparse_matrices(scene.bodies, bodies.values);
+    run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
+    return bodies;
+  }
+
+  SlidingModel sliding_model(const Scene &scene, const Parameters &parameters)
+  {
+    return {*scene.model,
+            scene.interface,
+            scene.contact,
+            scene.system,
+            circular_frequency(parameters.discretization.maximum_frequency),
+            parameters.solvers.library};
+  }
+
+  SlidingState solve_sliding(const Scene &scene, const OperationParameters &operation, const SlidingParameters &sliding, Run &run)
+  {
+    run.progress.begin("Steady sliding");
+    SlidingState state  = steady_sliding(sliding_model(scene, run.parameters), operation, sliding);
+    const auto   n_open = std::count(state.closed.begin(), state.closed.end(), false);
+    run.progress.finish(
+      text(n_open, " of ", scene.interface.size(), " contact nodes open, ", state.n_steps, " changes of the contact set"));
+    return state;
+  }
+
+  StateOfContact state_of_contact(const Model                       &model,
+                                  const ContactInterface            &interface,
+                                  const std::optional<SlidingState> &state,
+                                  const OperationParameters         &operation)
+  {
+    StateOfContact      result;
+    std::vector<double> reactions(interface.size(), 0.);
+    if (state)
+      reactions = state->reactions;
+    else if (operation.has_contact_damping())
+      reactions = equal_load_shares(model, interface, operation);
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      if (!state || state->closed[c])
+        result.closed.push_back(c);
+    result.damping = {radial_dissipation(interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    return result;
+  }
+
+  ContactDamping selected(const ContactDamping &damping, const std::vector<unsigned int> &chosen)
+  {
+    const auto select = [&](const std::vector<double> &values) {
+      std::vector<double> result;
+      for (const unsigned int c : chosen)
+        result.push_back(values[c]);
+      return result;
+    };
+    return {select(damping.radial), select(damping.sliding)};
+  }
+
+  Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation)
+  {
+    const StateOfContact state = state_of_contact(*scene.model, scene.interface, sliding, operation);
+    Linearisation        result;
+    result.scene   = &scene;
+    result.sliding = sliding;
+    result.closed  = state.closed;
+    for (const unsigned int c : state.closed)
+      result.interface.push_back(scene.interface[c]);
+    const bool all = state.closed.size() == scene.interface.size();
+    result.contact = all ? scene.contact : contact_operators(*scene.model, result.interface);
+    result.damping = selected(state.damping, state.closed);
+    result.coupled = couple(scene.bodies, result.contact, result.damping);
+    return result;
+  }
+
+  Linearisation linearised_scene(Scene &scene, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    assemble_scene(scene, run);
+    std::optional<SlidingState> sliding;
+    if (parameters.sliding.state == ContactState::steady_sliding)
+      sliding = solve_sliding(scene, parameters.operation, parameters.sliding, run);
+    return linearise(scene, sliding, parameters.operation);
+  }
+} // namespace Squeal

@@ -1,0 +1,138 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/memory_limit.h>
+#include <squeal/geometry/mesh_topology.h>
+#include <squeal/geometry/scene_size.h>
+#include <squeal/studies/steps/scene_summary.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    // Bodies and materials of machines, from a desk toy to a turbine and from rubber to beryllium
+    constexpr Range disc_radii  = {5e-3, 5.};    ///< [m]
+    constexpr Range heights     = {1e-5, 1.};    ///< [m]
+    constexpr Range densities   = {50., 25000.}; ///< [kg/m³]
+    constexpr Range bar_speeds  = {20., 20000.}; ///< [m/s]
+    constexpr Range disc_masses = {1e-3, 2e4};   ///< [kg]
+
+    constexpr double alike = 1e-3; ///< relative difference of pins that count as equal
+
+    /// For which memory is estimated: modes are counted later, and take little of it.
+    constexpr double typical_modes = 70.;
+
+    /// Disc, or pins that are alike.
+    struct BodySummary : BodyShape
+    {
+      std::vector<std::string> names;     ///< of all bodies
+      double                   mass;      ///< of one body [kg]
+      double                   bar_speed; ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+    };
+
+    bool are_alike(const BodySummary &a, const BodySummary &b)
+    {
+      const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
+      return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume) && close(a.mass, b.mass) &&
+             close(a.bar_speed, b.bar_speed);
+    }
+
+    double bar_speed(const Material &material)
+    {
+      return std::sqrt(material.young_modulus / material.density);
+    }
+
+    /// The disc first, then the pins: those with the same height, contact area, volume and material as one.
+    std::vector<BodySummary> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
+    {
+      std::vector<BodySummary> result;
+      for (const BodyShape &shape : body_shapes(mesh))
+        {
+          const Material    material = materials.of(shape.name);
+          const BodySummary body{shape, {shape.name}, shape.volume * material.density, bar_speed(material)};
+          const auto        same =
+            std::find_if(result.begin() + !result.empty(), result.end(), [&](const BodySummary &other) { return are_alike(other, body); });
+          if (same != result.end())
+            same->names.push_back(body.name);
+          else
+            result.push_back(body);
+        }
+      return result;
+    }
+
+    /// What in bodies and materials suggests other units than those that the program takes.
+    void warn_of_units(const std::vector<BodySummary> &bodies, const MaterialParameters &materials, Run &run)
+    {
+      const BodySummary &disc = bodies[0];
+      if (!disc_radii.contains(disc.outer_radius))
+        run.warn(text("the disc has an outer radius of ", disc.outer_radius, " m; lengths are in metres"));
+      for (const BodySummary &body : bodies)
+        if (!heights.contains(body.height))
+          run.warn(text(body.name, " extends ", body.height, " m along z; lengths are in metres"));
+      if (!disc_masses.contains(disc.mass))
+        run.warn(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
+      const auto range_text = [](const Range &range, const char *unit) { return text(range.least, " to ", range.greatest, " ", unit); };
+      for (const auto &[section, material] : materials.all())
+        {
+          if (!densities.contains(material.density))
+            run.warn(text(section, "/Density is ", material.density, " kg/m^3; solids have ", range_text(densities, "kg/m^3")));
+          if (const double speed = bar_speed(material); !bar_speeds.contains(speed))
+            run.warn(text(section, ": sqrt(E/rho) is ", speed, " m/s, in solids ", range_text(bar_speeds, "m/s"),
+                          "; moduli are in Pa, densities in kg/m^3"));
+        }
+    }
+
+    std::string describe(const BodySummary &body, const bool is_disc)
+    {
+      const std::string waves = text("bar waves ", body.bar_speed, " m/s");
+      if (is_disc)
+        return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ",
+                    body.volume, " m^3, ", body.mass, " kg; ", waves);
+      const std::string names = body.names.size() == 1 ? body.names[0] : text(body.names.size(), " pins like ", body.names[0]);
+      return text("    ", names, ": ", body.height, " m high, ", body.contact_area, " m^2 on the disc, ", body.volume, " m^3, ", body.mass,
+                  " kg", body.names.size() == 1 ? "; " : " each; ", waves);
+    }
+  } // namespace
+
+  void summarise_scene(const HexMesh &mesh, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+
+    // Bodies
+    const std::vector<BodySummary> bodies = summarise_bodies(mesh, parameters.materials);
+    double                         pins   = 0.;
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      {
+        run.progress.note(describe(bodies[b], b == 0));
+        pins += b == 0 ? 0. : bodies[b].names.size() * bodies[b].mass;
+      }
+    run.measure("disc outer radius [m]", bodies[0].outer_radius);
+    run.measure("disc thickness [m]", bodies[0].height);
+    run.measure("disc mass [kg]", bodies[0].mass);
+    run.measure("pins mass [kg]", pins);
+
+    // Memory
+    const unsigned int degree = degree_of(parameters.discretization.element);
+    ProblemSize        size   = expected_size(mesh, degree);
+    if (parameters.solves_by(ComplexSolver::residual_iteration))
+      size.contact_nodes = 0.; // no attachment modes
+    const Study &study   = *parameters.study;
+    const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, typical_modes);
+    const double bytes   = size.memory(degree, typical_modes) + further;
+    run.progress.note(text("    expected: ", size.dofs, " dofs, ", bytes / 1e9, " GB of memory; ", available_memory(run.communicator) / 1e9,
+                           " GB are available"));
+    run.measure("expected memory [byte]", bytes);
+
+    // Doubts
+    if (!is_round_about_z(mesh, parameters.geometry.path()))
+      run.warn("the disc is not round about the z axis, about which it turns");
+    warn_of_units(bodies, parameters.materials, run);
+    if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
+      run.warn(text(contact.n_nodes,
+                    " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
+                    " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
+                    ") m: the bodies touch there, but nothing couples them"));
+    check_memory(size, degree, typical_modes, parameters.geometry.path(), further, run.communicator);
+  }
+} // namespace Squeal

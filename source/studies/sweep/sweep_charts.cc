@@ -1,0 +1,262 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/text.h>
+#include <squeal/base/version.h>
+#include <squeal/studies/sweep/sweep_charts.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Known friction coefficients of a line, in parts between which the contact set is another one.
+    std::vector<std::vector<double>> stretches(const SweepModel &model, const int line)
+    {
+      std::vector<std::vector<double>> result;
+      bool                             goes_on = false;
+      for (const double mu : model.plan.lines[line].friction_coefficients)
+        {
+          const bool is_known = model.known.count({line, mu}) > 0;
+          if (is_known && !goes_on)
+            result.emplace_back();
+          if (is_known)
+            result.back().push_back(mu);
+          goes_on = is_known;
+        }
+      return result;
+    }
+
+    /**
+     * Adds to the basis what the modes of all thresholds lack on both sides, and forgets the results
+     * there: they were found without it.
+     *
+     * @param chart without refinements
+     */
+    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid, ChartStore &store)
+    {
+      // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
+      std::map<int, std::set<int>> modes_at; // by point of the chart
+      for (const Threshold &threshold : chart.thresholds)
+        {
+          const int above = std::upper_bound(grid.begin(), grid.end(), threshold.friction_coefficient) - grid.begin();
+          for (const int i : {above - 1, above})
+            for (const int branch : {threshold.branch, threshold.partner})
+              if (i >= 0 && i < static_cast<int>(grid.size()) && branch >= 0 && chart.branches[branch].modes[i] >= 0)
+                modes_at[i].insert(chart.branches[branch].modes[i]);
+        }
+      std::vector<ChartModel::ModesAt> sets;
+      for (const auto &[i, modes] : modes_at)
+        sets.push_back({model.plan.point(line, grid[i], model.regime.closed), &chart.points[i], {modes.begin(), modes.end()}});
+      if (sets.empty())
+        return;
+      if (auto earlier = store.basis(); !earlier.empty())
+        model.reduced->extend(std::move(earlier.front()));
+      else
+        {
+          auto vectors = model.reduced->new_vectors(sets);
+          if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
+            return;
+          store.keep(*vectors);
+          model.reduced->extend(*std::move(vectors));
+        }
+      for (const ChartModel::ModesAt &set : sets)
+        model.known.erase({line, set.point.friction_coefficient});
+    }
+
+    /// Names branches after the modes with which they begin; of a doublet the one that grows most over the chart is plus.
+    std::vector<ModeLabel> branch_labels(const SweepModel &model, const StabilityChart &chart)
+    {
+      const int                               n_branches = chart.branches.size();
+      std::vector<ModeLabel>                  result(n_branches);
+      std::vector<double>                     growth(n_branches, 0.); // largest [1/s]; zero for a branch that never grows
+      std::map<std::size_t, std::vector<int>> branches_from;          // by the point at which they begin
+      for (int b = 0; b < n_branches; ++b)
+        {
+          const std::vector<int> &modes = chart.branches[b].modes;
+          branches_from[std::find_if(modes.begin(), modes.end(), [](const int j) { return j >= 0; }) - modes.begin()].push_back(b);
+          for (std::size_t i = 0; i < modes.size(); ++i)
+            if (modes[i] >= 0 && chart.points[i].verdicts[modes[i]] == Verdict::unstable)
+              growth[b] = std::max(growth[b], chart.points[i].lambda[modes[i]].real());
+        }
+      for (const auto &[i, branches] : branches_from)
+        {
+          std::vector<int>    modes;
+          std::vector<double> growth_here;
+          for (const int b : branches)
+            {
+              modes.push_back(chart.branches[b].modes[i]);
+              growth_here.push_back(growth[b]);
+            }
+          std::vector<ModeLabel> labels = model.labels(chart.points[i], modes);
+          mark_doublets(labels, growth_here);
+          for (std::size_t k = 0; k < branches.size(); ++k)
+            result[branches[k]] = labels[k];
+        }
+      return result;
+    }
+
+    /// The largest friction coefficient of a line below a stretch at which modes are known, with this contact set or another one; 0: none.
+    double value_before(const SweepModel &model, const int line, const double first)
+    {
+      double result = 0.;
+      for (const ContactRegime &regime : model.plan.regimes)
+        for (const OperatingPoint &point : regime.points)
+          if (const double mu = point.friction_coefficient;
+              point.line == line && mu < first && (&regime != &model.regime || model.known.count({line, mu}) > 0))
+            result = std::max(result, mu);
+      return result;
+    }
+
+    /// Without friction as many modes as inertia counts.
+    void compare_with_inertia(const SweepModel &model, const StabilityChart &chart)
+    {
+      Progress             &progress = model.run.progress;
+      const SymmetricModes &real     = model.frictionless.real;
+      const double          limit    = model.largest_circular_frequency * model.largest_circular_frequency;
+      const int             n_real   = static_cast<int>(n_in_band(real.eigenvalues, limit)) - real.n_rigid_body;
+      const ChartCount     &first    = chart.counts.front();
+      if (first.friction_coefficient != 0.)
+        progress.note("  note: the sweep does not begin at mu = 0: numbers of modes are compared among its values only");
+      else if (first.n_modes + first.n_overdamped != n_real)
+        progress.note(text("  note: ", first.n_modes, " modes lie in the band at mu = 0, where ", n_real,
+                           " real modes were counted: damping moved some across its end"));
+      const auto n =
+        std::count_if(chart.counts.begin(), chart.counts.end(), [](const ChartCount &count) { return count.n_modes != count.n_expected; });
+      if (n > 0)
+        progress.note(text("  note: at ", n, " points the number of modes is not the expected one, see counts.csv"));
+    }
+  } // namespace
+
+  std::string sweep_identity(const Run &run, const Scene &scene)
+  {
+    // What only adds to the results, or is another way to the same ones, does not change them
+    Parameters parameters        = run.parameters;
+    parameters.solvers.n_threads = SolverParameters().n_threads;
+    parameters.output            = {};
+    parameters.sweep.mode_shapes = {};
+    parameters.sweep.planes      = {};
+    parameters.sweep.counts      = {};
+    std::ostringstream stream;
+    stream << "# squeal " << version << '\n';
+    parameters.print(stream, false);
+    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().n() << " dofs, nodes " << std::hex
+           << checksum(scene.mesh) << '\n';
+    return stream.str();
+  }
+
+  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore *store)
+  {
+    Run        &run         = model.run;
+    std::size_t n_evaluated = 0;
+    const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
+      n_evaluated += friction_coefficients.size();
+      run.progress.update(text(n_evaluated, " points"));
+      return model.evaluate(line, friction_coefficients, store);
+    };
+    run.progress.begin("Branches");
+    ChartOptions options;
+    options.largest_circular_frequency = model.largest_circular_frequency;
+    options.threshold_tolerance        = run.parameters.sweep.threshold_tolerance;
+    // Thresholds ask for more than λ: where modes hardly interact, μ_c moves far for a small error. The values of the grid
+    // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
+    ChartOptions coarse        = options;
+    coarse.maximum_refinements = 0;
+    if (store != nullptr)
+      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, *store);
+    // Rounding must not lead processes to different friction coefficients
+    const auto predict = [&](const ZeroSearch &search) {
+      const auto at   = [&](const ChartPoint &point) { return model.plan.point(line, point.friction_coefficient, model.regime.closed); };
+      const auto zero = model.reduced->predicted_zero(search, at(*search.first.point), at(*search.second.point));
+      const auto same = dealii::Utilities::MPI::broadcast(run.communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
+      return same.empty() ? std::nullopt : std::optional(same.front());
+    };
+    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}, {}, {}};
+    const StabilityChart &chart  = result.chart;
+    const double          before = grid.empty() ? 0. : value_before(model, line, grid.front());
+    result.labels                = branch_labels(model, chart);
+    result.onset                 = first_onset(chart, options.largest_circular_frequency, before);
+    result.weak_onset            = onset_beyond(weak_divergence, chart, evaluate, options, before);
+    run.progress.finish(text(chart.branches.size(), " branches, ", chart.thresholds.size(), " thresholds, ", chart.crossings.size(),
+                             " crossings of the band's edge, ", chart.points.size() - grid.size(), " refinements"));
+    if (chart.n_doubtful_steps > 0)
+      run.progress.note(text("  note: in ", chart.n_doubtful_steps, " steps modes could be told apart by their frequencies only"));
+    return result;
+  }
+
+  std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
+  {
+    return checkpoint.part(text("contact set ", model.regime.number, " of ", model.regime.closed.size(), " nodes, ", phase),
+                           model.frictionless.linearisation.coupled.map());
+  }
+
+  void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts)
+  {
+    for (std::size_t l = 0; l < charts.size(); ++l)
+      if (const auto kind = model.plan.lines[l].kind; kind != SweepLine::Kind::map)
+        for (const auto &stretch : stretches(model, static_cast<int>(l)))
+          {
+            const auto store = store_of(model, checkpoint, text("line ", l, " from ", exact_text(stretch.front())));
+            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch, store.get()));
+            if (kind == SweepLine::Kind::main)
+              compare_with_inertia(model, charts[l].back().chart);
+          }
+  }
+
+  std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts)
+  {
+    std::vector<SquealOnset> result;
+    for (const auto &[rate, onset] : {std::make_pair(0., &SweepChart::onset), {weak_divergence, &SweepChart::weak_onset}})
+      {
+        const SweepChart *first = nullptr;
+        for (const SweepChart &chart : charts)
+          if (chart.*onset && (!first || (chart.*onset)->friction_coefficient < (first->*onset)->friction_coefficient))
+            first = &chart;
+        if (first)
+          result.push_back({rate, *(first->*onset), first->labels[(first->*onset)->branch]});
+      }
+    return result;
+  }
+
+  std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
+  {
+    double          at = 0.; // the friction coefficient at which a mode grows most
+    ModalQuantities most{};
+    std::string     label;
+    std::size_t     n_known = 0; // of the values asked for
+    for (const SweepChart &line : charts)
+      {
+        const StabilityChart &chart = line.chart;
+        n_known += std::count(chart.is_refinement.begin(), chart.is_refinement.end(), false);
+        for (std::size_t i = 0; i < chart.points.size(); ++i)
+          for (std::size_t b = 0; b < line.labels.size(); ++b)
+            if (const ChartPoint &point = chart.points[i]; chart.branches[b].modes[i] >= 0)
+              if (const int j = chart.branches[b].modes[i];
+                  point.lambda[j].imag() <= largest_circular_frequency && point.verdicts[j] == Verdict::unstable)
+                if (const auto mode = modal_quantities(point.lambda[j]); label.empty() || mode.divergence_rate > most.divergence_rate)
+                  {
+                    at    = point.friction_coefficient;
+                    most  = mode;
+                    label = to_string(line.labels[b]);
+                  }
+      }
+    const std::vector<SquealOnset> onsets = squeal_onsets(charts);
+    if (onsets.empty())
+      return n_known == n_asked ?
+               "  stable: no mode of the band grows at any friction coefficient of the sweep" :
+               text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
+    std::string result = "  squeal";
+    for (const auto &[rate, onset, of_onset] : onsets)
+      {
+        // What the digits shown do not hide
+        const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
+        result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from mu = ", onset.friction_coefficient,
+                       is_uncertain ? text(" +- ", onset.uncertainty) : "", " on (", to_string(of_onset), ")");
+      }
+    return text(result, "; most at mu = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
+                decimal_text(100. * most.divergence_rate), " %");
+  }
+} // namespace Squeal

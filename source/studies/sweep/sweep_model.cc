@@ -1,0 +1,208 @@
+#include <squeal/base/conventions.h>
+#include <squeal/linear_algebra/weighted_gram.h>
+#include <squeal/studies/steps/friction_modes.h>
+#include <squeal/studies/sweep/sweep_model.h>
+#include <squeal/tracking/mode_links.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Sum of all damping coefficients of the contact.
+    double damping_of(const OperatingPoint &point)
+    {
+      double sum = 0.;
+      for (const auto &[name, coefficients] : point.values)
+        for (const double c : coefficients)
+          sum += std::abs(c);
+      return sum;
+    }
+  } // namespace
+
+  const OperatingPoint &most_damped(const ContactRegime &regime)
+  {
+    return *std::max_element(regime.points.begin(), regime.points.end(),
+                             [](const OperatingPoint &a, const OperatingPoint &b) { return damping_of(a) < damping_of(b); });
+  }
+
+  SweepModel::SweepModel(const SweepPlan            &plan,
+                         const ContactRegime        &regime,
+                         Run                        &run,
+                         FrictionlessModes           frictionless,
+                         std::unique_ptr<ChartModel> reduced)
+    : plan(plan)
+    , regime(regime)
+    , run(run)
+    , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
+    , frictionless(std::move(frictionless))
+    , reduced(std::move(reduced))
+  {}
+
+  SweepModel::SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run)
+    : plan(plan)
+    , regime(regime)
+    , run(run)
+    , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
+  {
+    const OperatingPoint     &most      = most_damped(regime);
+    const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
+    const Linearisation       damped    = linearise(plan.scene, plan.sliding_state(operation), operation);
+
+    // Neither real modes nor the factor know of damping
+    Linearisation bare         = damped;
+    bare.coupled               = undamped(damped.coupled);
+    frictionless               = frictionless_modes(bare, run, band_margin);
+    frictionless.linearisation = damped;
+    add_modal_damping(frictionless, run.parameters);
+
+    run.progress.begin("Reduced model");
+    reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
+                                           *frictionless.real.vectors, largest_circular_frequency, band_margin);
+    run.progress.finish(text(reduced->size(), " vectors to start from"));
+  }
+
+  std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients, ChartStore *store)
+  {
+    std::vector<OperatingPoint> missing;
+    for (const double mu : friction_coefficients)
+      if (known.count({line, mu}) == 0)
+        {
+          const OperatingPoint point = plan.point(line, mu, regime.closed);
+          if (const auto stored = store ? store->find(point) : std::nullopt)
+            known.emplace(std::make_pair(line, mu), *stored);
+          else
+            missing.push_back(point);
+        }
+    Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, const ChartPoint &found) {
+      known.emplace(std::make_pair(line, missing[i].friction_coefficient), found);
+      if (store)
+        store->keep(missing[i], found);
+    });
+    std::vector<ChartPoint> result;
+    for (const double mu : friction_coefficients)
+      result.push_back(known.at({line, mu}));
+    return result;
+  }
+
+  std::pair<MultiVector, MultiVector> SweepModel::shapes(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    const ComplexDenseMatrix X = with_rows(point.right(Eigen::all, modes), reduced->size());
+    return {reduced->reduced().times_basis(X.real()), reduced->reduced().times_basis(X.imag())};
+  }
+
+  std::vector<ShapeShares> SweepModel::shape_shares(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    const ReducedModel &model = reduced->reduced();
+    if (!model.is_restricted())
+      {
+        // The basis only grows once modes are named
+        const int n_known = reference_products.empty() ? 0 : static_cast<int>(reference_products.front().cols());
+        if (n_known < model.size())
+          {
+            const auto added = frictionless.reference_products(view(model.basis(), n_known, model.size() - n_known));
+            reference_products.resize(added.size());
+            for (std::size_t i = 0; i < added.size(); ++i)
+              reference_products[i] = append_columns(reference_products[i], added[i]);
+          }
+        return Squeal::shape_shares(frictionless.references(), reference_products, model.mass(),
+                                    halves(with_rows(point.right(Eigen::all, modes), model.size())));
+      }
+    std::vector<ShapeShares> shares;
+    for_column_blocks(static_cast<int>(modes.size()), [&](const int first, const int n) {
+      const auto [re, im] = shapes(point, {modes.begin() + first, modes.begin() + first + n});
+      const auto some     = frictionless.shape_shares(re, &im);
+      shares.insert(shares.end(), some.begin(), some.end());
+    });
+    return shares;
+  }
+
+  std::vector<ModeLabel> SweepModel::labels(const ChartPoint &point, const std::vector<int> &modes) const
+  {
+    return identify(frictionless.references(), shape_shares(point, modes));
+  }
+
+  Linearisation SweepModel::linearisation_at(const double friction_coefficient) const
+  {
+    Linearisation result = frictionless.linearisation;
+    result.coupled       = with_values(result.coupled, plan.point(0, friction_coefficient, regime.closed).values);
+    return result;
+  }
+
+  namespace
+  {
+    /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
+    std::vector<int> training(const ContactRegime &regime)
+    {
+      const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
+                                                     [](const OperatingPoint &a, const OperatingPoint &b) { return a.line < b.line; });
+      std::vector<int> result;
+      for (const int line : {first->line, last->line})
+        {
+          const auto numbers = regime.on_line(line);
+          const int  end     = static_cast<int>(numbers.size()) - 1;
+          for (const int place : {end, end / 2, end / 4, 3 * end / 4, 0})
+            if (std::find(result.begin(), result.end(), numbers[place]) == result.end())
+              result.push_back(numbers[place]);
+        }
+      return result;
+    }
+
+    /// The modes of a point in the band, at full order, and their products by the reduced model.
+    std::pair<ComplexModes, ModalProducts> modes_in_band(const SweepModel &model, const ChartPoint &point)
+    {
+      ComplexModes     result;
+      std::vector<int> numbers;
+      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
+        if (model.is_in_band(point.lambda[j]))
+          {
+            numbers.push_back(j);
+            result.lambda.push_back(point.lambda[j]);
+            result.energy_residuals.push_back(point.right_residuals[j]);
+            result.estimated_errors.push_back(point.errors[j]);
+          }
+      auto [re, im]         = model.shapes(point, numbers);
+      result.real_part      = std::make_shared<MultiVector>(std::move(re));
+      result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
+
+      const ReducedModel &reduced = model.reduced->reduced();
+      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::all, numbers), reduced.size()));
+      return {result, {X.transpose() * reduced.stiffness() * X, X.transpose() * reduced.mass() * X}};
+    }
+  } // namespace
+
+  void evaluate_points(SweepModel &model, ChartStore &store)
+  {
+    Run                               &run    = model.run;
+    const std::vector<OperatingPoint> &points = model.regime.points;
+    ErrorControlledSweepOptions        options;
+    options.tolerance     = run.parameters.sweep.tolerance;
+    options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
+    run.progress.begin("Sweep");
+    const ErrorControlledSweep sweep =
+      error_controlled_sweep(*model.reduced, points, training(model.regime), options, &store, run.communicator, run.progress);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (sweep.points[i])
+        model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);
+    run.progress.finish(text(model.known.size(), " of ", points.size(), " operating points, ", model.reduced->size(),
+                             " vectors, estimated error ", sweep.worst_error));
+    run.count("basis vectors", model.reduced->size());
+    run.measure("largest estimated error of lambda [-]", sweep.worst_error);
+    // Of the last value: friction makes eigenvalues ill-conditioned. The basis leaves errors up to the tolerance, and rounding may add to them
+    const auto last = std::find_if(sweep.points.rbegin(), sweep.points.rend(), [](const auto &point) { return point.has_value(); });
+    if (last != sweep.points.rend())
+      {
+        const auto [modes, products] = modes_in_band(model, **last);
+        const CoupledSystem &coupled = model.frictionless.linearisation.coupled;
+        record_conditioning(coupled, modes,
+                            estimate_conditioning(coupled, *model.frictionless.inverse, model.frictionless.shift, modes, products),
+                            2. * options.tolerance, run);
+      }
+    if (!sweep.why_stopped.empty())
+      run.progress.note(text("  note: ", points.size() - model.known.size(), " operating points miss the tolerance of ", options.tolerance,
+                             ": ", sweep.why_stopped,
+                             "; what is written meets it. Raise Sweep/Tolerance, or Sweep/Maximum basis if that is in the way"));
+  }
+} // namespace Squeal

@@ -1,0 +1,97 @@
+#include <squeal/studies/sweep/sweep_plan.h>
+
+#include <algorithm>
+
+namespace Squeal
+{
+  namespace
+  {
+    std::vector<SweepLine> lines_of(const Parameters &parameters)
+    {
+      using Kind                          = SweepLine::Kind;
+      const SweepParameters    &sweep     = parameters.sweep;
+      const OperationParameters operation = parameters.operation;
+      const std::vector<double> grid      = sweep.friction_coefficients.linear();
+      std::vector<SweepLine>    lines     = {{Kind::main, operation, 0., grid}};
+      if (sweep.compare_dissipation && operation.radial_dissipation != RadialDissipation::none)
+        {
+          lines.push_back({Kind::without_dissipation, operation, 0., grid});
+          lines.back().operation.radial_dissipation = RadialDissipation::none;
+        }
+      if (sweep.map_parameter != MapParameter::none)
+        for (const double value : sweep.map_values.geometric())
+          {
+            lines.push_back({Kind::map, operation, value, sweep.map_grid()});
+            OperationParameters &varied                                                                = lines.back().operation;
+            (sweep.map_parameter == MapParameter::load ? varied.load_per_side : varied.rotation_speed) = value;
+          }
+      return lines;
+    }
+  } // namespace
+
+  OperationParameters SweepLine::at(const double friction_coefficient) const
+  {
+    OperationParameters result  = operation;
+    result.friction_coefficient = friction_coefficient;
+    return result;
+  }
+
+  std::vector<int> ContactRegime::on_line(const int line) const
+  {
+    std::vector<int> result;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].line == line)
+        result.push_back(static_cast<int>(i));
+    return result;
+  }
+
+  std::optional<SlidingState> SweepPlan::sliding_state(const OperationParameters &operation) const
+  {
+    if (!sliding)
+      return {};
+    return steady_sliding(*sliding, operation, sliding_parameters);
+  }
+
+  StateOfContact SweepPlan::state_at(const int line, const double friction_coefficient) const
+  {
+    const OperationParameters operation = lines[line].at(friction_coefficient);
+    return state_of_contact(*scene.model, scene.interface, sliding_state(operation), operation);
+  }
+
+  OperatingPoint SweepPlan::point(const int line, const double friction_coefficient, const std::vector<unsigned int> &closed) const
+  {
+    return {friction_coefficient, selected(state_at(line, friction_coefficient).damping, closed).values(), line};
+  }
+
+  SweepPlan sweep_plan(const Scene &scene, Run &run)
+  {
+    return sweep_plan(scene, lines_of(run.parameters), run);
+  }
+
+  SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run)
+  {
+    SweepPlan                   plan{scene, run.parameters.sliding, nullptr, lines, {}};
+    std::vector<ContactRegime> &regimes  = plan.regimes;
+    std::size_t                 n_points = 0;
+    if (plan.sliding_parameters.state == ContactState::steady_sliding)
+      {
+        run.progress.begin("Contact flexibility");
+        plan.sliding = std::make_unique<SlidingModel>(sliding_model(scene, run.parameters));
+        run.progress.finish(text(2 * scene.interface.size(), " attachment modes"));
+      }
+    run.progress.begin("States of contact");
+    for (std::size_t l = 0; l < plan.lines.size(); ++l)
+      for (const double mu : plan.lines[l].friction_coefficients)
+        {
+          run.progress.update(text("state ", ++n_points));
+          const StateOfContact state = plan.state_at(static_cast<int>(l), mu);
+          auto                 regime =
+            std::find_if(regimes.begin(), regimes.end(), [&](const ContactRegime &other) { return other.closed == state.closed; });
+          if (regime == regimes.end())
+            regime = regimes.insert(regime, {regimes.size() + 1, state.closed, {}});
+          regime->points.push_back({mu, selected(state.damping, state.closed).values(), static_cast<int>(l)});
+        }
+    run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
+    return plan;
+  }
+} // namespace Squeal

@@ -1,0 +1,102 @@
+#include <squeal/model/cell_stiffness.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_handler.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/tria.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+using namespace Squeal;
+using namespace dealii;
+
+namespace
+{
+  using Field = std::function<Tensor<1, 3>(const Point<3> &)>;
+
+  constexpr double a = 0.7, b = 0.3, h = 0.05; ///< sides of the box
+
+  struct Energy
+  {
+    double value;    ///< ½ uᵀ K u
+    double rounding; ///< bound of its error: the unit of rounding times the number of summands and the sum of their moduli
+  };
+
+  /// Of a box about the origin whose nodes are displaced by @p field.
+  Energy energy(const Element element, const double poisson_ratio, const Field &field)
+  {
+    Triangulation<3> grid;
+    GridGenerator::hyper_rectangle(grid, Point<3>(-a / 2., -b / 2., -h / 2.), Point<3>(a / 2., b / 2., h / 2.));
+    const FESystem<3> fe(FE_Q<3>(degree_of(element)), 3);
+    DoFHandler<3>     dofs(grid);
+    dofs.distribute_dofs(fe);
+    FEValues<3> values(fe, QGauss<3>(degree_of(element) + 1), CellStiffness::update_flags(element));
+    values.reinit(dofs.begin_active());
+    FullMatrix<double> K(fe.n_dofs_per_cell());
+    CellStiffness(element, poisson_ratio).integrate(values, K);
+
+    std::vector<double> u;
+    for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
+      {
+        const Point<3> p = fe.unit_support_point(i);
+        u.push_back(field(Point<3>(a * (p[0] - 0.5), b * (p[1] - 0.5), h * (p[2] - 0.5)))[fe.system_to_component_index(i).first]);
+      }
+    Energy result{0., 0.};
+    for (unsigned int i = 0; i < u.size(); ++i)
+      for (unsigned int j = 0; j < u.size(); ++j)
+        {
+          result.value += 0.5 * u[i] * K(i, j) * u[j];
+          result.rounding += 0.5 * std::abs(u[i] * K(i, j) * u[j]);
+        }
+    result.rounding *= u.size() * std::numeric_limits<double>::epsilon();
+    return result;
+  }
+
+  /// Pure bending of unit curvature about y with its anticlastic curvature: σ_x = E z, all other stresses zero.
+  Field bending(const double nu)
+  {
+    return [nu](const Point<3> &p) {
+      const double x = p[0], y = p[1], z = p[2];
+      return Tensor<1, 3>({x * z, -nu * y * z, -0.5 * (x * x + nu * (z * z - y * y))});
+    };
+  }
+} // namespace
+
+TEST(CellStiffness, OneCellBendsAsABeamDoes)
+{
+  // E = 1: ½ E I a
+  const double exact = 0.5 * a * b * h * h * h / 12.;
+  for (const double nu : {0., 0.25, 0.3, 0.49})
+    {
+      const Energy trilinear = energy(Element::trilinear, nu, bending(nu)), bent = energy(Element::incompatible_modes, nu, bending(nu)),
+                   quadratic = energy(Element::quadratic, nu, bending(nu));
+      // Condensation subtracts what the modes release from the trilinear energy
+      EXPECT_NEAR(bent.value, exact, trilinear.rounding) << nu;
+      EXPECT_NEAR(quadratic.value, exact, quadratic.rounding) << nu;
+      EXPECT_LT(std::max(trilinear.rounding, quadratic.rounding), 1e-7 * exact) << nu;
+
+      // Trilinear, γ_xz = x and γ_yz = −ν y do not vanish; strains of x and y without that of z
+      const double G = 1. / (2. * (1. + nu)), lame = 2. * G * nu / (1. - 2. * nu), trace = 1. - nu;
+      const double I     = b * h * h * h / 12. * a;
+      const double shear = 0.5 * G * (a * a * a * b * h + nu * nu * b * b * b * a * h) / 12.;
+      EXPECT_NEAR(trilinear.value / (I * (G * (1. + nu * nu) + 0.5 * lame * trace * trace) + shear), 1., 1e-12);
+      EXPECT_GT(trilinear.value, 50. * exact);
+    }
+}
+
+TEST(CellStiffness, IncompatibleModesSoftenNothingButHigherStrains)
+{
+  // A state of constant strain has the same energy in every element
+  const Field linear = [](const Point<3> &p) {
+    return Tensor<1, 3>({1.1 * p[0] + 0.3 * p[1] - 0.4 * p[2], 0.7 * p[1] + 0.9 * p[2], 0.5 * p[0] - 1.3 * p[2]});
+  };
+  const double expected = energy(Element::trilinear, 0.3, linear).value;
+  EXPECT_NEAR(energy(Element::incompatible_modes, 0.3, linear).value / expected, 1., 1e-13);
+}
