@@ -10,18 +10,6 @@
 
 namespace Squeal
 {
-  namespace
-  {
-    void write_or_throw(const std::filesystem::path                   &file,
-                        const int                                      flags,
-                        const std::initializer_list<std::string_view> &texts,
-                        const OnDisk                                   on_disk)
-    {
-      if (const int problem = write_file(file, flags, texts, on_disk == OnDisk::now); problem != 0)
-        throw std::filesystem::filesystem_error("write", file, std::error_code(problem, std::generic_category()));
-    }
-  } // namespace
-
   int write_file(const std::filesystem::path                   &file,
                  const int                                      flags,
                  const std::initializer_list<std::string_view> &texts,
@@ -46,15 +34,11 @@ namespace Squeal
     return problem;
   }
 
-  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts, const OnDisk on_disk)
-  {
-    write_or_throw(file, O_APPEND, texts, on_disk);
-  }
-
   void replace_file(const std::filesystem::path &file, const std::string_view text)
   {
     const std::filesystem::path temporary = file.string() + ".incomplete";
-    write_or_throw(temporary, O_TRUNC, {text}, OnDisk::now);
+    if (const int problem = write_file(temporary, O_TRUNC, {text}, true); problem != 0)
+      throw std::filesystem::filesystem_error("write", temporary, std::error_code(problem, std::generic_category()));
     std::filesystem::rename(temporary, file);
   }
 } // namespace Squeal

@@ -159,7 +159,7 @@ TEST_F(SafeFolders, AreForOneRunAtATime)
 TEST_F(SafeFolders, TakeWhatOnlyAnUnfinishedRunNeedsWithThem)
 {
   const fs::path checkpoint = results + ".checkpoint";
-  put(checkpoint / "sweep.archive", "so far");
+  put(checkpoint / "sweep.key", "so far");
   ResultFolder folder(results, true);
   folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
   folder.commit([&] {

@@ -491,10 +491,8 @@ class Interrupted(SweepTest):
 
     @staticmethod
     def n_kept(checkpoint):
-        """Number of results in a checkpoint: each has the rows of its modes one after the other."""
-        path = checkpoint / "points.csv"
-        places = [tuple(row.values())[:2] for row in read_table(path)] if path.is_file() else []
-        return sum(a != b for a, b in zip(places, [None, *places]))
+        """Number of results and blocks of bases in a checkpoint."""
+        return len(list(checkpoint.glob("found-*[0-9]")))
 
     def kill(self, output, n_results):
         """Starts a run and kills it when it has kept as many results."""
@@ -509,7 +507,7 @@ class Interrupted(SweepTest):
                 time.sleep(0.002)
             process.kill()
         self.assertFalse((self.folder / output / "run.json").exists())
-        self.assertEqual({path.name for path in checkpoint.iterdir()}, {"sweep.archive", "points.csv"})
+        self.assertTrue((checkpoint / "sweep.key").is_file())
         return checkpoint
 
     def assert_goes_on(self, output, checkpoint, *additions):
@@ -549,12 +547,12 @@ class Interrupted(SweepTest):
                 self.assertEqual(contents(checkpoint), kept)
                 self.assertFalse((self.folder / "changed" / "run.json").exists())
         # As if a geometry of one's own had been edited
-        archive = checkpoint / "sweep.archive"
-        archive.write_bytes(re.sub(rb" nodes \w+", b" nodes 0", kept[archive.name], count=1))
+        key = checkpoint / "sweep.key"
+        key.write_bytes(re.sub(rb" nodes \w+", b" nodes 0", kept[key.name], count=1))
         message = self.call_sweep("changed", CONSISTENT, self.NUMBER).stderr
         self.assertIn("another mesh", message)
         self.assertIn("hexahedra", message)
-        archive.write_bytes(kept[archive.name])
+        key.write_bytes(kept[key.name])
         self.assert_goes_on("changed", checkpoint)
 
 

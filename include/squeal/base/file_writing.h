@@ -15,19 +15,6 @@ namespace Squeal
    */
   int write_file(const std::filesystem::path &file, int flags, const std::initializer_list<std::string_view> &texts, bool on_disk);
 
-  /// Whether a file is to be on the disk at once, and outlives a loss of power; what is not outlives the end of the program only.
-  enum class OnDisk
-  {
-    now,
-    later
-  };
-
-  /**
-   * Adds texts to the end of a file. What has been written when it fails stays. Throws
-   * std::filesystem::filesystem_error.
-   */
-  void append_to_file(const std::filesystem::path &file, const std::initializer_list<std::string_view> &texts, OnDisk on_disk);
-
   /**
    * Gives a file a new content by way of `FILE.incomplete`: at every moment it has the former one or all of the new one. Throws
    * std::filesystem::filesystem_error.

@@ -205,8 +205,7 @@ namespace Squeal
     Progress         silent;
     Run              part(sweep, run, silent);
     Scene            scene = mesh_scene(part);
-    ChartCheckpoint  checkpoint(folder, sweep_identity(part, scene), part.communicator,
-                                circular_frequency(sweep.discretization.maximum_frequency));
+    ChartCheckpoint  checkpoint(folder, sweep_identity(part, scene), part.communicator);
     assemble_scene(scene, part);
 
     const SweepPlan                      plan = sweep_plan(scene, part);

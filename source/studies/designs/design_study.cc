@@ -130,8 +130,7 @@ namespace Squeal
           return;
         }
       ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
-                                 design_key(run, family->shared_scene(), work.plan), run.communicator,
-                                 circular_frequency(run.parameters.discretization.maximum_frequency));
+                                 design_key(run, family->shared_scene(), work.plan), run.communicator);
       for (std::size_t i = 0; i < designs.size(); ++i)
         {
           const int                         design = work.designs[i];

@@ -256,7 +256,7 @@ namespace Squeal
     const Parameters &parameters = run.parameters;
     const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), sweep_identity(run, scene), run.communicator, omega_max);
+    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), sweep_identity(run, scene), run.communicator);
     if (checkpoint.n_found() > 0)
       run.progress.note(text("  an interrupted sweep goes on: ", checkpoint.n_found(), " operating points are known"));
     assemble_scene(scene, run);
