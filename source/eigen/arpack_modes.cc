@@ -4,57 +4,9 @@
 
 #include <mpi.h>
 
-#include <algorithm>
+#include <arpack/parpack.h>
 
-// PARPACK's reverse communication; the trailing arguments are the lengths of the strings.
-extern "C"
-{
-  void pdsaupd_(const int  *comm,
-                int        *ido,
-                const char *bmat,
-                const int  *n,
-                const char *which,
-                const int  *nev,
-                double     *tol,
-                double     *resid,
-                const int  *ncv,
-                double     *v,
-                const int  *ldv,
-                int        *iparam,
-                int        *ipntr,
-                double     *workd,
-                double     *workl,
-                const int  *lworkl,
-                int        *info,
-                std::size_t,
-                std::size_t);
-  void pdseupd_(const int    *comm,
-                const int    *rvec,
-                const char   *howmny,
-                int          *select,
-                double       *d,
-                double       *z,
-                const int    *ldz,
-                const double *sigma,
-                const char   *bmat,
-                const int    *n,
-                const char   *which,
-                const int    *nev,
-                double       *tol,
-                double       *resid,
-                const int    *ncv,
-                double       *v,
-                const int    *ldv,
-                int          *iparam,
-                int          *ipntr,
-                double       *workd,
-                double       *workl,
-                const int    *lworkl,
-                int          *info,
-                std::size_t,
-                std::size_t,
-                std::size_t);
-}
+#include <algorithm>
 
 namespace Squeal
 {
@@ -91,12 +43,11 @@ namespace Squeal
     std::copy_n(start.col(0).begin(), n_local, resid.begin());
 
     const auto vector = [&](double *values) { return MultiVector(map, values, 1); };
-    double     tol    = request.tolerance;
     int        ido = 0, info = 1;
     while (true)
       {
-        pdsaupd_(&comm, &ido, "G", &n, "LM", &nev, &tol, resid.data(), &ncv, v.data(), &n, iparam, ipntr, workd.data(), workl.data(),
-                 &lworkl, &info, 1, 2);
+        pdsaupd_c(comm, &ido, "G", n, "LM", nev, request.tolerance, resid.data(), ncv, v.data(), n, iparam, ipntr, workd.data(),
+                  workl.data(), lworkl, &info);
         if (ido == 99)
           break;
         MultiVector x = vector(workd.data() + ipntr[0] - 1), y = vector(workd.data() + ipntr[1] - 1);
@@ -127,8 +78,8 @@ namespace Squeal
     const double        sigma        = 0.; // only moves the eigenvalues, which are not used
     std::vector<int>    select(ncv);
     std::vector<double> values(nev);
-    pdseupd_(&comm, &want_vectors, "A", select.data(), values.data(), v.data(), &n, &sigma, "G", &n, "LM", &nev, &tol, resid.data(), &ncv,
-             v.data(), &n, iparam, ipntr, workd.data(), workl.data(), &lworkl, &info, 1, 1, 2);
+    pdseupd_c(comm, want_vectors, "A", select.data(), values.data(), v.data(), n, sigma, "G", n, "LM", nev, request.tolerance, resid.data(),
+              ncv, v.data(), n, iparam, ipntr, workd.data(), workl.data(), lworkl, &info);
     if (info != 0)
       throw_arpack("pdseupd", info, request.what);
     const int         n_converged = iparam[4];

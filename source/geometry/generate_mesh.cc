@@ -78,8 +78,8 @@ namespace Squeal
     }
 
     /**
-     * Runs Gmsh on the geometry, which may only read unless the parameters allow it more. The program's own geometries
-     * need no confinement, which not every system offers.
+     * Runs Gmsh on the geometry, which may only read unless the parameters allow it more; the program's own geometries
+     * are trusted.
      */
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
@@ -182,20 +182,26 @@ namespace Squeal
     {
       const GmshMesh gmsh = run_gmsh_once(parameters, where, communicator);
       check_groups(gmsh, where);
+      const auto with_note = [&gmsh](HexMesh mesh) {
+        if (!gmsh.why_not_confined.empty())
+          mesh.notes.push_back("this system cannot keep a geometry from running programs and writing files (" + gmsh.why_not_confined +
+                               ")");
+        return mesh;
+      };
       if (gmsh.dimension() == 3)
         {
           HexMesh mesh = make_hex_mesh(gmsh, additional_surfaces, where);
           if (const unsigned int n = make_right_handed(mesh); n > 0)
             mesh.notes.push_back(
               text(n, " of ", mesh.hexahedra.size(), " hexahedra are left-handed; their bottom and top nodes have been exchanged"));
-          return mesh;
+          return with_note(std::move(mesh));
         }
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
       check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
       smooth(plan);
-      return extrude(plan, parameters);
+      return with_note(extrude(plan, parameters));
     }
 
     // Of the supplied plan, where elements of the wanted size do not fit between the pins

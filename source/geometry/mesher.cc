@@ -259,9 +259,6 @@ namespace Squeal
             throw ForbiddenAction("makes or changes the file `" + content + "`");
           case MesherReply::uses_network:
             throw ForbiddenAction("opens a network connection");
-          case MesherReply::not_confined:
-            throw MeshError("This system cannot keep a geometry from running shell commands (" + content + ")", where,
-                            "read the file; if you trust everything in it, set Geometry/Allow shell commands = true");
         }
       throw MeshError("The mesher gave an unknown reply", where, "build all of the program anew");
     }

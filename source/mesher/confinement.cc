@@ -2,49 +2,35 @@
 
 #include <squeal/geometry/mesher_protocol.h>
 
-#include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <cstddef>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include <fcntl.h>
-#include <linux/audit.h>
-#include <linux/filter.h>
 #include <linux/sched.h>
-#include <linux/seccomp.h>
-#include <sys/prctl.h>
+#include <seccomp.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
 #include <ucontext.h>
 #include <unistd.h>
 
 namespace Squeal
 {
-#if defined(__x86_64__) || defined(__aarch64__)
   namespace
   {
-#  if defined(__x86_64__)
-    constexpr unsigned int architecture = AUDIT_ARCH_X86_64;
-
-    /// Argument 0 or 1 of the system call in which a signal came.
-    const char *text_argument(const ucontext_t &context, const int number)
+    /// Argument 0 or 1 of the system call in which a signal came; null where it is not known.
+    const char *text_argument([[maybe_unused]] const ucontext_t &context, [[maybe_unused]] const int number)
     {
+#if defined(__x86_64__)
       return reinterpret_cast<const char *>(context.uc_mcontext.gregs[number == 0 ? REG_RDI : REG_RSI]);
-    }
-#  else
-    constexpr unsigned int architecture = AUDIT_ARCH_AARCH64;
-
-    const char *text_argument(const ucontext_t &context, const int number)
-    {
+#elif defined(__aarch64__)
       return reinterpret_cast<const char *>(context.uc_mcontext.regs[number]);
+#else
+      return nullptr;
+#endif
     }
-#  endif
-
-    // ------------------------------------------------------- what is forbidden
 
     /// A system call that ends the process, the reply to it, and which of its arguments names a file; -1 if none does.
     struct Forbidden
@@ -56,96 +42,25 @@ namespace Squeal
 
     constexpr MesherReply starts = MesherReply::starts_program, writes = MesherReply::writes_file, connects = MesherReply::uses_network;
 
-    // Of open, openat and clone some uses are allowed, see confine()
+    // Numbers of calls that a processor does not have are negative, and ignored
     constexpr Forbidden forbidden[] = {
-      {SYS_execve, starts, -1},       {SYS_execveat, starts, -1}, {SYS_clone, starts, -1}, {SYS_socket, connects, -1},
-      {SYS_socketpair, connects, -1}, {SYS_truncate, writes, 0},  {SYS_openat, writes, 1}, {SYS_mkdirat, writes, 1},
-      {SYS_mknodat, writes, 1},       {SYS_renameat2, writes, 1}, {SYS_linkat, writes, 1}, {SYS_symlinkat, writes, 1},
-      {SYS_fchmodat, writes, 1},      {SYS_fchownat, writes, 1},
-#  if defined(SYS_renameat)
-      {SYS_renameat, writes, 1},
-#  endif
-#  if defined(__x86_64__)
-      {SYS_fork, starts, -1},         {SYS_vfork, starts, -1},    {SYS_open, writes, 0},   {SYS_creat, writes, 0},
-      {SYS_mkdir, writes, 0},         {SYS_mknod, writes, 0},     {SYS_rename, writes, 0}, {SYS_link, writes, 0},
-      {SYS_symlink, writes, 0},       {SYS_chmod, writes, 0},     {SYS_chown, writes, 0},  {SYS_lchown, writes, 0},
-#  endif
-    };
+      {SCMP_SYS(execve), starts, -1},  {SCMP_SYS(execveat), starts, -1}, {SCMP_SYS(fork), starts, -1},
+      {SCMP_SYS(vfork), starts, -1},   {SCMP_SYS(socket), connects, -1}, {SCMP_SYS(truncate), writes, 0},
+      {SCMP_SYS(creat), writes, 0},    {SCMP_SYS(mkdir), writes, 0},     {SCMP_SYS(mknod), writes, 0},
+      {SCMP_SYS(rename), writes, 0},   {SCMP_SYS(link), writes, 0},      {SCMP_SYS(symlink), writes, 0},
+      {SCMP_SYS(chmod), writes, 0},    {SCMP_SYS(chown), writes, 0},     {SCMP_SYS(lchown), writes, 0},
+      {SCMP_SYS(mkdirat), writes, 1},  {SCMP_SYS(mknodat), writes, 1},   {SCMP_SYS(renameat), writes, 1},
+      {SCMP_SYS(linkat), writes, 1},   {SCMP_SYS(renameat2), writes, 1}, {SCMP_SYS(symlinkat), writes, 1},
+      {SCMP_SYS(fchmodat), writes, 1}, {SCMP_SYS(fchownat), writes, 1},  {SCMP_SYS(socketpair), connects, -1}};
+
+    // Of these only some uses are forbidden, see confine()
+    constexpr Forbidden forbidden_uses[] = {{SCMP_SYS(open), writes, 0}, {SCMP_SYS(openat), writes, 1}, {SCMP_SYS(clone), starts, -1}};
 
     // No script asks for these; Gmsh itself tries to remove files that it did not make.
-    constexpr int removing_files[] = {
-      SYS_unlinkat,
-#  if defined(__x86_64__)
-      SYS_unlink,
-      SYS_rmdir,
-#  endif
-    };
+    constexpr int removing_files[] = {SCMP_SYS(unlink), SCMP_SYS(unlinkat), SCMP_SYS(rmdir)};
 
     // Ways around the above whose arguments a filter cannot read; callers take the older call instead.
-    constexpr int unavailable[] = {435 /* clone3 */, 437 /* openat2 */, 425 /* io_uring_setup */};
-
-    // ------------------------------------------------------------------ filter
-
-    /// Program of the kernel's filter, which looks at every system call.
-    class Filter
-    {
-    public:
-      Filter()
-      {
-        load(offsetof(seccomp_data, arch));
-        unless_equal(architecture, SECCOMP_RET_KILL_PROCESS);
-        load(offsetof(seccomp_data, nr));
-      }
-
-      /// Answers a call by an action of the kernel, unless a rule before this one has decided about it.
-      void answer(const int call, const unsigned int action)
-      {
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)(call), 0, 1));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, action));
-      }
-
-      /// Decides about a call: forbids it if its 32-bit argument has one of @p bits, or lacks all of them.
-      void forbid_bits(const int call, const int argument, const unsigned int bits, const bool where_set)
-      {
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)(call), 0, 4));
-        load(offsetof(seccomp_data, args) + 8 * argument); // both processors store the low half first
-        program.push_back(
-          BPF_JUMP(BPF_JMP | BPF_JSET | BPF_K, bits, (unsigned char)(where_set ? 0 : 1), (unsigned char)(where_set ? 1 : 0)));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_TRAP));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-      }
-
-      /// Forbids all calls from a number on.
-      void forbid_from(const unsigned int first)
-      {
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JGE | BPF_K, first, 0, 1));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS));
-      }
-
-      void install()
-      {
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW));
-        const sock_fprog all{(unsigned short)(program.size()), program.data()};
-        if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &all) != 0)
-          throw std::runtime_error(std::string("seccomp: ") + std::strerror(errno));
-      }
-
-    private:
-      void load(const unsigned int offset)
-      {
-        program.push_back(BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offset));
-      }
-
-      void unless_equal(const unsigned int value, const unsigned int action)
-      {
-        program.push_back(BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, value, 1, 0));
-        program.push_back(BPF_STMT(BPF_RET | BPF_K, action));
-      }
-
-      std::vector<sock_filter> program;
-    };
-
-    // ------------------------------------------------------------------- reply
+    constexpr int unavailable[] = {SCMP_SYS(clone3), SCMP_SYS(openat2), SCMP_SYS(io_uring_setup)};
 
     /// Says what was tried, and ends the process. Called in a signal: system calls only.
     void reply_and_end(const MesherReply reply, const char *text)
@@ -159,10 +74,21 @@ namespace Squeal
 
     void on_forbidden_call(int, siginfo_t *info, void *context)
     {
-      for (const Forbidden &rule : forbidden)
+      const auto answer = [&](const Forbidden &rule) {
         if (rule.call == info->si_syscall)
           reply_and_end(rule.reply,
                         rule.file_argument < 0 ? nullptr : text_argument(*static_cast<const ucontext_t *>(context), rule.file_argument));
+      };
+      for (const Forbidden &rule : forbidden)
+        answer(rule);
+      for (const Forbidden &rule : forbidden_uses)
+        answer(rule);
+    }
+
+    void check(const int result)
+    {
+      if (result != 0)
+        throw std::runtime_error(std::string("seccomp: ") + std::strerror(-result));
     }
   } // namespace
 
@@ -179,28 +105,24 @@ namespace Squeal
     action.sa_flags         = SA_SIGINFO;
     sigaction(SIGSYS, &action, nullptr);
 
-    constexpr unsigned int writing = O_ACCMODE | O_CREAT | O_TRUNC;
-    Filter                 filter;
-#  if defined(__x86_64__)
-    filter.forbid_from(0x40000000); // the x32 numbers of the same calls
-    filter.forbid_bits(SYS_open, 1, writing, true);
-#  endif
-    filter.forbid_bits(SYS_openat, 2, writing, true);
-    filter.forbid_bits(SYS_clone, 0, CLONE_THREAD, false); // threads are no programs
+    const std::unique_ptr<void, void (*)(scmp_filter_ctx)> filter(seccomp_init(SCMP_ACT_ALLOW), seccomp_release);
+    if (!filter)
+      throw std::runtime_error("seccomp: not on this system");
     for (const Forbidden &rule : forbidden)
-      filter.answer(rule.call, SECCOMP_RET_TRAP);
+      check(seccomp_rule_add(filter.get(), SCMP_ACT_TRAP, rule.call, 0));
+    for (const std::uint64_t bit : {O_WRONLY, O_RDWR, O_CREAT, O_TRUNC})
+      {
+        check(seccomp_rule_add(filter.get(), SCMP_ACT_TRAP, SCMP_SYS(open), 1, SCMP_A1(SCMP_CMP_MASKED_EQ, bit, bit)));
+        check(seccomp_rule_add(filter.get(), SCMP_ACT_TRAP, SCMP_SYS(openat), 1, SCMP_A2(SCMP_CMP_MASKED_EQ, bit, bit)));
+      }
+    // Threads are no programs
+    check(seccomp_rule_add(filter.get(), SCMP_ACT_TRAP, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0)));
     for (const int call : removing_files)
-      filter.answer(call, SECCOMP_RET_ERRNO | EACCES);
+      check(seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(EACCES), call, 0));
     for (const int call : unavailable)
-      filter.answer(call, SECCOMP_RET_ERRNO | ENOSYS);
-    filter.install();
+      check(seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(ENOSYS), call, 0));
+    check(seccomp_load(filter.get()));
   }
-#else
-  void confine()
-  {
-    throw std::runtime_error("seccomp: not on this processor");
-  }
-#endif
 
   void limit_resources([[maybe_unused]] const double bytes, const double seconds)
   {

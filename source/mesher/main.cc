@@ -45,6 +45,7 @@ int main(int argc, char **argv)
       start_gmsh();
       for (int i = 5; i + 1 < argc; i += 2)
         set_number(argv[i], std::atof(argv[i + 1]));
+      std::string why_not_confined;
       if (argv[4] != std::string(mesher_free))
         try
           {
@@ -52,10 +53,11 @@ int main(int argc, char **argv)
           }
         catch (const std::runtime_error &error)
           {
-            send(MesherReply::not_confined, error.what());
-            _exit(0);
+            why_not_confined = error.what();
           }
-      send(MesherReply::mesh, to_bytes(mesh_geometry(mesher_script_name, argv[1])));
+      GmshMesh mesh         = mesh_geometry(mesher_script_name, argv[1]);
+      mesh.why_not_confined = why_not_confined;
+      send(MesherReply::mesh, to_bytes(mesh));
     }
   catch (const GmshError &error)
     {

@@ -237,7 +237,8 @@ namespace Squeal
                      "Units: m.",
                      {0.});
     declarations.add("Allow shell commands", allow_shell_commands,
-                     "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. "
+                     "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. Where the "
+                     "system cannot forbid that, a note says so. "
                      "Only for files whose every line you trust. Units: none.");
     declarations.add("Meshing time limit", meshing_time_limit, "Longest time that Gmsh may take. Units: s.", {0.});
     declarations.add("Meshing memory limit", meshing_memory_limit, "Most memory that Gmsh may take. Units: GB.", {0.});

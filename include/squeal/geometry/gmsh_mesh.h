@@ -46,13 +46,16 @@ namespace Squeal
     std::vector<Group>                 groups;                        ///< by dimension, then in the order of their numbers
     std::size_t                        n_unnamed_volume_elements = 0; ///< 3-D elements in no physical group
 
+    /// What the system lacks that keeps Gmsh from running programs and writing files; empty: nothing, or it was not asked for.
+    std::string why_not_confined;
+
     /// The highest dimension that has a physical group; 0 without any.
     int dimension() const;
 
     template <typename Archive>
     void serialize(Archive &archive, unsigned int)
     {
-      archive &points &groups &n_unnamed_volume_elements;
+      archive &points &groups &n_unnamed_volume_elements &why_not_confined;
     }
   };
 

@@ -13,7 +13,7 @@ namespace Squeal
   {
     double seconds;     ///< wall time [s]
     double bytes;       ///< address space [byte]
-    bool   is_confined; ///< no programs, no files, no network
+    bool   is_confined; ///< no programs, no files, no network, where the system can do that
   };
 
   /// A confined process tried what it may not: e.g. "starts another program".

@@ -13,8 +13,7 @@ namespace Squeal
     out_of_memory  = 'o', ///< nothing follows
     starts_program = 'p', ///< nothing follows
     writes_file    = 'w', ///< name of the file, empty where it is not known
-    uses_network   = 'n', ///< nothing follows
-    not_confined   = 'u'  ///< why the system cannot confine a process
+    uses_network   = 'n'  ///< nothing follows
   };
 
   inline constexpr int mesher_reply_descriptor = 3;
