@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <optional>
 
@@ -74,6 +75,37 @@ namespace Squeal
 
   namespace
   {
+    /// The numbers of wanted eigenvalues in their order; real ones become those of @p modes.
+    std::vector<int> sorted_values(const int                          n,
+                                   const std::function<Complex(int)> &value,
+                                   const bool                         linear,
+                                   const double                       largest_circular_frequency,
+                                   const RealVectors                  real_vectors,
+                                   DenseQuadraticModes               &modes)
+    {
+      std::vector<int> wanted;
+      for (int j = 0; j < n; ++j)
+        {
+          const Complex lambda = value(j);
+          if (!(std::abs(lambda.imag()) / std::abs(lambda) > real_dense))
+            {
+              modes.real_values.push_back(lambda.real());
+              if (linear)
+                modes.real_values.push_back(-lambda.real());
+              if (real_vectors == RealVectors::wanted)
+                wanted.push_back(j);
+            }
+          else if (lambda.imag() > 0. && lambda.imag() <= largest_circular_frequency)
+            wanted.push_back(j);
+        }
+      std::sort(modes.real_values.begin(), modes.real_values.end());
+      std::stable_sort(wanted.begin(), wanted.end(), [&value](const int a, const int b) {
+        const Complex x = value(a), y = value(b);
+        return x.imag() != y.imag() ? x.imag() < y.imag() : x.real() < y.real();
+      });
+      return wanted;
+    }
+
     /// Modes as dense_quadratic_modes() describes them; with @p squares those of dense_modes_of_band().
     std::optional<DenseQuadraticModes> found_modes(const DenseMatrix         &mass,
                                                    const DenseMatrix         *damping,
@@ -128,28 +160,9 @@ namespace Squeal
                (real_vectors == RealVectors::wanted || std::abs(lambda.imag()) > surely_real * std::abs(lambda));
       });
 
-      // ------------------------------------------------- values wanted, in order
-      const auto       value = [&](const int j) { return lambda_of(pairs.values[j]); };
-      std::vector<int> wanted;
-      for (int j = 0; j < companion.rows(); ++j)
-        {
-          const Complex lambda = value(j);
-          if (!(std::abs(lambda.imag()) / std::abs(lambda) > real_dense))
-            {
-              modes.real_values.push_back(lambda.real());
-              if (linear)
-                modes.real_values.push_back(-lambda.real());
-              if (real_vectors == RealVectors::wanted)
-                wanted.push_back(j);
-            }
-          else if (lambda.imag() > 0. && lambda.imag() <= largest_circular_frequency)
-            wanted.push_back(j);
-        }
-      std::sort(modes.real_values.begin(), modes.real_values.end());
-      std::stable_sort(wanted.begin(), wanted.end(), [&value](const int a, const int b) {
-        const Complex x = value(a), y = value(b);
-        return x.imag() != y.imag() ? x.imag() < y.imag() : x.real() < y.real();
-      });
+      const auto             value = [&](const int j) { return lambda_of(pairs.values[j]); };
+      const std::vector<int> wanted =
+        sorted_values(static_cast<int>(companion.rows()), value, linear, largest_circular_frequency, real_vectors, modes);
 
       // ------------------------------------------------- vectors
       const int k = static_cast<int>(wanted.size());

@@ -64,6 +64,35 @@ namespace Squeal
     return result;
   }
 
+  /// Everything but the kinds of pairing in the error of a mode from that of its counterpart, and of the closest in shape.
+  static void set_differences(const Complex              exact,
+                              const ReducedModes        &chosen,
+                              const EigenvalueEstimates &estimates,
+                              const int                  i,
+                              const Complex              closest,
+                              ModeError                 &error)
+  {
+    const Complex found = chosen.lambda[i], corrected = found + estimates.corrections[i];
+    error.reference            = exact;
+    error.reduced              = found;
+    error.residual             = estimates.energy_residuals[i];
+    error.frequency            = frequency_difference(found, exact);
+    error.divergence           = divergence_difference(found, exact);
+    error.closest_frequency    = frequency_difference(closest, exact);
+    error.closest_divergence   = divergence_difference(closest, exact);
+    error.estimated_divergence = divergence_difference(corrected, found);
+    error.corrected_divergence = divergence_difference(corrected, exact);
+    error.eigenvalue           = std::abs(found - exact) / std::abs(exact);
+    error.corrected            = corrected;
+    error.corrected_error      = std::abs(corrected - exact) / std::abs(exact);
+    error.estimated_error      = estimates.errors[i];
+    error.estimate_ratio =
+      found != exact ? std::abs(estimates.corrections[i]) / std::abs(found - exact) : std::numeric_limits<double>::infinity();
+    error.condition = estimates.conditions[i];
+    error.claimed   = estimates.claimed[i];
+    error.verdict   = estimates.verdicts[i];
+  }
+
   std::vector<ModeError> reduction_errors(const CoupledSystem  &system,
                                           const UpdatedInverse &inverse,
                                           const ReducedModel   &model,
@@ -132,30 +161,11 @@ namespace Squeal
 
     for (int i = 0; i < k; ++i)
       {
-        const Complex exact = lambda[i], found = chosen.lambda[i], corrected = found + estimates.corrections[i];
-        ModeError    &error        = errors[i];
-        error.reference            = exact;
-        error.reduced              = found;
-        error.match                = match[i];
-        error.residual             = estimates.energy_residuals[i];
-        error.shape                = std::max(0., 1. - mac(i, match[i]));
-        error.frequency            = frequency_difference(found, exact);
-        error.divergence           = divergence_difference(found, exact);
-        error.closest              = closest[i];
-        error.closest_shape        = std::max(0., 1. - mac(i, closest[i]));
-        error.closest_frequency    = frequency_difference(modes.lambda[closest[i]], exact);
-        error.closest_divergence   = divergence_difference(modes.lambda[closest[i]], exact);
-        error.estimated_divergence = divergence_difference(corrected, found);
-        error.corrected_divergence = divergence_difference(corrected, exact);
-        error.eigenvalue           = std::abs(found - exact) / std::abs(exact);
-        error.corrected            = corrected;
-        error.corrected_error      = std::abs(corrected - exact) / std::abs(exact);
-        error.estimated_error      = estimates.errors[i];
-        error.estimate_ratio =
-          found != exact ? std::abs(estimates.corrections[i]) / std::abs(found - exact) : std::numeric_limits<double>::infinity();
-        error.condition = estimates.conditions[i];
-        error.claimed   = estimates.claimed[i];
-        error.verdict   = estimates.verdicts[i];
+        set_differences(lambda[i], chosen, estimates, i, modes.lambda[closest[i]], errors[i]);
+        errors[i].match         = match[i];
+        errors[i].shape         = std::max(0., 1. - mac(i, match[i]));
+        errors[i].closest       = closest[i];
+        errors[i].closest_shape = std::max(0., 1. - mac(i, closest[i]));
       }
     return errors;
   }

@@ -66,6 +66,33 @@ namespace Squeal
       return values.front() > 0. ? values.back() / values.front() : std::numeric_limits<double>::infinity();
     }
 
+    /// The columns of X that are not zero, scaled, and the @p pairs of their Gram matrix; nothing if all are zero.
+    std::optional<MultiVector> scaled_columns(const SparseMatrix &M, MultiVector X, const Scaling scaling, RealPairs &pairs)
+    {
+      const DenseMatrix   G = weighted_gram(X, M);
+      std::vector<double> scale;
+      std::vector<int>    nonzero;
+      for (int j = 0; j < X.n_columns(); ++j)
+        {
+          if (!std::isfinite(G(j, j)))
+            throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values", "orthonormalisation",
+                              "check the step that computed the vectors");
+          if (G(j, j) > 0.)
+            {
+              nonzero.push_back(j);
+              scale.push_back(scaling == Scaling::unit_norm ? 1. / std::sqrt(G(j, j)) : 1.);
+            }
+        }
+      const int k = nonzero.size();
+      if (k == 0)
+        return {};
+      for (int j = 0; j < k; ++j)
+        X.col(nonzero[j]) *= scale[j];
+      const auto scales = as_column(scale).asDiagonal();
+      pairs             = common_eigenpairs(X.communicator(), scales * G(nonzero, nonzero) * scales);
+      return k == X.n_columns() ? std::move(X) : selected(X, nonzero);
+    }
+
     std::optional<MultiVector> orthonormal_axes(const SparseMatrix   &M,
                                                 const MultiVector    *Q,
                                                 MultiVector           X,
@@ -77,7 +104,7 @@ namespace Squeal
       // A Gram matrix resolves directions down to the square root of the
       // rounding unit; with this ratio per pass they still come out accurate.
       const double   resolved     = 1e-10;
-      const MPI_Comm communicator = X.communicator();
+      const MPI_Comm communicator = X.communicator(); // before X is handed over
 
       std::deque<MultiVector> kept; // none is copied when the next one comes
       const auto              project = [&](MultiVector &Y) {
@@ -87,37 +114,14 @@ namespace Squeal
           project_out(M, W, Y);
       };
 
-      // Scale to unit norm; the largest direction of the scaled columns is the yardstick.
-      std::optional<MultiVector> remaining;
+      // The largest direction of the scaled columns is the yardstick
       RealPairs                  pairs; // of what remains
-      double                     largest = 0.;
-      {
-        const DenseMatrix   G = weighted_gram(X, M);
-        std::vector<double> scale;
-        std::vector<int>    nonzero;
-        for (int j = 0; j < X.n_columns(); ++j)
-          {
-            if (!std::isfinite(G(j, j)))
-              throw SolverError("vector " + std::to_string(j) + " contains infinite or undefined values", "orthonormalisation",
-                                "check the step that computed the vectors");
-            if (G(j, j) > 0.)
-              {
-                nonzero.push_back(j);
-                scale.push_back(scaling == Scaling::unit_norm ? 1. / std::sqrt(G(j, j)) : 1.);
-              }
-          }
-        const int k = nonzero.size();
-        if (k == 0)
-          return {};
-        for (int j = 0; j < k; ++j)
-          X.col(nonzero[j]) *= scale[j];
-        const auto scales = as_column(scale).asDiagonal();
-        pairs             = common_eigenpairs(communicator, scales * G(nonzero, nonzero) * scales);
-        largest           = pairs.values.back();
-        if (axes != nullptr)
-          *axes = {{}, condition_number(pairs.values)};
-        remaining.emplace(k == X.n_columns() ? std::move(X) : selected(X, nonzero));
-      }
+      std::optional<MultiVector> remaining = scaled_columns(M, std::move(X), scaling, pairs);
+      if (!remaining)
+        return {};
+      const double largest = pairs.values.back();
+      if (axes != nullptr)
+        *axes = {{}, condition_number(pairs.values)};
       const double smallest = tolerance * tolerance * largest;
 
       // One projection leaves components of the size of the rounding error, the second none.

@@ -66,6 +66,57 @@ namespace Squeal
       return pins;
     }
 
+    /// What the mesh tells of its size, from the nodes of the disc and of the pins.
+    struct Extent
+    {
+      double inner = std::numeric_limits<double>::infinity(), outer = 0., highest = 0.;
+      double innermost_pin = inner, outermost_pin = 0., end = 0.;
+    };
+
+    Extent extent_of(const HexMesh &mesh, const std::vector<unsigned int> &component)
+    {
+      Extent found;
+      for (std::size_t n = 0; n < mesh.points.size(); ++n)
+        {
+          const Point &x       = mesh.points[n];
+          const double r       = distance(x[0], x[1]);
+          const bool   is_disc = component[n] == 0;
+          double      &least = is_disc ? found.inner : found.innermost_pin, &most = is_disc ? found.outer : found.outermost_pin,
+                 &top = is_disc ? found.highest : found.end;
+          least       = std::min(least, r);
+          most        = std::max(most, r);
+          top         = std::max(top, std::abs(x[2]));
+        }
+      return found;
+    }
+
+    /// The pins with what is free around them; empty where the mesh is not that of the parameters.
+    std::vector<PinPlace> pins_of(const HexMesh                   &mesh,
+                                  const std::vector<unsigned int> &component,
+                                  const Extent                    &extent,
+                                  const GeometryParameters        &parameters)
+    {
+      const double          t = parameters.disc_thickness, h = parameters.pin_height, R_out = parameters.disc_outer_radius;
+      const auto            differs = [R_out](const double a, const double b) { return std::abs(a - b) > resemblance * R_out; };
+      std::vector<PinPlace> pins    = places(mesh, component, parameters);
+      if (differs(extent.inner, parameters.disc_inner_radius) || differs(extent.outer, R_out) ||
+          std::abs(extent.highest - t / 2.) > rounding * R_out || std::abs(extent.end - t / 2. - h) > rounding * R_out)
+        return {};
+      for (PinPlace &pin : pins)
+        {
+          const double r = distance(pin.x, pin.y);
+          if (differs(pin.radius, parameters.pin_diameter / 2.))
+            return {};
+          pin.gap = std::min(extent.outer - r - pin.radius, r - pin.radius - extent.inner);
+          for (const PinPlace &other : pins)
+            if (&other != &pin && other.side == pin.side)
+              pin.gap = std::min(pin.gap, distance(pin.x - other.x, pin.y - other.y) - pin.radius - other.radius);
+          if (!(pin.gap > rounding * R_out))
+            return {};
+        }
+      return pins;
+    }
+
     /// ρ of a pin: 1 within, 0 from the nearest other thing on.
     double weight(const PinPlace &pin, const Point &x)
     {
@@ -78,39 +129,11 @@ namespace Squeal
   {
     const std::vector<unsigned int> component = volume_of_nodes(mesh);
     const double                    t = parameters.disc_thickness, h = parameters.pin_height, d = parameters.pin_diameter;
-    const double                    R_in = parameters.disc_inner_radius, R_out = parameters.disc_outer_radius;
-
-    // ------------------------------------------------- whether the mesh is that of the parameters
-    double inner = std::numeric_limits<double>::infinity(), outer = 0., innermost_pin = inner, outermost_pin = 0., highest = 0., end = 0.;
-    for (std::size_t n = 0; n < mesh.points.size(); ++n)
-      {
-        const Point &x     = mesh.points[n];
-        const double r     = distance(x[0], x[1]);
-        double      &least = component[n] == 0 ? inner : innermost_pin, &most = component[n] == 0 ? outer : outermost_pin,
-               &top = component[n] == 0 ? highest : end;
-        least       = std::min(least, r);
-        most        = std::max(most, r);
-        top         = std::max(top, std::abs(x[2]));
-      }
-    const auto            differs = [R_out](const double a, const double b) { return std::abs(a - b) > resemblance * R_out; };
-    std::vector<PinPlace> pins    = places(mesh, component, parameters);
-    if (pins.empty() || differs(inner, R_in) || differs(outer, R_out) || std::abs(highest - t / 2.) > rounding * R_out ||
-        std::abs(end - t / 2. - h) > rounding * R_out)
+    const Extent                    extent = extent_of(mesh, component);
+    const std::vector<PinPlace>     pins   = pins_of(mesh, component, extent, parameters);
+    if (pins.empty())
       return {};
-    for (PinPlace &pin : pins)
-      {
-        const double r = distance(pin.x, pin.y);
-        if (differs(pin.radius, d / 2.))
-          return {};
-        pin.gap = std::min(outer - r - pin.radius, r - pin.radius - inner);
-        for (const PinPlace &other : pins)
-          if (&other != &pin && other.side == pin.side)
-            pin.gap = std::min(pin.gap, distance(pin.x - other.x, pin.y - other.y) - pin.radius - other.radius);
-        if (!(pin.gap > rounding * R_out))
-          return {};
-      }
 
-    // ------------------------------------------------------------------------------------ motions
     std::vector<MeshMotion> result;
     const auto add = [&](const char *parameter, const std::string &pin, const char *unit, const double value, const bool moves_contact,
                          const std::function<Point(const Point &x, unsigned int component)> &velocity) {
@@ -142,8 +165,10 @@ namespace Squeal
         return Point(v * x[0], v * x[1], 0.);
       };
     };
-    add("Disc inner radius", "", "m", R_in, false, radial(inner, R_in, innermost_pin));
-    add("Disc outer radius", "", "m", R_out, false, radial(outer, R_out, outermost_pin));
+    add("Disc inner radius", "", "m", parameters.disc_inner_radius, false,
+        radial(extent.inner, parameters.disc_inner_radius, extent.innermost_pin));
+    add("Disc outer radius", "", "m", parameters.disc_outer_radius, false,
+        radial(extent.outer, parameters.disc_outer_radius, extent.outermost_pin));
     add("Pin diameter", "", "m", d, true, [&](const Point &x, const unsigned int k) {
       Point sum;
       for (const PinPlace &pin : pins)
