@@ -217,7 +217,7 @@ namespace Squeal::Testing
   };
 
   /// Materials of the default scene; mounts as given.
-  inline MaterialParameters mounted(const std::vector<ElasticMount> &mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}})
+  inline MaterialParameters mounted(const std::vector<Mount> &mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}})
   {
     MaterialParameters materials;
     materials.mounts = mounts;

@@ -107,9 +107,11 @@ namespace Squeal
     SlaveRows slaves;
     for (const ContactNode &contact : interface)
       eliminate(slaves, contact, contact.pin_node, &contact.disc_node);
-    return {relative_displacement(model, interface, &ContactNode::normal), relative_displacement(model, interface, &ContactNode::sliding),
+    const auto normal = relative_displacement(model, interface, &ContactNode::normal);
+    return {normal, relative_displacement(model, interface, &ContactNode::sliding),
             relative_displacement(model, interface, &ContactNode::radial),
-            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n_local(), true), slaves)};
+            kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n_local(), true), slaves),
+            linear_combination({{0.5, normal.get()}})};
   }
 
   bool belongs_to(const Node &node, const Component component)

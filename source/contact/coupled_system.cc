@@ -17,14 +17,14 @@ namespace Squeal
                                             const std::shared_ptr<const LowRankFactor> &tangential)
     {
       const auto term = [](const char *weights, const std::shared_ptr<const LowRankFactor> &factor) {
-        return low_rank_term(weights, 1, {}, factor, factor, weights);
+        return low_rank_term(weights, 1, {}, factor, factor, weights, TermKind::contact_damping);
       };
       return {term(SystemParameter::radial_damping, radial), term(SystemParameter::sliding_damping, tangential)};
     }
 
     bool is_friction(const Term &term)
     {
-      return term.coefficient.contains(SystemParameter::friction);
+      return term.kind == TermKind::friction;
     }
   } // namespace
 
@@ -67,17 +67,28 @@ namespace Squeal
       result.terms.push_back(body.term);
     for (const CoupledTerm &body : bodies)
       if (body.reaction && max_norm(*body.reaction) > 0.)
-        result.terms.push_back(low_rank_term("friction, " + body.term.name, body.term.power,
-                                             body.term.coefficient * Monomial{-1., {{SystemParameter::friction, 1}}},
-                                             result.friction_forces, std::make_shared<LowRankFactor>(body.reaction)));
+        result.terms.push_back(low_rank_term(
+          "friction, " + body.term.name, body.term.power, body.term.coefficient * Coefficient(-1., {{SystemParameter::friction, 1}}),
+          result.friction_forces, std::make_shared<LowRankFactor>(body.reaction), "", TermKind::friction));
     for (Term &term : contact_damping_terms(std::make_shared<LowRankFactor>(std::move(radial)), result.friction_forces))
       result.terms.push_back(std::move(term));
 
-    for (const Term &term : result.terms)
-      if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
-        (term.power == 0 ? result.stiffness : result.mass) = term.matrix;
-    result.hidden_square = unresolved_square(*result.stiffness, *result.mass);
+    set_frictionless_matrices(result);
     return result;
+  }
+
+  void set_frictionless_matrices(CoupledSystem &system)
+  {
+    const auto of_power = [&system](const int power) {
+      std::vector<std::pair<double, Matrix>> summands;
+      for (const Term &term : system.terms)
+        if (term.matrix && term.symmetry == Symmetry::symmetric && term.power == power)
+          summands.emplace_back(term.coefficient.at(system.values), term.matrix);
+      return sum(summands);
+    };
+    system.mass          = of_power(2);
+    system.stiffness     = of_power(0);
+    system.hidden_square = unresolved_square(*system.stiffness, *system.mass);
   }
 
   CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping)
@@ -86,8 +97,7 @@ namespace Squeal
     std::vector<CoupledTerm> coupled;
     for (const Term &body : bodies)
       {
-        const auto V = multiply(*multiply(*contact.normal, *body.matrix), T_c);
-        coupled.push_back({body, linear_combination({{0.5, V.get()}})});
+        coupled.push_back({body, multiply(*multiply(*contact.reaction, *body.matrix), T_c)});
         coupled.back().term.matrix = congruence(*body.matrix, T_c);
       }
     CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping);
@@ -118,7 +128,8 @@ namespace Squeal
     for (std::size_t j = 0; j < eigenvalues.size(); ++j)
       coefficients.push_back(eigenvalues[j] > 0. ? 2. * ratios[j] * std::sqrt(eigenvalues[j]) : 0.);
     system.values[SystemParameter::modal_damping] = coefficients;
-    system.terms.push_back(low_rank_term(SystemParameter::modal_damping, 1, {}, factor, factor, SystemParameter::modal_damping));
+    system.terms.push_back(
+      low_rank_term(SystemParameter::modal_damping, 1, {}, factor, factor, SystemParameter::modal_damping, TermKind::modal_damping));
   }
 
   SecondOrderSystem with_friction(const CoupledSystem &system, const double mu)

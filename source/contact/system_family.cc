@@ -1,5 +1,4 @@
 #include <squeal/contact/system_family.h>
-#include <squeal/linear_algebra/rounding.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -11,22 +10,21 @@ namespace Squeal
     /// Whether both terms may be written as one, whatever the parameters that are left free.
     bool are_alike(const Term &x, const Term &y)
     {
-      if (x.power != y.power || (x.matrix == nullptr) != (y.matrix == nullptr) || x.weights != y.weights)
+      if (x.kind != y.kind || x.power != y.power || (x.matrix == nullptr) != (y.matrix == nullptr) || x.weights != y.weights)
         return false;
       return x.matrix ? x.symmetry == y.symmetry : x.weights.empty() && x.left == y.left;
     }
 
-    /// What is left of a coefficient when all but the friction coefficient have their values.
-    Monomial in_friction(const Monomial &coefficient)
+    /// What is left of the coefficient of a term when all but the friction coefficient have their values.
+    Coefficient in_friction(const Term &term)
     {
-      const auto friction = coefficient.powers.find(SystemParameter::friction);
-      return friction == coefficient.powers.end() ? Monomial{} : Monomial{-1., {*friction}};
+      return term.kind == TermKind::friction ? Coefficient(-1., {{SystemParameter::friction, 1}}) : Coefficient();
     }
 
     Term sum_of(const std::vector<Term> &family, const TermShares &shares)
     {
       Term result        = family[shares.front().first];
-      result.coefficient = in_friction(result.coefficient);
+      result.coefficient = in_friction(result);
       std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
       for (const auto &[number, factor] : shares)
         summands.emplace_back(factor, result.matrix ? family[number].matrix : family[number].right->sparse_transpose());
@@ -42,13 +40,7 @@ namespace Squeal
   {
     CoupledSystem result = couple(bodies.terms, contact, damping);
     result.values.insert(bodies.values.begin(), bodies.values.end());
-    std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> mass, stiffness;
-    for (const Term &term : result.terms)
-      if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
-        (term.power == 0 ? stiffness : mass).emplace_back(term.coefficient.at(result.values), term.matrix);
-    result.mass          = sum(mass);
-    result.stiffness     = sum(stiffness);
-    result.hidden_square = unresolved_square(*result.stiffness, *result.mass);
+    set_frictionless_matrices(result);
     return result;
   }
 
@@ -60,7 +52,7 @@ namespace Squeal
       {
         const Term &term = family.terms[k];
         // The sign of friction belongs to the term
-        const double factor = term.coefficient.at(with_friction) / in_friction(term.coefficient).at(with_friction);
+        const double factor = term.coefficient.at(with_friction) / in_friction(term).at(with_friction);
         if (factor == 0.)
           continue;
         const auto alike = std::find_if(result.shares.begin(), result.shares.end(),
@@ -75,12 +67,8 @@ namespace Squeal
     for (const char *free : {SystemParameter::friction, SystemParameter::radial_damping, SystemParameter::sliding_damping})
       result.system.values[free] = family.values.at(free);
     for (const TermShares &shares : result.shares)
-      {
-        Term &term = result.system.terms.emplace_back(sum_of(family.terms, shares));
-        if (term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
-          (term.power == 0 ? result.system.stiffness : result.system.mass) = term.matrix;
-      }
-    result.system.hidden_square = unresolved_square(*result.system.stiffness, *result.system.mass);
+      result.system.terms.push_back(sum_of(family.terms, shares));
+    set_frictionless_matrices(result.system);
     return result;
   }
 } // namespace Squeal

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 #include <functional>
-#include <tuple>
+#include <map>
 
 namespace Squeal
 {
@@ -48,7 +48,7 @@ namespace Squeal
     };
 
     /// Adds ∫ (e·φ) (e·φ) over one mounted face, e the unit vector of a direction about the z axis.
-    void integrate_mount(const FEFaceValues<3> &values, const Direction direction, FullMatrix<double> &K)
+    void integrate_mount(const FEFaceValues<3> &values, const int direction, FullMatrix<double> &K)
     {
       const auto &fe = values.get_fe();
       for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
@@ -94,38 +94,30 @@ namespace Squeal
       bodies.terms.push_back(sparse_term("damping by mass, " + name, 1, {1., {{alpha, 1}, {density, 1}}}, M));
     }
 
-    void add_mount(BodyTerms &bodies, const Model &model, const ElasticMount &mount)
+    /// K_e of a mounted surface in a direction.
+    std::shared_ptr<const SparseMatrix> mount_matrix(const Model &model, const std::string &surface, const int direction)
     {
-      const auto is_mounted = [&ids = model.surface_ids(mount.surface)](const Cell &cell, const unsigned int f) {
+      const auto is_mounted = [&ids = model.surface_ids(surface)](const Cell &cell, const unsigned int f) {
         return cell->at_boundary(f) && ids.count(cell->face(f)->boundary_id()) > 0;
       };
       const CellPredicate has_mount = [&](const Cell &cell) {
         const auto faces = cell->face_indices();
         return std::any_of(faces.begin(), faces.end(), [&](const unsigned int f) { return is_mounted(cell, f); });
       };
-      for (const auto &[direction, name, stiffness] :
-           {std::make_tuple(radial, "radial", mount.radial), std::make_tuple(tangential, "tangential", mount.tangential),
-            std::make_tuple(axial, "axial", mount.axial)})
-        if (stiffness != 0.)
-          {
-            const MakeIntegrals integrals = [&, e = direction] {
-              const auto values =
-                std::make_shared<FEFaceValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
-                                                  update_values | update_quadrature_points | update_JxW_values);
-              return std::vector<CellIntegral>{[values, e, is_mounted](const Cell &cell, FullMatrix<double> &K) {
-                K = 0.;
-                for (const unsigned int f : cell->face_indices())
-                  if (is_mounted(cell, f))
-                    {
-                      values->reinit(cell, f);
-                      integrate_mount(*values, e, K);
-                    }
-              }};
-            };
-            const std::string parameter = BodyParameter::mount_stiffness(name, mount.surface);
-            bodies.terms.push_back(
-              sparse_term("mount, " + parameter, 0, {1., {{parameter, 1}}}, assemble_cells(model, has_mount, integrals)[0]));
-          }
+      const MakeIntegrals integrals = [&] {
+        const auto values = std::make_shared<FEFaceValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<2>(model.degree() + 1),
+                                                              update_values | update_quadrature_points | update_JxW_values);
+        return std::vector<CellIntegral>{[values, direction, is_mounted](const Cell &cell, FullMatrix<double> &K) {
+          K = 0.;
+          for (const unsigned int f : cell->face_indices())
+            if (is_mounted(cell, f))
+              {
+                values->reinit(cell, f);
+                integrate_mount(*values, direction, K);
+              }
+        }};
+      };
+      return assemble_cells(model, has_mount, integrals)[0];
     }
   } // namespace
 
@@ -150,12 +142,23 @@ namespace Squeal
     {
       return "Rayleigh beta, " + body;
     }
-
-    std::string mount_stiffness(const std::string &direction, const std::string &surface)
-    {
-      return direction + " stiffness, " + surface;
-    }
   } // namespace BodyParameter
+
+  std::vector<MountParameter> mount_parameters(const MaterialParameters &materials)
+  {
+    constexpr const char       *directions[] = {"radial", "tangential", "axial"};
+    std::vector<MountParameter> result;
+    const auto add = [&](const std::vector<Mount> &mounts, const char *list, const char *quantity, const char *unit, const int power) {
+      for (const Mount &mount : mounts)
+        for (const int d : {radial, tangential, axial})
+          if (const double value = mount.along(d); value != 0.)
+            result.push_back({text(directions[d], ' ', quantity, ", ", mount.surface),
+                              text("Mounts/", list, ": ", mount.surface, ' ', directions[d]), unit, value, power, mount.surface, d});
+    };
+    add(materials.mounts, "Elastic mounts", "stiffness", "N/m^3", 0);
+    add(materials.dashpots, "Dashpots", "dashpots", "N s/m^3", 1);
+    return result;
+  }
 
   ParameterValues body_values(const Model &model, const MaterialParameters &materials)
   {
@@ -168,11 +171,8 @@ namespace Squeal
         result[BodyParameter::rayleigh_alpha(body)] = {material.rayleigh_alpha};
         result[BodyParameter::rayleigh_beta(body)]  = {material.rayleigh_beta};
       }
-    for (const ElasticMount &mount : materials.mounts)
-      for (const auto &[name, stiffness] :
-           std::vector<std::pair<const char *, double>>{{"radial", mount.radial}, {"tangential", mount.tangential}, {"axial", mount.axial}})
-        if (stiffness != 0.)
-          result[BodyParameter::mount_stiffness(name, mount.surface)] = {stiffness};
+    for (const MountParameter &mount : mount_parameters(materials))
+      result[mount.name] = {mount.value};
     return result;
   }
 
@@ -181,8 +181,15 @@ namespace Squeal
     BodyTerms bodies{{}, body_values(model, materials)};
     for (unsigned int component = 0; component < model.component_names().size(); ++component)
       add_body(bodies, model, component, materials.of(model.component_names()[component]));
-    for (const ElasticMount &mount : materials.mounts)
-      add_mount(bodies, model, mount);
+    std::map<std::pair<std::string, int>, std::shared_ptr<const SparseMatrix>> matrices; // springs and dashpots of a surface share theirs
+    for (const MountParameter &mount : mount_parameters(materials))
+      {
+        auto &matrix = matrices[{mount.surface, mount.direction}];
+        if (!matrix)
+          matrix = mount_matrix(model, mount.surface, mount.direction);
+        bodies.terms.push_back(
+          sparse_term("mount, " + mount.name, mount.power, {1., {{mount.name, 1}}}, matrix, Symmetry::symmetric, TermKind::mount));
+      }
     return bodies;
   }
 

@@ -50,7 +50,9 @@ namespace Squeal
 
     const std::string speed = BodyParameter::angular_velocity, density = BodyParameter::density(model.component_names().front());
     bodies.values[speed] = {angular_velocity};
-    bodies.terms.push_back(sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, matrices[0], Symmetry::skew));
-    bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, matrices[1]));
+    bodies.terms.push_back(
+      sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, matrices[0], Symmetry::skew, TermKind::rotation));
+    bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, matrices[1],
+                                       Symmetry::symmetric, TermKind::rotation));
   }
 } // namespace Squeal

@@ -100,7 +100,7 @@ namespace Squeal
     {
       double result = 0.;
       for (const Term &term : coupled.terms)
-        if (term.name == SystemParameter::modal_damping)
+        if (term.kind == TermKind::modal_damping)
           for (const MultiVector *part : {&real_part, &imaginary_part})
             {
               const DenseMatrix y = term.right->transpose_times(*part);

@@ -3,6 +3,7 @@
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/number_list.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace Squeal
@@ -14,6 +15,12 @@ namespace Squeal
                                    "surface: radial, tangential, axial; surface: ... [N/m^3]",
                                    "surface",
                                    {3}};
+
+    const ListFormat dashpot_list = {"Mounts/Dashpots",
+                                     "not a list of dashpots",
+                                     "surface: radial, tangential, axial; surface: ... [N s/m^3]",
+                                     "surface",
+                                     {3}};
 
     const ListFormat pin_list = {"Pin material/Single pins",
                                  "not the material of a pin",
@@ -77,21 +84,27 @@ namespace Squeal
     declare_list(declarations, "Elastic mounts", mounts,
                  "Elastic foundations as a list `surface: radial, tangential, axial; ...`: named surface and its stiffness per "
                  "area in the directions of the disc's axis. Empty: the disc turns freely. Units: N/m^3.",
-                 mount_list, {&ElasticMount::radial, &ElasticMount::tangential, &ElasticMount::axial}, &ElasticMount::surface);
+                 mount_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
+    declare_list(declarations, "Dashpots", dashpots,
+                 "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: named surface "
+                 "and its damping coefficient per area in the directions of the disc's axis. They hold nothing at rest. Units: N s/m^3.",
+                 dashpot_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
   }
 
   void MaterialParameters::check() const
   {
     for (const auto &[section, material] : all())
       check_material(section, material);
-    for (const ElasticMount &mount : mounts)
-      {
-        const std::string where = "parameter Mounts/Elastic mounts, surface " + legible(mount.surface);
-        for (const double stiffness : {mount.radial, mount.tangential, mount.axial})
-          if (!(stiffness >= 0.) || !std::isfinite(stiffness))
-            throw ParameterError("the stiffness " + exact_text(stiffness) + " N/m^3 is not a finite value >= 0", where,
-                                 "give zero or a positive stiffness per area");
-      }
+    const auto check_mounts = [](const std::vector<Mount> &list, const std::string &name, const std::string &quantity, const char *unit) {
+      for (const Mount &mount : list)
+        for (const double value : {mount.radial, mount.tangential, mount.axial})
+          if (!(value >= 0.) || !std::isfinite(value))
+            throw ParameterError("the " + quantity + ' ' + exact_text(value) + ' ' + unit + " is not a finite value >= 0",
+                                 "parameter Mounts/" + name + ", surface " + legible(mount.surface),
+                                 "give zero or a positive " + quantity + " per area");
+    };
+    check_mounts(mounts, "Elastic mounts", "stiffness", "N/m^3");
+    check_mounts(dashpots, "Dashpots", "damping coefficient", "N s/m^3");
   }
 
   Material MaterialParameters::of(const std::string &body) const
@@ -115,11 +128,22 @@ namespace Squeal
     return result;
   }
 
+  std::vector<double *> MaterialParameters::mount_values()
+  {
+    std::vector<double *> values;
+    for (std::vector<Mount> *list : {&mounts, &dashpots})
+      for (Mount &mount : *list)
+        values.insert(values.end(), {&mount.radial, &mount.tangential, &mount.axial});
+    return values;
+  }
+
   std::vector<std::string> MaterialParameters::mounted_surfaces() const
   {
     std::vector<std::string> names;
-    for (const ElasticMount &mount : mounts)
-      names.push_back(mount.surface);
+    for (const std::vector<Mount> *list : {&mounts, &dashpots})
+      for (const Mount &mount : *list)
+        if (std::find(names.begin(), names.end(), mount.surface) == names.end())
+          names.push_back(mount.surface);
     return names;
   }
 } // namespace Squeal

@@ -62,7 +62,7 @@ namespace Squeal
     this->shift = shift;
     // What S has of a term whose coefficient is a number leaves nothing
     sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
-                                [](const Sparse &part) { return is_stiffness(*part.term) && part.term->coefficient.powers.empty(); }),
+                                [](const Sparse &part) { return is_stiffness(*part.term) && part.term->coefficient.is_constant(); }),
                  sparse.end());
     for (Sparse &part : sparse)
       if (is_stiffness(*part.term) || is_mass(*part.term))

@@ -31,7 +31,7 @@ namespace Squeal
     for (const auto &[parameter, rate] : rates)
       for (const Term &term : terms)
         if (is_rate(term) && term.coefficient.contains(parameter))
-          (term.power == 0 ? stiffness : mass).emplace_back(derivative(term.coefficient, parameter).at(values) * rate.front(), term.matrix);
+          (term.power == 0 ? stiffness : mass).emplace_back(term.coefficient.derivative(parameter, values) * rate.front(), term.matrix);
   }
 
   void BodyRates::add(const std::vector<Term> &terms, const ParameterValues &values)

@@ -9,7 +9,7 @@ namespace Squeal
   {
     const SparseMatrix &T_c = *contact.kernel;
     Eigentriples        result{coupled.lambda, T_c * coupled.right, T_c * coupled.left};
-    result.left -= 0.5 * friction_coefficient * transpose_times(*contact.normal, *contact.tangential * result.left);
+    result.left -= friction_coefficient * transpose_times(*contact.reaction, *contact.tangential * result.left);
     return result;
   }
 
@@ -87,7 +87,7 @@ namespace Squeal
       for (const Product &product : products)
         {
           if (product.term.coefficient.contains(parameter))
-            add(product, derivative(product.term.coefficient, parameter).at(values) * rate.front(), values);
+            add(product, product.term.coefficient.derivative(parameter, values) * rate.front(), values);
           if (product.term.weights == parameter)
             add(product, product.term.coefficient.at(values), rates);
         }

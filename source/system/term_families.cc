@@ -50,16 +50,17 @@ namespace Squeal
     TermFamily result{{}, {}, std::vector<ParameterValues>(members.size())};
     for (const Group &group : groups)
       {
-        Monomial coefficient;
+        Coefficient coefficient;
         if (!agree(group.scales, std::vector<double>(members.size(), 1.)))
           {
             const std::string scale = "scale of " + group.first->name;
-            coefficient             = {1., {{scale, 1}}};
+            coefficient             = Coefficient(1., {{scale, 1}});
             result.values[scale]    = {1.};
             for (std::size_t m = 0; m < members.size(); ++m)
               result.members[m][scale] = {group.scales[m]};
           }
-        result.terms.push_back(sparse_term(group.first->name, group.first->power, coefficient, sum(group.summands), group.first->symmetry));
+        result.terms.push_back(
+          sparse_term(group.first->name, group.first->power, coefficient, sum(group.summands), group.first->symmetry, group.first->kind));
       }
     return result;
   }

@@ -37,38 +37,115 @@ namespace Squeal
     return linear_combination(parts);
   }
 
-  double Monomial::at(const ParameterValues &values) const
+  namespace
   {
-    double result = factor;
-    for (const auto &[parameter, power] : powers)
-      result *= std::pow(values.at(parameter).front(), power);
-    return result;
+    /// A number times powers of parameters.
+    class Monomial : public ParameterFunction
+    {
+    public:
+      Monomial(const double factor, std::map<std::string, int> powers)
+        : factor(factor)
+        , powers(std::move(powers))
+      {}
+
+      double at(const ParameterValues &values) const override
+      {
+        double result = factor;
+        for (const auto &[parameter, power] : powers)
+          result *= std::pow(values.at(parameter).front(), power);
+        return result;
+      }
+
+      double derivative(const std::string &parameter, const ParameterValues &values) const override
+      {
+        double result = contains(parameter) ? factor : 0.;
+        for (const auto &[other, power] : powers)
+          {
+            const double value = values.at(other).front();
+            result *= other == parameter ? power * std::pow(value, power - 1) : std::pow(value, power);
+          }
+        return result;
+      }
+
+      bool contains(const std::string &parameter) const override
+      {
+        return powers.count(parameter) > 0;
+      }
+
+      bool is_constant() const override
+      {
+        return powers.empty();
+      }
+
+    private:
+      const double                     factor;
+      const std::map<std::string, int> powers;
+    };
+
+    class Product : public ParameterFunction
+    {
+    public:
+      Product(std::shared_ptr<const ParameterFunction> a, std::shared_ptr<const ParameterFunction> b)
+        : a(std::move(a))
+        , b(std::move(b))
+      {}
+
+      double at(const ParameterValues &values) const override
+      {
+        return a->at(values) * b->at(values);
+      }
+
+      double derivative(const std::string &parameter, const ParameterValues &values) const override
+      {
+        return a->derivative(parameter, values) * b->at(values) + a->at(values) * b->derivative(parameter, values);
+      }
+
+      bool contains(const std::string &parameter) const override
+      {
+        return a->contains(parameter) || b->contains(parameter);
+      }
+
+      bool is_constant() const override
+      {
+        return a->is_constant() && b->is_constant();
+      }
+
+    private:
+      const std::shared_ptr<const ParameterFunction> a, b;
+    };
+  } // namespace
+
+  Coefficient::Coefficient(const double factor, std::map<std::string, int> powers)
+    : function(std::make_shared<Monomial>(factor, std::move(powers)))
+  {}
+
+  Coefficient::Coefficient(std::shared_ptr<const ParameterFunction> function)
+    : function(std::move(function))
+  {}
+
+  double Coefficient::at(const ParameterValues &values) const
+  {
+    return function->at(values);
   }
 
-  bool Monomial::contains(const std::string &parameter) const
+  double Coefficient::derivative(const std::string &parameter, const ParameterValues &values) const
   {
-    return powers.count(parameter) > 0;
+    return function->derivative(parameter, values);
   }
 
-  Monomial operator*(const Monomial &a, const Monomial &b)
+  bool Coefficient::contains(const std::string &parameter) const
   {
-    Monomial result = a;
-    result.factor *= b.factor;
-    for (const auto &[parameter, power] : b.powers)
-      result.powers[parameter] += power;
-    return result;
+    return function->contains(parameter);
   }
 
-  Monomial derivative(const Monomial &monomial, const std::string &parameter)
+  bool Coefficient::is_constant() const
   {
-    const auto found = monomial.powers.find(parameter);
-    if (found == monomial.powers.end())
-      return {0., {}};
-    Monomial result = monomial;
-    result.factor *= found->second;
-    if (--result.powers[parameter] == 0)
-      result.powers.erase(parameter);
-    return result;
+    return function->is_constant();
+  }
+
+  Coefficient operator*(const Coefficient &a, const Coefficient &b)
+  {
+    return Coefficient(std::make_shared<Product>(a.function, b.function));
   }
 
   bool Term::vanishes(const ParameterValues &values) const
@@ -86,19 +163,21 @@ namespace Squeal
     return matrix || (left->sparse_transpose() != nullptr && right->sparse_transpose() != nullptr);
   }
 
-  Term sparse_term(std::string name, const int power, Monomial coefficient, Matrix matrix, const Symmetry symmetry)
+  Term sparse_term(std::string name, const int power, Coefficient coefficient, Matrix matrix, const Symmetry symmetry, const TermKind kind)
   {
-    return {std::move(name), power, std::move(coefficient), std::move(matrix), symmetry};
+    return {std::move(name), power, std::move(coefficient), std::move(matrix), symmetry, {}, {}, "", kind};
   }
 
   Term low_rank_term(std::string                          name,
                      const int                            power,
-                     Monomial                             coefficient,
+                     Coefficient                          coefficient,
                      std::shared_ptr<const LowRankFactor> left,
                      std::shared_ptr<const LowRankFactor> right,
-                     std::string                          weights)
+                     std::string                          weights,
+                     const TermKind                       kind)
   {
-    return {std::move(name), power, std::move(coefficient), {}, Symmetry::symmetric, std::move(left), std::move(right), std::move(weights)};
+    return {std::move(name),    power, std::move(coefficient), {}, Symmetry::symmetric, std::move(left), std::move(right),
+            std::move(weights), kind};
   }
 
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, const int power)
@@ -185,7 +264,8 @@ namespace Squeal
             if (term->symmetry == symmetry)
               summands.emplace_back(term->coefficient.at(values), term->matrix);
           if (const Matrix matrix = sum(summands))
-            result.push_back(sparse_term(names[symmetry == Symmetry::skew][power], power, {}, matrix, symmetry));
+            result.push_back(sparse_term(names[symmetry == Symmetry::skew][power], power, {}, matrix, symmetry,
+                                         symmetry == Symmetry::skew ? TermKind::rotation : TermKind::body));
         }
     return result;
   }

@@ -21,14 +21,14 @@ namespace
     const char               *name;
     double                    slope; ///< of the contact faces
     Element                   element;
-    std::vector<ElasticMount> mounts;
+    std::vector<Mount> mounts;
   };
   void PrintTo(const Case &c, std::ostream *stream)
   {
     *stream << c.name;
   }
 
-  const std::vector<ElasticMount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
+  const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
 
   Scene scene(const Case &c, const MaterialParameters &materials, const RadialDissipation dissipation = RadialDissipation::none)
   {

@@ -13,7 +13,7 @@ namespace
 {
   constexpr double band = 2. * M_PI * 5000.;
 
-  Scene scene(const std::vector<ElasticMount> &mounts)
+  Scene scene(const std::vector<Mount> &mounts)
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 0, 1}};
     return Scene(extrude(polar_plan(0.15, 0.3, 3, 12, pins), layers(1, 2)), mounted(mounts), operating());
@@ -39,7 +39,7 @@ TEST(StaticResponse, SolvesWhereTheMountHoldsTheDisc)
 TEST(StaticResponse, RelievesAFreeDiscByInertia)
 {
   for (const auto &[mounts, n_free] :
-       {std::make_pair(std::vector<ElasticMount>(), 6), std::make_pair(std::vector<ElasticMount>{{"disc_bore", 0., 7.80e10, 0.}}, 1)})
+       {std::make_pair(std::vector<Mount>(), 6), std::make_pair(std::vector<Mount>{{"disc_bore", 0., 7.80e10, 0.}}, 1)})
     {
       const Scene         s        = scene(mounts);
       const InertiaRelief response = static_response(s.model, s.system, band, FactorizationLibrary::automatic);

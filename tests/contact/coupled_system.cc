@@ -1,5 +1,4 @@
-#include "matrices.h"
-#include "scenes.h"
+#include "solutions.h"
 
 #include <squeal/base/tasks.h>
 #include <squeal/contact/updated_inverse.h>
@@ -65,7 +64,7 @@ namespace
   bool has_no_reaction_to_velocity(const CoupledSystem &system)
   {
     return std::none_of(system.terms.begin(), system.terms.end(),
-                        [](const Term &term) { return term.power == 1 && term.coefficient.contains(SystemParameter::friction); });
+                        [](const Term &term) { return term.power == 1 && term.kind == TermKind::friction; });
   }
 } // namespace
 
@@ -79,6 +78,68 @@ TEST_P(Contact, OperatorsAreOrthogonal)
   const std::vector<std::pair<const SparseMatrix *, const SparseMatrix *>> pairs = {{&P_n, &P_t}, {&P_n, &P_b}, {&P_t, &P_b}};
   for (const auto &[P, Q] : pairs)
     EXPECT_LT(max_norm(*multiply(*P, *Q, false, true)), 1e-15);
+}
+
+TEST(ReactionOperators, GiveTheSameEigenvaluesWhateverTheirKind)
+{
+  const std::vector<PolarPin> pins = {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, -1, 1, 0, 1}};
+  const Scene                 s(mapped(extrude(polar_plan(0.15, 0.3, 2, 8, pins), layers(1, 1)),
+                                       [](const Point3 &p) {
+                         return Point3{{p[0], p[1], p[2] + 0.3 * (std::hypot(p[0], p[1]) - 0.2) + 0.1 * p[1]}};
+                       }),
+                                damped(mounted({{"disc_bore", 1e9, 7.80e10, 1.88e10}})), operating(RadialDissipation::consistent));
+  const SparseMatrix         &P_n = *s.contact.normal;
+  using Matrix                    = std::shared_ptr<const SparseMatrix>;
+  const auto rows                 = [&](const auto &fill) { return std::make_shared<const SparseMatrix>(P_n.rows(), P_n.columns(), fill); };
+
+  // The rows of one side of the contact
+  const auto side = [&](const Node ContactNode::*node) {
+    return rows([&, node](const int i, SparseMatrix::Row &row) {
+      SparseMatrix::Row all;
+      P_n.get_row(i, all);
+      const auto &dofs = (s.interface[P_n.rows().number(i)].*node).dofs;
+      for (const auto &entry : all)
+        if (std::find(std::begin(dofs), std::end(dofs), entry.first) != std::end(dofs))
+          row.push_back(entry);
+    });
+  };
+  // The pseudo-inverse of all directions in a weighted norm
+  const int   n_c = P_n.n_rows(), n = P_n.n_columns();
+  DenseMatrix B(3 * n_c, n), W      = DenseMatrix::Zero(n, n);
+  B << to_dense(P_n), to_dense(*s.contact.tangential), to_dense(*s.contact.radial);
+  for (int i = 0; i < n; ++i)
+    W(i, i) = 1. + 0.9 * std::sin(1. + i);
+  const DenseMatrix S_all = (B * W * B.transpose()).lu().solve(B * W);
+  const Matrix      pin = side(&ContactNode::pin_node), disc = side(&ContactNode::disc_node),
+               pseudo  = rows([&](const int i, SparseMatrix::Row &row) {
+                 for (int j = 0; j < n; ++j)
+                   if (const double value = S_all(P_n.rows().number(i), j); value != 0.)
+                     row.emplace_back(j, value);
+               });
+  const Matrix mixture = linear_combination({{0.3, pin.get()}, {1.2, pseudo.get()}, {-0.5, disc.get()}});
+
+  const auto eigenvalues = [&](const Matrix &S) {
+    ContactOperators contact = s.contact;
+    contact.reaction         = S;
+    const auto unit          = Testing::diagonal(P_n.rows(), [](int) { return 1.; });
+    EXPECT_LT(difference(*multiply(*S, P_n, false, true), *unit), 1e-13);
+    for (const Matrix &P : {contact.tangential, contact.radial})
+      EXPECT_LT(max_norm(*multiply(*S, *P, false, true)), 1e-13);
+    const auto                matrices = with_friction(couple(s.system, contact, s.damping), 0.4);
+    const DenseMatrix         damping  = to_dense(*matrices.damping);
+    const DenseQuadraticModes modes    = dense_quadratic_modes(to_dense(*matrices.mass), &damping, to_dense(*matrices.stiffness), 1e9);
+    return std::make_pair(modes.values, modes.real_values);
+  };
+  const auto [values, real_values] = eigenvalues(s.contact.reaction);
+  ASSERT_GT(values.size(), 100u);
+  EXPECT_GT(std::count_if(values.begin(), values.end(), [](const auto &l) { return l.real() > 0.; }), 0);
+  for (const Matrix &S : {pin, disc, pseudo, mixture})
+    {
+      const auto [others, other_real_values] = eigenvalues(S);
+      ASSERT_EQ(others.size(), values.size());
+      EXPECT_EQ(other_real_values.size(), real_values.size());
+      EXPECT_LT(largest(distances(others, values)), 1e-9);
+    }
 }
 
 TEST_P(Contact, KernelSpansTheAdmissibleDisplacements)

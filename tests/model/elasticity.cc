@@ -240,7 +240,7 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   area    = 12. * side * t;
   r2_area = area * (apothem * apothem + side * side / 12.);
 
-  const auto energy = [&](const ElasticMount &mount, const std::function<Point3(const Point3 &)> &motion) {
+  const auto energy = [&](const Mount &mount, const std::function<Point3(const Point3 &)> &motion) {
     const auto        with = assemble(model, mounted({mount})), without = assemble(model, mounted({}));
     const MultiVector u = displacements(model, 0, motion);
     return 0.5 * product(u, *add(1., *with.stiffness, -1., *without.stiffness), u);
@@ -254,6 +254,15 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
   EXPECT_NEAR(energy({"inner", 0., k, 0.}, turning) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, breathing) / (0.5 * k * r2_area), 1., 1e-11);
   EXPECT_NEAR(energy({"inner", k, k, 0.}, across) / (0.5 * k * area), 1., 1e-11);
+  // Dashpots with the same numbers make a damping matrix with the entries of the springs' stiffness
+  MaterialParameters dashpots = mounted({});
+  dashpots.dashpots           = {{"inner", 2. * k, 3. * k, k}};
+  const auto springs = assemble(model, mounted({{"inner", 2. * k, 3. * k, k}})), none = assemble(model, mounted({})),
+             damped_bore = assemble(model, dashpots);
+  EXPECT_EQ(none.damping, nullptr);
+  EXPECT_LT(max_norm(*add(1., *damped_bore.stiffness, -1., *none.stiffness)), 1e-15 * max_norm(*none.stiffness));
+  EXPECT_LT(max_norm(*linear_combination({{1., springs.stiffness.get()}, {-1., none.stiffness.get()}, {-1., damped_bore.damping.get()}})),
+            1e-14 * max_norm(*springs.stiffness));
   // e_r ⊗ e_r averages to one half over the circle.
   EXPECT_NEAR(energy({"inner", k, 0., 0.}, across) / (0.25 * k * area), 1., 1e-11);
   // A direction without stiffness resists nothing.

@@ -27,7 +27,7 @@ namespace
   }
 
   /// Disc and pins of one material with C = α M + β K.
-  MaterialParameters proportional(const double alpha, const double beta, const std::vector<ElasticMount> &mounts = {})
+  MaterialParameters proportional(const double alpha, const double beta, const std::vector<Mount> &mounts = {})
   {
     MaterialParameters materials  = mounted(mounts);
     materials.disc.rayleigh_alpha = alpha;
@@ -97,6 +97,7 @@ namespace
       contact.normal     = sparse(nodes, map, [](int) { return Row{{0, 1.}, {1, -1.}}; });
       contact.tangential = sparse(nodes, map, [](int) { return Row{{2, -1.}}; });
       contact.radial     = sparse(nodes, map, [](int) { return Row{}; });
+      contact.reaction   = linear_combination({{0.5, contact.normal.get()}});
       contact.kernel     = sparse(map, coordinates, [](const int i) { return Row{{i == 2 ? 1 : 0, 1.}}; });
     }
 
@@ -127,19 +128,25 @@ namespace
 
 TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 {
-  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); the elastic mount, which has no damping, allows α only.
+  // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); an elastic mount
+  // allows β with dashpots of β times its stiffness only.
   struct Case
   {
-    HexMesh                   mesh;
-    double                    alpha, beta;
-    std::vector<ElasticMount> mounts;
+    HexMesh            mesh;
+    double             alpha, beta;
+    std::vector<Mount> mounts;
   };
   const HexMesh mesh      = mesh_of(skewed_pins);
   int           n_growing = 0;
-  for (const auto &[mesh, alpha, beta, mounts] : {Case{with_clamped_rim(mesh), 300., 2e-6, {}}, Case{with_clamped_rim(mesh), 0., 5e-6, {}},
-                                                  Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
+  for (const auto &[mesh, alpha, beta, mounts] :
+       {Case{with_clamped_rim(mesh), 300., 2e-6, {}}, Case{with_clamped_rim(mesh), 0., 5e-6, {}},
+        Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}, Case{mesh, 100., 3e-6, {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
     {
-      const Scene s(mesh, proportional(alpha, beta, mounts), operating());
+      MaterialParameters materials = proportional(alpha, beta, mounts);
+      if (beta > 0.)
+        for (const Mount &mount : mounts)
+          materials.dashpots.push_back({mount.surface, beta * mount.radial, beta * mount.tangential, beta * mount.axial});
+      const Scene s(mesh, materials, operating());
       const auto  real = real_modes(s.coupled);
       const auto  expected =
         damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
@@ -256,6 +263,7 @@ TEST(SpeedDependentFriction, MassOnASpring)
   contact.normal     = none;
   contact.tangential = sparse(nodes, map, [](int) { return Row{{0, -1.}}; });
   contact.radial     = none;
+  contact.reaction   = none;
   contact.kernel     = one(1.);
   const SecondOrderSystem system{one(m), one(c), one(k)};
   for (const double slope : {falling, -1.001 * c / N, -0.999 * c / N, 0., 0.4})

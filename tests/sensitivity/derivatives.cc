@@ -254,9 +254,9 @@ TEST(Sensitivities, OfTheMeanStayFiniteAtACoalescence)
 TEST(Sensitivities, OfProductsOfPowers)
 {
   const ParameterValues values = {{"a", {3.}}, {"b", {-2.}}};
-  const Monomial        m      = {-5., {{"a", 1}, {"b", 2}}};
-  EXPECT_EQ(derivative(m, "a").at(values), -20.);
-  EXPECT_EQ(derivative(m, "b").at(values), 60.);
-  EXPECT_EQ(derivative(m, "c").at(values), 0.);
-  EXPECT_EQ(derivative(m, "a").at({{"a", {0.}}, {"b", {-2.}}}), -20.); // of a parameter that is zero, too
+  const Coefficient     m(-5., {{"a", 1}, {"b", 2}});
+  EXPECT_EQ(m.derivative("a", values), -20.);
+  EXPECT_EQ(m.derivative("b", values), 60.);
+  EXPECT_EQ(m.derivative("c", values), 0.);
+  EXPECT_EQ(m.derivative("a", {{"a", {0.}}, {"b", {-2.}}}), -20.); // of a parameter that is zero, too
 }

@@ -15,6 +15,12 @@ namespace Squeal
    *   P_n u = n·(u_D − u_P),  P_t u = t·(u_D − u_P),  P_b u = b·(u_D − u_P)   n_c × n each
    *   T_c spans ker P_n                                                        n × (n − n_c)
    *
+   * and S that reads the reactions r_n from forces f = P_nᵀ r_n + P_tᵀ r_t + P_bᵀ r_b of the contact (n_c × n),
+   *
+   *   S P_nᵀ = I,   S P_tᵀ = 0,   S P_bᵀ = 0,   r_n = S (λ² M + λ C + K) u.
+   *
+   * Any S with these properties gives the same eigenvalues; it is ½ P_n here, where P_n P_nᵀ = 2 I.
+   *
    * In T_c one displacement component of each pin node, the one nearest to the
    * normal, follows from the others, so that T_c selects dofs where the
    * normal is a coordinate axis.
@@ -25,6 +31,7 @@ namespace Squeal
     std::shared_ptr<const SparseMatrix> tangential; ///< P_t
     std::shared_ptr<const SparseMatrix> radial;     ///< P_b
     std::shared_ptr<const SparseMatrix> kernel;     ///< T_c
+    std::shared_ptr<const SparseMatrix> reaction;   ///< S
   };
 
   ContactOperators contact_operators(const Model &model, const ContactInterface &interface);

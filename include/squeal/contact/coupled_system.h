@@ -38,9 +38,9 @@ namespace Squeal
    *
    * as a list of terms. Of each term X of the bodies, such as K, it has
    *
-   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = ½ P_n X T_c,
+   *   X_c = T_cᵀ X T_c   and   −μ A V_X,   A = T_cᵀ P_tᵀ,  V_X = S X T_c,
    *
-   * and of the contact's own damping, which has no part in the reactions because P_n P_bᵀ = P_n P_tᵀ = 0,
+   * and of the contact's own damping, which has no part in the reactions because S P_bᵀ = S P_tᵀ = 0,
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *
@@ -96,6 +96,9 @@ namespace Squeal
                                std::shared_ptr<const SparseMatrix> radial,
                                const ContactDamping               &damping = {});
 
+  /// Finds the mass, the stiffness and what follows from them of a system with other terms or values.
+  void set_frictionless_matrices(CoupledSystem &system);
+
   /// Couples bodies, given by merged() terms.
   CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 
@@ -132,7 +135,7 @@ namespace Squeal
   std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, double shift);
 
   /**
-   * r_n = ½ P_n (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
+   * r_n = S (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
    * contact reactions [N] (compression negative) of complex modes, n_c × k.
    */
   ComplexDenseMatrix normal_reactions(const CoupledSystem                     &system,

@@ -21,11 +21,22 @@ namespace Squeal
     std::string rayleigh_alpha(const std::string &body); ///< α [1/s]
     std::string rayleigh_beta(const std::string &body);  ///< β [s]
 
-    /// k [N/m³] of a mount; @p direction is radial, tangential or axial.
-    std::string mount_stiffness(const std::string &direction, const std::string &surface);
-
     inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
   }                                                                                 // namespace BodyParameter
+
+  /// A number of a mount in a direction of the disc's axis that is not zero: a parameter of its term.
+  struct MountParameter
+  {
+    std::string name;  ///< among ParameterValues
+    std::string path;  ///< how a user finds it: "Mounts/Elastic mounts: disc_bore radial"
+    const char *unit;  ///< per area
+    double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots
+    int         power; ///< of λ in its term
+    std::string surface;
+    int         direction; ///< 0 radial, 1 tangential, 2 axial
+  };
+
+  std::vector<MountParameter> mount_parameters(const MaterialParameters &materials);
 
   /**
    * Terms of the disc and of every pin on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
@@ -33,10 +44,11 @@ namespace Squeal
    *
    *   E K_b,   K_b,ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV for E = 1
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
+   *   λ c K_e of dashpots, c [N s/m³]
    *   λ β E K_b + λ α ρ M_b
    *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * Elements with incompatible modes: K_b of CellStiffness. Mounts have no damping. Full Gauss quadrature, degree + 1 points per direction.
+   * Elements with incompatible modes: K_b of CellStiffness. Full Gauss quadrature, degree + 1 points per direction.
    *
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */

@@ -20,15 +20,19 @@ namespace Squeal
   };
 
   /**
-   * Elastic foundation on a named surface. Its directions are those of the
+   * Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³]. Their directions are those of the
    * disc's axis (z): radial, tangential (circumferential) and axial.
    */
-  struct ElasticMount
+  struct Mount
   {
     std::string surface;
-    double      radial;     ///< stiffness per area [N/m³]
-    double      tangential; ///< stiffness per area [N/m³]
-    double      axial;      ///< stiffness per area [N/m³]
+    double      radial, tangential, axial;
+
+    /// The number of direction 0, 1 or 2.
+    double along(const int direction) const
+    {
+      return direction == 0 ? radial : direction == 1 ? tangential : axial;
+    }
   };
 
   /// Elastic constants and density of one pin; its damping is that of all pins.
@@ -43,10 +47,11 @@ namespace Squeal
   /// Materials and supports (sections `Disc material`, `Pin material`, `Mounts`).
   struct MaterialParameters
   {
-    Material                  disc = {210e9, 0.3, 7850.};
-    Material                  pin  = {1.90e9, 0.25, 3070.};
-    std::vector<PinMaterial>  single_pins; ///< of pins that differ from the others
-    std::vector<ElasticMount> mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}};
+    Material                 disc = {210e9, 0.3, 7850.};
+    Material                 pin  = {1.90e9, 0.25, 3070.};
+    std::vector<PinMaterial> single_pins;                                    ///< of pins that differ from the others
+    std::vector<Mount>       mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
+    std::vector<Mount>       dashpots;
 
     void declare(Declarations &declarations);
 
@@ -59,7 +64,10 @@ namespace Squeal
     /// All materials, each with the section and the pin that set it.
     std::vector<std::pair<std::string, Material>> all() const;
 
-    /// Names of the surfaces that carry a mount.
+    /// The numbers of all springs and dashpots.
+    std::vector<double *> mount_values();
+
+    /// Names of the surfaces that carry springs or dashpots.
     std::vector<std::string> mounted_surfaces() const;
   };
 } // namespace Squeal

@@ -18,9 +18,9 @@ namespace Squeal
   /**
    * The vectors u and w on the dofs of the uncoupled bodies with which every matrix X of a body contributes to Q,
    *
-   *   ψᵀ (T_cᵀ X T_c − μ A V_X) φ = wᵀ X u,   u = T_c φ,   w = T_c ψ − (μ/2) P_nᵀ P_t T_c ψ,
+   *   ψᵀ (T_cᵀ X T_c − μ A V_X) φ = wᵀ X u,   u = T_c φ,   w = T_c ψ − μ Sᵀ P_t T_c ψ,
    *
-   * since A = T_cᵀ P_tᵀ and V_X = ½ P_n X T_c: friction takes part in every derivative with respect to a body by w alone.
+   * since A = T_cᵀ P_tᵀ and V_X = S X T_c: friction takes part in every derivative with respect to a body by w alone.
    */
   Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
 

@@ -24,20 +24,50 @@ namespace Squeal
   /// Values of named parameters: one number each, or a list with one for each contact node or mode; an empty list means zeros.
   using ParameterValues = std::map<std::string, std::vector<double>>;
 
-  /// A number times powers of named parameters, such as −μ ρ.
-  struct Monomial
+  /// A function of named parameters with its partial derivatives.
+  class ParameterFunction
   {
-    double                     factor = 1.;
-    std::map<std::string, int> powers;
+  public:
+    virtual ~ParameterFunction() = default;
 
-    double at(const ParameterValues &values) const;
-    bool   contains(const std::string &parameter) const;
+    virtual double at(const ParameterValues &values) const = 0;
+
+    /// ∂/∂p at the values of all parameters; zero where @p parameter does not occur.
+    virtual double derivative(const std::string &parameter, const ParameterValues &values) const = 0;
+
+    virtual bool contains(const std::string &parameter) const = 0;
+    virtual bool is_constant() const                          = 0;
   };
 
-  Monomial operator*(const Monomial &a, const Monomial &b);
+  /// θ(p) of a term: a monomial of named parameters such as −μ ρ, a function of them of any other kind, or a product of such.
+  class Coefficient
+  {
+  public:
+    /// @p factor times @p powers of parameters.
+    Coefficient(double factor = 1., std::map<std::string, int> powers = {});
+    explicit Coefficient(std::shared_ptr<const ParameterFunction> function);
 
-  /// Partial derivative with respect to a named parameter; of factor zero where the parameter does not occur.
-  Monomial derivative(const Monomial &monomial, const std::string &parameter);
+    double at(const ParameterValues &values) const;
+    double derivative(const std::string &parameter, const ParameterValues &values) const;
+    bool   contains(const std::string &parameter) const;
+    bool   is_constant() const;
+
+    friend Coefficient operator*(const Coefficient &a, const Coefficient &b);
+
+  private:
+    std::shared_ptr<const ParameterFunction> function;
+  };
+
+  /// What a term describes.
+  enum class TermKind
+  {
+    body,            ///< elasticity, inertia and material damping
+    mount,           ///< springs and dashpots between bodies and the ground
+    rotation,        ///< forces of a turning disc
+    friction,        ///< forces μ r_n along t
+    contact_damping, ///< forces on the contact nodes in proportion to relative velocities
+    modal_damping
+  };
 
   enum class Symmetry
   {
@@ -51,13 +81,14 @@ namespace Squeal
    */
   struct Term
   {
-    std::string                          name;
+    std::string                          name;      ///< for messages
     int                                  power = 0; ///< p_k: 0, 1 or 2
-    Monomial                             coefficient;
+    Coefficient                          coefficient;
     std::shared_ptr<const SparseMatrix>  matrix;                         ///< A, n × n; null: A is of low rank
     Symmetry                             symmetry = Symmetry::symmetric; ///< of the matrix
     std::shared_ptr<const LowRankFactor> left = {}, right = {};          ///< L and R, n × m
     std::string                          weights = {};                   ///< parameter that lists d; empty: ones
+    TermKind                             kind    = TermKind::body;
 
     /// θ(p) λ^p_k
     template <typename Number>
@@ -89,16 +120,18 @@ namespace Squeal
 
   Term sparse_term(std::string                         name,
                    int                                 power,
-                   Monomial                            coefficient,
+                   Coefficient                         coefficient,
                    std::shared_ptr<const SparseMatrix> matrix,
-                   Symmetry                            symmetry = Symmetry::symmetric);
+                   Symmetry                            symmetry = Symmetry::symmetric,
+                   TermKind                            kind     = TermKind::body);
 
   Term low_rank_term(std::string                          name,
                      int                                  power,
-                     Monomial                             coefficient,
+                     Coefficient                          coefficient,
                      std::shared_ptr<const LowRankFactor> left,
                      std::shared_ptr<const LowRankFactor> right,
-                     std::string                          weights = "");
+                     std::string                          weights = "",
+                     TermKind                             kind    = TermKind::body);
 
   template <typename Matrix>
   Matrix Term::weighted(Matrix Y, const ParameterValues &values) const

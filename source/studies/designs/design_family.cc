@@ -69,9 +69,8 @@ namespace Squeal
       }
     for (PinMaterial &pin : design.materials.single_pins)
       pin.young_modulus = pin.density = 1.;
-    for (ElasticMount &mount : design.materials.mounts)
-      for (double *stiffness : {&mount.radial, &mount.tangential, &mount.axial})
-        *stiffness = presence(*stiffness);
+    for (double *value : design.materials.mount_values())
+      *value = presence(*value);
     design.operation.load_per_side  = presence(design.operation.load_per_side);
     design.operation.rotation_speed = 1.;
     std::ostringstream stream;

@@ -103,16 +103,8 @@ namespace Squeal
               result.back().path = std::string("Pin material/Single pins: ") + number.name;
           }
 
-    for (const ElasticMount &mount : materials.mounts)
-      for (const auto &[direction, stiffness] :
-           {std::make_pair("radial", mount.radial), std::make_pair("tangential", mount.tangential), std::make_pair("axial", mount.axial)})
-        if (stiffness != 0.)
-          result.push_back({"Mounts/Elastic mounts: " + mount.surface + " " + direction,
-                            "",
-                            "N/m^3",
-                            stiffness,
-                            {{BodyParameter::mount_stiffness(direction, mount.surface), {1.}}},
-                            {}});
+    for (const MountParameter &mount : mount_parameters(materials))
+      result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
 
     const auto &ratios = parameters.damping.modal_ratios;
     for (std::size_t i = 0; i < ratios.size(); ++i)

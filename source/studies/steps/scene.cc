@@ -33,15 +33,13 @@ namespace Squeal
     }
 
     /// The mounts that hold something, however soft, in units of their own.
-    std::shared_ptr<const SparseMatrix> unit_mounts(const BodyTerms &bodies, const MaterialParameters &materials)
+    std::shared_ptr<const SparseMatrix> unit_mounts(const std::vector<Term> &bodies)
     {
       std::vector<std::pair<double, std::shared_ptr<const SparseMatrix>>> summands;
-      for (const ElasticMount &mount : materials.mounts)
-        for (const char *direction : {"radial", "tangential", "axial"})
-          for (const Term &term : bodies.terms)
-            if (term.coefficient.contains(BodyParameter::mount_stiffness(direction, mount.surface)))
-              if (const double size = max_norm(*term.matrix); size > 0.)
-                summands.emplace_back(1. / size, term.matrix);
+      for (const Term &term : bodies)
+        if (term.kind == TermKind::mount && term.power == 0)
+          if (const double size = max_norm(*term.matrix); size > 0.)
+            summands.emplace_back(1. / size, term.matrix);
       return sum(summands);
     }
 
@@ -107,7 +105,7 @@ namespace Squeal
                                "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");
         add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
       }
-    scene.mounts = unit_mounts(bodies, parameters.materials);
+    scene.mounts = unit_mounts(bodies.terms);
     scene.bodies = merged(bodies.terms, bodies.values);
     scene.system = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
