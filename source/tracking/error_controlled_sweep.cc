@@ -205,6 +205,17 @@ namespace Squeal
     return n == 1 ? evaluate_here(model, points, each) : evaluate_in_rounds(model, points, communicator, each);
   }
 
+  PredictZero zero_predictor(const ChartModel &model, const std::function<OperatingPoint(double)> &at, const MPI_Comm communicator)
+  {
+    return [&model, at, communicator](const ZeroSearch &search) {
+      const auto point = [&](const ModesAtPoint &modes) { return at(modes.point->friction_coefficient); };
+      const auto zero  = model.predicted_zero(search, point(search.first), point(search.second));
+      // Rounding must not lead processes to different friction coefficients
+      const auto same = dealii::Utilities::MPI::broadcast(communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
+      return same.empty() ? std::nullopt : std::optional(same.front());
+    };
+  }
+
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                               const std::vector<OperatingPoint> &points,
                                               const std::vector<int>            &training,

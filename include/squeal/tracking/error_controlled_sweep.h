@@ -53,6 +53,9 @@ namespace Squeal
                                    MPI_Comm                                            communicator,
                                    const std::function<void(int, const ChartPoint &)> &each = {});
 
+  /// Predicts zeros for stability_chart() by ChartModel::predicted_zero(), the same on every process; @p at gives the operating point of a μ.
+  PredictZero zero_predictor(const ChartModel &model, const std::function<OperatingPoint(double)> &at, MPI_Comm communicator);
+
   /**
    * Grows the basis of @p model until the estimated errors of all modes in the
    * band meet the tolerance at every one of the operating @p points: first at

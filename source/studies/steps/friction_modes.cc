@@ -1,10 +1,6 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/modes/krylov_modes.h>
-#include <squeal/modes/verdict.h>
 #include <squeal/studies/steps/friction_modes.h>
 
 #include <algorithm>
@@ -18,40 +14,6 @@ namespace Squeal
     /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// |λ|² up to this many times what rounding hides: a slow mode, whose digits cancellation takes [-].
-    constexpr double slow_square = 1e4;
-
-    bool is_slow(const CoupledSystem &system, const std::complex<double> &lambda)
-    {
-      return std::norm(lambda) <= slow_square * system.hidden_square;
-    }
-
-    /// Largest error of the modes that are not slow.
-    double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
-    {
-      double result = 0.;
-      for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-        if (!is_slow(system, modes.lambda[j]))
-          result = std::max(result, conditioning.errors[j]);
-      return result;
-    }
-
-    /// Verdicts with these relative errors. Without damping growth needs a second mode within reach of the errors.
-    std::vector<Verdict> verdicts_of(const ComplexModes &modes, const std::vector<double> &errors, const bool has_damping)
-    {
-      const auto          &lambda = modes.lambda;
-      const auto           error  = [&](const std::size_t j) { return errors[j] * std::abs(lambda[j]); };
-      std::vector<Verdict> result;
-      for (std::size_t i = 0; i < lambda.size(); ++i)
-        {
-          bool alone = true;
-          for (std::size_t j = 0; j < lambda.size(); ++j)
-            alone = alone && (j == i || std::abs(lambda[i] - lambda[j]) > error_safety * (error(i) + error(j)));
-          result.push_back(verdict_of(lambda[i], error(i), alone && !has_damping));
-        }
-      return result;
-    }
-
     /// Growth rates of the unstable modes [1/s]; zero for the others.
     std::vector<double> growth_rates(const FrictionModes &friction)
     {
@@ -62,44 +24,9 @@ namespace Squeal
     }
   } // namespace
 
-  std::size_t FrictionModes::n_unstable() const
+  FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes)
   {
-    return n_of(Verdict::unstable);
-  }
-
-  std::size_t FrictionModes::n_of(const Verdict verdict) const
-  {
-    return std::count(verdicts.begin(), verdicts.end(), verdict);
-  }
-
-  std::size_t FrictionModes::n_growing_real() const
-  {
-    return std::count_if(modes.real_values.begin(), modes.real_values.end(), [](const double lambda) { return lambda > 0.; });
-  }
-
-  std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning)
-  {
-    const double        largest = largest_error(system, modes, conditioning);
-    std::vector<double> result  = conditioning.errors;
-    for (std::size_t j = 0; j < result.size(); ++j)
-      if (!is_slow(system, modes.lambda[j]))
-        result[j] = largest;
-    return result;
-  }
-
-  FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes)
-  {
-    const CoupledSystem &coupled = frictionless.linearisation.coupled;
-    FrictionModes        result;
-    result.modes = std::move(modes);
-    result.conditioning =
-      estimate_conditioning(coupled, *frictionless.inverse, frictionless.shift, result.modes, modal_products(coupled, result.modes));
-    // Neither friction nor damping moves K φ = 0; with damping, λ = 0 need not be a double eigenvalue.
-    result.n_slow             = std::max(0, result.modes.n_rigid_body - frictionless.real.n_rigid_body);
-    result.modes.n_rigid_body = frictionless.real.n_rigid_body;
-    result.verdicts           = verdicts_of(result.modes, uncertainties(coupled, result.modes, result.conditioning), coupled.has_damping());
-    for (const Verdict one : result.verdicts)
-      result.unstable.push_back(one == Verdict::unstable);
+    FrictionModes result{std::move(modes), {}, {}};
     result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
     mark_doublets(result.labels, growth_rates(result));
     return result;
@@ -107,27 +34,11 @@ namespace Squeal
 
   FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run)
   {
-    const Parameters     &parameters = run.parameters;
-    const CoupledSystem  &coupled    = frictionless.linearisation.coupled;
-    const SymmetricModes &real       = frictionless.real;
-    const double          omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
-
+    const Parameters &parameters = run.parameters;
     run.progress.begin("Complex modes");
-    ComplexModes modes;
-    if (parameters.solvers.complex_solver == ComplexSolver::krylov)
-      modes = krylov_modes(coupled, *frictionless.inverse, frictionless.shift, mu, omega_max, real.eigenvalues.size(), parameters.solvers,
-                           run.progress, real.vectors.get());
-    else
-      {
-        ResidualIterationOptions iteration;
-        iteration.largest_circular_frequency = omega_max;
-        iteration.tolerance                  = parameters.solvers.iteration_tolerance;
-        iteration.maximum_basis              = parameters.solvers.maximum_basis;
-        modes = residual_iteration(coupled, *frictionless.inverse, *real.vectors, mu, iteration, run.progress);
-      }
-    if (modes.lambda.empty())
-      throw SolverError("no oscillating mode lies in the band", "complex modes", "raise Band/Maximum frequency");
-    FrictionModes       result = named_modes(frictionless, std::move(modes));
+    FrictionModes       result = named_modes(frictionless, modes_with_friction(frictionless.linearisation.coupled, frictionless, mu,
+                                                                               circular_frequency(parameters.discretization.maximum_frequency),
+                                                                               parameters.solvers, run.progress));
     const ComplexModes &found  = result.modes;
     result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
                                            found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",

@@ -50,28 +50,7 @@ namespace Squeal
                                   n + n_null, n + n_null == 1 ? " motion has" : " motions have", " no positive stiffness"),
                              "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
     }
-
-    /// Counts the modes of the band, and refuses more than allowed before any is computed: counting them takes one factorisation.
-    ModeCount number_of_modes(const CoupledSystem &coupled, const double largest_circular_frequency, Run &run)
-    {
-      run.progress.begin("Mode count");
-      const ModeCount    count     = count_below(*coupled.stiffness, *coupled.mass, largest_circular_frequency * largest_circular_frequency,
-                                                 "real modes of the coupled system");
-      const unsigned int allowed   = run.parameters.solvers.maximum_modes;
-      const double       frequency = hertz(largest_circular_frequency);
-      if (count.n_modes > static_cast<int>(allowed))
-        throw ParameterError(text(count.n_modes, " modes lie below ", frequency, " Hz, more than the ", allowed, " allowed"),
-                             "parameter Real modes/Maximum number of modes",
-                             "lower Band/Maximum frequency, or raise Real modes/Maximum number of modes; time grows up to its cube");
-      run.progress.finish(text(count.n_modes, " below ", frequency, " Hz by inertia"));
-      return count;
-    }
   } // namespace
-
-  std::size_t n_in_band(const std::vector<double> &eigenvalues, const double largest_eigenvalue)
-  {
-    return std::upper_bound(eigenvalues.begin(), eigenvalues.end(), largest_eigenvalue) - eigenvalues.begin();
-  }
 
   double ListedComponentMode::frequency() const
   {
@@ -137,17 +116,6 @@ namespace Squeal
     return Squeal::identify(references(), shape_shares(real_part, imaginary_part));
   }
 
-  SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, const double shift)
-  {
-    SymmetricModesOptions options;
-    options.solver    = solvers.real_solver;
-    options.tolerance = solvers.real_tolerance;
-    options.library   = solvers.library;
-    options.what      = what;
-    options.shift     = shift * shift;
-    return options;
-  }
-
   namespace
   {
     /// Modes of the disc and of the pins alone, as a step of the run.
@@ -186,42 +154,20 @@ namespace Squeal
     const Parameters    &parameters = run.parameters;
     const CoupledSystem &coupled    = linearisation.coupled;
     const double         omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
-    const double         limit      = omega_max * omega_max;
     FrictionlessModes    result;
     result.linearisation = linearisation;
-    result.shift         = stabilizing_shift(*scene.model, coupled, omega_max);
 
     check_speed(coupled, parameters);
-    const ModeCount count = number_of_modes(coupled, (1. + margin) * omega_max, run);
+    const ModeCount count = number_of_modes(coupled, (1. + margin) * omega_max, parameters.solvers, run.progress);
     find_component_modes(linearisation, result, run);
 
-    run.progress.begin("Factorisation");
-    const AttachmentModes attachment = !may_keep_attachment_modes(coupled)                     ? AttachmentModes::not_kept :
-                                       parameters.solves_by(ComplexSolver::residual_iteration) ? AttachmentModes::when_needed :
-                                                                                                 AttachmentModes::at_once;
-    result.inverse = std::make_shared<UpdatedInverse>(result.linearisation.coupled, result.shift, parameters.solvers.library, attachment);
-    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
-    result.factorisation = run.progress.finish(text(result.inverse->frictionless().n_factor_entries() / 1e6, " million entries",
-                                                    result.shift > 0. ? ", shifted: the disc is free or held softly" : ""));
-
-    run.progress.begin("Real modes");
-    SymmetricModesOptions options = real_modes_options(parameters.solvers, "real modes of the coupled system", result.shift);
-    options.count                 = count;
     // As many modes as there are pins that are alike may have one frequency
-    options.block_size = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
-    // The factor serves here too, unless the shift brought damping into it.
-    if (result.shift == 0. || !coupled.has_damping())
-      options.inverse = result.inverse.get();
-    result.real              = symmetric_modes(*coupled.stiffness, *coupled.mass, count.limit, options);
-    const std::size_t n_real = n_in_band(result.real.eigenvalues, limit);
-    if (n_real == 0)
-      throw SolverError("no mode of the coupled system lies in the band", "real modes", "raise Band/Maximum frequency");
-    run.count("real modes", n_real);
+    const int block_size               = std::clamp(static_cast<int>(scene.n_pins()), 8, 16);
+    static_cast<SystemModes &>(result) = system_modes(coupled, stabilizing_shift(*scene.model, coupled, omega_max), omega_max, count,
+                                                      block_size, parameters.solvers, run.progress);
+    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
+    run.count("real modes", n_in_band(result.real.eigenvalues, omega_max * omega_max));
     run.count("rigid-body modes", result.real.n_rigid_body);
-    result.solution =
-      run.progress.finish(text(result.real.eigenvalues.size(), " found, ", result.real.n_counted, " counted by inertia",
-                               n_real < result.real.eigenvalues.size() ? text(", ", n_real, " in the band") : "",
-                               result.real.n_rigid_body > 0 ? text(", ", result.real.n_rigid_body, " of a rigid body") : ""));
 
     warn_of_hidden_mounts(result, run);
     result.labels = result.identify(*result.real.vectors, nullptr);

@@ -71,7 +71,8 @@ namespace Squeal
       model.friction               = timed(model.costs.friction, [&] {
         add_modal_damping(frictionless, parameters);
         return basis.empty() ? friction_modes(frictionless, parameters.operation.friction_coefficient, run) :
-                                             named_modes(frictionless, reduced_complex_modes(frictionless, basis, parameters));
+                                             named_modes(frictionless, judged_modes(frictionless.linearisation.coupled, frictionless,
+                                                                                    reduced_complex_modes(frictionless, basis, parameters)));
       });
     }
 

@@ -3,8 +3,6 @@
 #include <squeal/base/version.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
-#include <deal.II/base/mpi.h>
-
 #include <algorithm>
 #include <set>
 #include <sstream>
@@ -167,14 +165,8 @@ namespace Squeal
     coarse.maximum_refinements = 0;
     if (store != nullptr)
       sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, *store);
-    // Rounding must not lead processes to different friction coefficients
-    const auto predict = [&](const ZeroSearch &search) {
-      const auto at   = [&](const ChartPoint &point) { return model.plan.point(line, point.friction_coefficient, model.regime.closed); };
-      const auto zero = model.reduced->predicted_zero(search, at(*search.first.point), at(*search.second.point));
-      const auto same = dealii::Utilities::MPI::broadcast(run.communicator, zero ? std::vector{*zero} : std::vector<double>(), 0);
-      return same.empty() ? std::nullopt : std::optional(same.front());
-    };
-    SweepChart            result{stability_chart(grid, evaluate, options, predict), {}, {}, {}};
+    const auto at = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
+    SweepChart result{stability_chart(grid, evaluate, options, zero_predictor(*model.reduced, at, run.communicator)), {}, {}, {}};
     const StabilityChart &chart  = result.chart;
     const double          before = grid.empty() ? 0. : value_before(model, line, grid.front());
     result.labels                = branch_labels(model, chart);

@@ -113,17 +113,11 @@ namespace Squeal
         if (model.plan.closed_at(mu) != model.regime.closed)
           continue;
         run.progress.begin("Argument principle");
-        const CoupledSystem system = model.linearisation_at(mu).coupled;
-        ContourOptions      options;
-        options.largest_circular_frequency = omega_max;
-        options.lowest_frequency           = 1e-3 * omega_max;
-        options.largest_growth             = 0.1 * omega_max;
-        options.method                     = contour_method(system);
-        options.real_modes         = real_modes_options(run.parameters.solvers, "real modes beyond the band", model.frictionless.shift);
-        options.real_modes.inverse = &model.frictionless.inverse->frictionless(); // of the undamped system
-        const ContourCount count   = count_by_contour(system, {mu}, options, run.progress).front();
-        const ChartPoint   point   = modes_at(model, mu);
-        const int          n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {
+        const CoupledSystem system  = model.linearisation_at(mu).coupled;
+        const auto          options = contour_of_band(system, model.frictionless, omega_max, run.parameters.solvers);
+        const ContourCount  count   = count_by_contour(system, {mu}, options, run.progress).front();
+        const ChartPoint    point   = modes_at(model, mu);
+        const int           n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {
           return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max &&
                  std::abs(lambda.real()) <= options.largest_growth;
         });

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <squeal/estimates/conditioning.h>
-#include <squeal/modes/complex_modes.h>
-#include <squeal/modes/verdict.h>
+#include <squeal/estimates/judged_modes.h>
 #include <squeal/output/fields.h>
 #include <squeal/studies/steps/frictionless_modes.h>
 
@@ -12,37 +10,18 @@
 
 namespace Squeal
 {
-  /// Complex modes at one friction coefficient with their names and which of them grow.
-  struct FrictionModes
+  /// Complex modes at one friction coefficient with their names.
+  struct FrictionModes : JudgedModes
   {
-    ComplexModes           modes;
     std::vector<ModeLabel> labels;
-    std::vector<Verdict>   verdicts; ///< with the uncertainty of λ
-    std::vector<bool>      unstable; ///< beyond their uncertainty
-    Conditioning           conditioning;
-    int  n_slow = 0; ///< pairs of λ that count as zero but belong to no rigid body, such as slow decay against strong dampers
-    Cost cost;       ///< of the solution
-
-    std::size_t n_unstable() const;
-
-    /// Modes of this verdict.
-    std::size_t n_of(Verdict verdict) const;
-
-    /// Real eigenvalues λ > 0: static divergence.
-    std::size_t n_growing_real() const;
+    Cost                   cost; ///< of the solution
   };
 
-  /// Names @p modes, however they were found, and decides which of them grow. Their cost is left zero.
-  FrictionModes named_modes(const FrictionlessModes &frictionless, ComplexModes modes);
+  /// Names @p modes, however they were found. Their cost is left zero.
+  FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes);
 
   /// Complex modes of the band by the solver that the parameters choose.
   FrictionModes friction_modes(const FrictionlessModes &frictionless, double mu, Run &run);
-
-  /**
-   * Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much
-   * too small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
-   */
-  std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
   /**
    * Keeps condition numbers and the digits that the eigenvalues of @p modes keep (estimates/conditioning.h) in the run record, and warns

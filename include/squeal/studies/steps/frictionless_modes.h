@@ -1,26 +1,19 @@
 #pragma once
 
 #include <squeal/bases/component_modes.h>
-#include <squeal/contact/updated_inverse.h>
-#include <squeal/eigen/symmetric_modes.h>
+#include <squeal/modes/system_modes.h>
 #include <squeal/studies/steps/scene.h>
 
-#include <memory>
-#include <string>
 #include <vector>
 
 namespace Squeal
 {
-  /// Modes of the linearised scene without friction, and the inverse that serves them and every μ.
-  struct FrictionlessModes
+  /// Modes of the linearised scene without friction, with what the scene adds: components and names.
+  struct FrictionlessModes : SystemModes
   {
-    Linearisation                   linearisation;
-    ComponentModes                  disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
-    double                          shift;                         ///< of the inverse [rad/s]; positive if the disc is free
-    std::shared_ptr<UpdatedInverse> inverse;
-    SymmetricModes                  real;                    ///< coupled, in the band and its margin
-    Cost                            factorisation, solution; ///< of the inverse, and of the real modes
-    std::vector<ModeLabel>          labels;                  ///< of the coupled modes
+    Linearisation          linearisation;
+    ComponentModes         disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
+    std::vector<ModeLabel> labels;                        ///< of the coupled modes
 
     /// Component modes that give coupled ones their names.
     std::vector<const ComponentModes *> references() const
@@ -45,9 +38,6 @@ namespace Squeal
    */
   FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, double margin = 0.);
 
-  /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
-  SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
-
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
   void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters);
 
@@ -64,7 +54,4 @@ namespace Squeal
 
   /// Component modes with ω² ≤ @p largest_eigenvalue: of the free disc, the sliding pins and the free pins, each set ascending.
   std::vector<ListedComponentMode> listed_component_modes(const FrictionlessModes &modes, double largest_eigenvalue);
-
-  /// Modes inside the band, of ascending @p eigenvalues [rad²/s²].
-  std::size_t n_in_band(const std::vector<double> &eigenvalues, double largest_eigenvalue);
 } // namespace Squeal
