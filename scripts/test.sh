@@ -1,16 +1,23 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, and runs all tests; arguments are handed to ctest:
+# Installs what is missing, builds, and runs the tests; other arguments are handed to ctest:
 #
 #   scripts/test.sh
 #   scripts/test.sh -R contact
+#   scripts/test.sh --extended        the long ones, which the others leave out, with their times
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
+
+selection=(-LE extended)
+if [[ ${1:-} == --extended ]]; then
+  shift
+  selection=(-L extended)
+fi
 
 install_packages "${packages[@]}" "${packages_browser[@]}"
 setup release
 
 cd "$squeal_root"
 export OMP_NUM_THREADS=${OMP_NUM_THREADS:-1} # tests run side by side
-ctest --preset release --no-tests=error "$@"
+ctest --preset release --no-tests=error "${selection[@]}" "$@"
