@@ -118,24 +118,24 @@ TEST(ReactionOperators, GiveTheSameEigenvaluesWhateverTheirKind)
                });
   const Matrix mixture = linear_combination({{0.3, pin.get()}, {1.2, pseudo.get()}, {-0.5, disc.get()}});
 
-  const auto eigenvalues = [&](const Matrix &S) {
+  const auto eigenvalues = [&](const Matrix &S, const double mu) {
     ContactOperators contact = s.contact;
     contact.reaction         = S;
     const auto unit          = Testing::diagonal(P_n.rows(), [](int) { return 1.; });
     EXPECT_LT(difference(*multiply(*S, P_n, false, true), *unit), 1e-13);
     for (const Matrix &P : {contact.tangential, contact.radial})
       EXPECT_LT(max_norm(*multiply(*S, *P, false, true)), 1e-13);
-    const auto                matrices = with_friction(couple(s.system, contact, s.damping), 0.4);
+    const auto                matrices = with_friction(couple(s.system, contact, s.damping), mu);
     const DenseMatrix         damping  = to_dense(*matrices.damping);
     const DenseQuadraticModes modes    = dense_quadratic_modes(to_dense(*matrices.mass), &damping, to_dense(*matrices.stiffness), 1e9);
     return std::make_pair(modes.values, modes.real_values);
   };
-  const auto [values, real_values] = eigenvalues(s.contact.reaction);
+  const auto [values, real_values] = eigenvalues(s.contact.reaction, 0.4);
   ASSERT_GT(values.size(), 100u);
-  EXPECT_GT(std::count_if(values.begin(), values.end(), [](const auto &l) { return l.real() > 0.; }), 0);
+  EXPECT_GT(largest(distances(eigenvalues(s.contact.reaction, 0.).first, values)), 1e-3); // friction matters
   for (const Matrix &S : {pin, disc, pseudo, mixture})
     {
-      const auto [others, other_real_values] = eigenvalues(S);
+      const auto [others, other_real_values] = eigenvalues(S, 0.4);
       ASSERT_EQ(others.size(), values.size());
       EXPECT_EQ(other_real_values.size(), real_values.size());
       EXPECT_LT(largest(distances(others, values)), 1e-9);
