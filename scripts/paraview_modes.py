@@ -13,7 +13,7 @@ Disc and pins have the colours of the amplitude; the title says mode, frequency,
 and below; faces: the upper pins seen from the disc, which is left out, with the normal reactions on their contact faces; and
 energy: the same faces with what they add to the divergence rate of a growing mode.
 
-Needs shapes as XDMF (Output/Field format), and Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview);
+Needs Debian's paraview, python3-paraview, xvfb and xauth (scripts/setup.sh paraview);
 without a screen it starts itself again under xvfb-run.
 """
 
@@ -50,11 +50,10 @@ def title_of(row):
 
 def files_of(results):
     """Files of shapes by rows of complex_modes.csv."""
-    found = {int(match[1]): path for path in sorted((results / "modes").glob("complex_*.xdmf"))
+    found = {int(match[1]): path for path in sorted((results / "modes").glob("complex_*.vtu"))
              if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
     if not found:
-        raise ModesError(f"{results} holds no shapes of complex modes as XDMF: run again with Output/Mode shapes = all and "
-                         "Output/Field format = XDMF")
+        raise ModesError(f"{results} holds no shapes of complex modes: run again with Output/Mode shapes = all")
     return found
 
 

@@ -60,7 +60,7 @@ class Scene:
         simple.SetActiveView(self.view)
 
     def open(self, path):
-        reader = self.simple.Xdmf3ReaderS(FileName=[str(path)])
+        reader = self.simple.OpenDataFile(str(path))
         reader.UpdatePipelineInformation()
         times = reader.TimestepValues
         reader.UpdatePipeline(times[0] if times else 0)
@@ -94,9 +94,9 @@ class Scene:
     def show_faces(self, bodies, faces, field, caption):
         """The upper pins' contact faces in the colours of a field, and the edges of these pins at rest."""
         simple = self.simple
-        faces.UpdatePipeline(max(faces.TimestepValues, default=0))
+        faces.UpdatePipeline(max(faces.TimestepValues or [0]))
         if field not in faces.PointData.keys():
-            raise ValueError(f"{faces.FileName[0]} has no field {field}: that is known of growing modes")
+            raise ValueError(f"the contact faces have no field {field}: that is known of growing modes")
         bounds = faces.GetDataInformation().GetBounds()
         middle = [0, 0, (bounds[4] + bounds[5]) / 2]
         pins = simple.Threshold(Input=bodies)
@@ -159,9 +159,9 @@ class Scene:
 def scene_of_all(simple, results, titles, files, arguments):
     """Modes by frequency, and the time at which each is shown, by rows of complex_modes.csv."""
     scene = Scene(simple, arguments.view, arguments.width)
-    reader = scene.open(results / "modes.xdmf")
+    reader = scene.open(results / "modes.pvd")
     if arguments.view == "faces":
-        scene.show_faces(reader, scene.open(results / "modes_contact.xdmf"), "normal_reaction_real",
+        scene.show_faces(reader, scene.open(results / "modes_contact.pvd"), "normal_reaction_real",
                          "normal reaction, real part [N]; red: less pressure")
     else:
         scene.show_bodies(reader, "displacement_real", scene.scale(reader, arguments.size))
@@ -175,7 +175,7 @@ def scene_of_energy(simple, file, title, arguments):
     """Where the energy of a growing mode enters."""
     scene = Scene(simple, arguments.view, arguments.width)
     reader = scene.open(file)
-    scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.xdmf")), "energy_input",
+    scene.show_faces(reader, scene.open(file.with_name(file.stem + "_contact.vtu")), "energy_input",
                      "what friction and damping add to the divergence rate, over the area [1/m2]; red feeds")
     scene.show_title(reader, [title])
     scene.look()

@@ -37,39 +37,6 @@ def ensure_display():
     os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", sys.executable, *sys.argv])
 
 
-def read(path):
-    """The grid of disc and pins in a field file, .h5 or .vtu, with vertices that the cells of a body share."""
-    return read_hdf5(path) if path.suffix == ".h5" else read_vtu(path)
-
-
-def read_hdf5(path):
-    """The grid of a .h5 file of a mode, with the mesh of the file that it names."""
-    try:
-        import h5py
-    except ImportError:
-        sys.exit("h5py is missing: apt-get install python3-h5py (or scripts/setup.sh)")
-    try:
-        with h5py.File(path) as file:
-            title = file.attrs["mode"]
-            fields = {name: values[()] for name, values in file.items() if isinstance(values, h5py.Dataset) and "reaction" not in name}
-            mesh = path.parent / file.attrs["mesh"]
-        with h5py.File(mesh) as file:
-            points, cells, component = (file[f"bodies/{name}"][()] for name in ("points", "cells", "component"))
-    except (KeyError, OSError) as error:
-        sys.exit(f"{path} and the mesh beside it cannot be read as a mode: {error}")
-    body = np.zeros(len(points))
-    body[cells] = component[:, np.newaxis]
-    grid, hexahedra = grid_of(points, 8 * np.arange(len(cells) + 1), cells.ravel())
-    grid.SetCells(vtk.VTK_HEXAHEDRON, hexahedra)
-    for name, values in {**fields, "component": body}.items():
-        add_array(grid, name, values)
-    words = vtk.vtkStringArray()
-    words.SetName("mode")
-    words.InsertNextValue(title)
-    grid.GetFieldData().AddArray(words)
-    return grid
-
-
 def grid_of(points, offsets, connectivity):
     """An unstructured grid of these points, and the cells that it has still to be given with their types."""
     grid = vtk.vtkUnstructuredGrid()
@@ -82,11 +49,11 @@ def grid_of(points, offsets, connectivity):
     return grid, cells
 
 
-def read_vtu(path):
-    """The grid of a .vtu file with the vertices of a body shared by its cells again.
+def read(path):
+    """The grid of a field file (.vtu) with a point field `component`, and with the vertices of a body shared by its cells.
 
-    deal.II writes every cell with vertices of its own, and coincident vertices of disc and pins must stay apart:
-    the array `component` tells them apart. deal.II writes cell data as data of these vertices; the grid has it so, too.
+    Every process writes its cells with vertices of its own, and coincident vertices of disc and pins must stay apart:
+    the array `component` tells them apart.
     """
     reader = vtk.vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
@@ -104,7 +71,7 @@ def read_vtu(path):
     elif grid.GetCellData().HasArray("component"):
         component = vtk_to_numpy(grid.GetCellData().GetArray("component"))
         body[connectivity] = np.repeat(component, np.diff(offsets))
-    resolution = 1e-7 * np.ptp(points, axis=0).max()
+    resolution = 1e-5 * np.ptp(points, axis=0).max()
     keys = np.column_stack([body, np.round(points / resolution)]).astype(np.int64)
     _, kept, number = np.unique(keys, axis=0, return_index=True, return_inverse=True)
 

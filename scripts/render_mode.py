@@ -3,8 +3,7 @@
 
     scripts/render_mode.py MODE... [-o PICTURE.png] [--field FIELD] [--view VIEW] [--bodies all|moving]
 
-MODE are files of modes of a run, `modes/NAME.h5` or `modes/NAME.vtu`: complex, real or component modes. Several of them come side by side in one picture with
-one scale of colours. The bodies are displaced by the real part of the mode. Needs no screen: without one the script starts
+MODE are files of modes of a run, `modes/NAME.vtu`: complex, real or component modes. Several of them come side by side in one picture with one scale of colours. The bodies are displaced by the real part of the mode. Needs no screen: without one the script starts
 itself again under xvfb-run. Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 

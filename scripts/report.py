@@ -5,8 +5,8 @@
 
 The verdict comes first, then charts, growing modes that move and turn, where their energy enters, tables that sort, what was checked, and how to
 repeat the run. The file is RESULTS/report.html, which goes into the list of files in RESULTS/run.json, so that a rerun replaces it; one
-that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and, for shapes,
-python3-h5py (scripts/setup.sh).
+that -o names goes into no list. Needs Debian's python3-plotly, libjs-three, libjs-jquery, libjs-jquery-datatables and python3-numpy
+(scripts/setup.sh).
 """
 
 import argparse
@@ -50,7 +50,7 @@ def main(words=None):
         print(f"No report: install {' '.join(missing.args[0])} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
         return 1
     except ModuleNotFoundError as missing:
-        if missing.name not in ("h5py", "numpy"):
+        if missing.name != "numpy":
             raise
         print(f"No report: install python3-{missing.name} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
         return 1

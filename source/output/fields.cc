@@ -1,19 +1,27 @@
 #include <squeal/output/fields.h>
-#include <squeal/output/vtu_writer.h>
-#include <squeal/output/xdmf_writer.h>
 
+#include <deal.II/base/data_out_base.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/lac/la_parallel_vector.h>
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
+#include <map>
 
 namespace Squeal
 {
   namespace
   {
+    using Complex = std::complex<double>;
+
     /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
+    /// Steps of displacements of animations in their largest: finer ones are not seen, and take room.
+    constexpr float steps_of_animations = 4096.f;
+
+    /// Largest |u| of the dofs of all processes, by which fields are divided; one where nothing moves.
     template <typename Number>
     double largest_modulus(const std::vector<Number> &displacement, const MPI_Comm communicator)
     {
@@ -23,56 +31,258 @@ namespace Squeal
       largest = dealii::Utilities::MPI::max(largest, communicator);
       return largest > 0. ? largest : 1.;
     }
+
+    /// A picture of an animation.
+    struct AnimationFrame
+    {
+      double  time; ///< [s]
+      Complex turn; ///< Re(turn φ) is shown
+    };
+
+    /// Pictures of Re(φ e^{iωt}), or of Re(φ e^{λt}) where the animation grows, with a largest amplitude as write_animation() has it.
+    std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, const MPI_Comm communicator)
+    {
+      const double       scale    = 1. / largest_modulus(mode.displacement, communicator);
+      const double       period   = 2. * M_PI / mode.lambda.imag();
+      const unsigned int n_steps  = options.frames_per_period * options.periods;
+      const unsigned int n_frames = options.grows ? n_steps + 1 : n_steps;
+      const double       growth   = options.grows ? mode.lambda.real() : 0.;
+      // When the amplitude is largest: scaled to this time, growth cannot overflow
+      const double largest_at = growth > 0. ? options.periods * period : 0.;
+
+      std::vector<AnimationFrame> frames;
+      for (unsigned int frame = 0; frame < n_frames; ++frame)
+        {
+          const double time = period * frame / options.frames_per_period;
+          frames.push_back({time, std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time)});
+        }
+      return frames;
+    }
+
+    /// Frequencies [Hz] as times, see write_list().
+    std::vector<double> distinct_times(const std::vector<ListedMode> &modes)
+    {
+      std::vector<double> times;
+      for (const ListedMode &mode : modes)
+        {
+          const double least = times.empty() ? 0. : (1. + least_relative_step) * times.back() + least_step;
+          times.push_back(std::max(mode.frequency, least));
+        }
+      return times;
+    }
+
+    using Partitioner = dealii::Utilities::MPI::Partitioner;
+
+    /// Free dofs of this process, and those of its cells that others have.
+    std::shared_ptr<const Partitioner> dofs_of_cells(const Model &model)
+    {
+      const RowMap                                &map = model.free_map();
+      std::vector<dealii::types::global_dof_index> dofs;
+      for (const Node &node : model.nodes())
+        for (const int dof : node.dofs)
+          if (dof >= 0)
+            dofs.push_back(dof);
+      std::sort(dofs.begin(), dofs.end());
+      dealii::IndexSet own(map.n()), relevant(map.n());
+      if (map.n_local() > 0)
+        own.add_range(map.number(0), map.number(0) + map.n_local()); // ownership is contiguous
+      relevant.add_indices(dofs.begin(), dofs.end());
+      return std::make_shared<Partitioner>(own, relevant, model.communicator());
+    }
+
+    template <typename Number>
+    using Vectors = std::vector<std::array<Number, 3>>;
+
+    /// Displacements of the vertices, zero where they are clamped, from those on the free dofs, rows of this process. All must call.
+    template <typename Number>
+    Vectors<Number> vertex_values(const FieldMesh                          &mesh,
+                                  const std::shared_ptr<const Partitioner> &dofs,
+                                  const std::vector<Number>                &displacement)
+    {
+      dealii::LinearAlgebra::distributed::Vector<Number> values(dofs);
+      std::copy(displacement.begin(), displacement.end(), values.begin());
+      values.update_ghost_values();
+      Vectors<Number> result(mesh.nodes.size());
+      for (std::size_t i = 0; i < result.size(); ++i)
+        for (int d = 0; d < 3; ++d)
+          {
+            const int dof = mesh.nodes[i].dofs[d];
+            result[i][d]  = dof >= 0 ? values(dof) : Number();
+          }
+      return result;
+    }
+
+    /// value(u) of each displacement of the vertices.
+    template <typename Number, typename Function>
+    VertexField vector_field(const std::string &name, const Vectors<Number> &displacement, const Function &value)
+    {
+      VertexField result{name, 3, {}};
+      for (const auto &vector : displacement)
+        for (const Number &u : vector)
+          result.values.push_back(static_cast<float>(value(u)));
+      return result;
+    }
+
+    template <typename Number>
+    VertexField amplitude(const Vectors<Number> &displacement, const double scale)
+    {
+      VertexField result{"amplitude", 1, {}};
+      for (const auto &[x, y, z] : displacement)
+        result.values.push_back(static_cast<float>(scale * std::sqrt(std::norm(x) + std::norm(y) + std::norm(z))));
+      return result;
+    }
+
+    void write_pvd(const ResultFolder &folder, const std::string &name, const std::vector<std::pair<double, std::string>> &files)
+    {
+      folder.write(name + ".pvd", [&](std::ostream &stream) { dealii::DataOutBase::write_pvd_record(stream, files); });
+    }
   } // namespace
 
-  double largest_amplitude(const std::vector<double> &displacement, const MPI_Comm communicator)
+  FieldWriter::Stage::Stage(FieldMesh given)
+    : mesh(std::move(given))
+    , piece(mesh)
+  {}
+
+  FieldWriter::FieldWriter(const Model                     &model,
+                           const ContactInterface          &interface,
+                           const std::vector<unsigned int> &closed_pairs,
+                           const ResultFolder              &folder)
+    : model(model)
+    , interface(interface)
+    , folder(folder)
+    , dofs(dofs_of_cells(model))
+    , closed(interface.size(), 0.)
+    , contact_faces(contact_face_mesh(model))
   {
-    return largest_modulus(displacement, communicator);
+    for (const unsigned int c : closed_pairs)
+      closed[c] = 1.;
+    std::map<std::int64_t, unsigned int> pair_of_node;
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      pair_of_node[interface[c].pin_node.number] = c;
+    for (const Node &node : contact_faces.mesh.nodes)
+      pairs.push_back(pair_of_node.at(node.number));
   }
 
-  double largest_amplitude(const std::vector<std::complex<double>> &displacement, const MPI_Comm communicator)
+  const FieldWriter::Stage &FieldWriter::bodies(const std::optional<Component> &component)
   {
-    return largest_modulus(displacement, communicator);
+    auto place = stages.find(component);
+    if (place == stages.end())
+      place = stages.emplace(component, Stage(body_mesh(model, component))).first;
+    return place->second;
   }
 
-  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, const MPI_Comm communicator)
+  void FieldWriter::write(const Stage                    &stage,
+                          const std::string              &name,
+                          const std::string              &title,
+                          const std::vector<VertexField> &fields) const
   {
-    const double       scale    = 1. / largest_amplitude(mode.displacement, communicator);
-    const double       period   = 2. * M_PI / mode.lambda.imag();
-    const unsigned int n_steps  = options.frames_per_period * options.periods;
-    const unsigned int n_frames = options.grows ? n_steps + 1 : n_steps;
-    const double       growth   = options.grows ? mode.lambda.real() : 0.;
-    // When the amplitude is largest: scaled to this time, growth cannot overflow
-    const double largest_at = growth > 0. ? options.periods * period : 0.;
+    VtuPiece piece = stage.piece;
+    piece.add(fields);
+    piece.write(folder, name + ".vtu", title, model.communicator());
+  }
 
-    std::vector<AnimationFrame> frames;
-    for (unsigned int frame = 0; frame < n_frames; ++frame)
+  void FieldWriter::write_mode(const ModeField &mode)
+  {
+    const double scale  = 1. / largest_modulus(mode.displacement, model.communicator());
+    const Stage &stage  = bodies({});
+    const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
+    write(stage, "modes/" + mode.name, mode.title,
+          {vector_field("displacement_real", values, [&](const Complex &u) { return scale * u.real(); }),
+           vector_field("displacement_imag", values, [&](const Complex &u) { return scale * u.imag(); }), amplitude(values, scale),
+           vector_field("phase", values, [](const Complex &u) { return std::arg(u); })});
+
+    std::vector<double> re, im;
+    for (const Complex &r : mode.reactions)
       {
-        const double time = period * frame / options.frames_per_period;
-        frames.push_back({time, std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time)});
+        re.push_back(scale * r.real());
+        im.push_back(scale * r.imag());
       }
-    return frames;
+    std::vector<std::pair<const char *, const std::vector<double> *>> fields = {{"normal_reaction_real", &re},
+                                                                                {"normal_reaction_imag", &im},
+                                                                                {"closed", &closed}};
+    if (!mode.energy_input.empty())
+      fields.emplace_back("energy_input", &mode.energy_input);
+    write_contact("modes/" + mode.name, mode.title, fields);
   }
 
-  std::vector<double> distinct_times(const std::vector<ListedMode> &modes)
+  void FieldWriter::write_mode(const RealModeField &mode)
   {
-    std::vector<double> times;
-    for (const ListedMode &mode : modes)
+    const double scale  = 1. / largest_modulus(mode.displacement, model.communicator());
+    const Stage &stage  = bodies(mode.component);
+    const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
+    write(stage, "modes/" + mode.name, mode.title,
+          {vector_field("displacement", values, [&](const double u) { return scale * u; }), amplitude(values, scale)});
+  }
+
+  void FieldWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes) const
+  {
+    const std::vector<double>                   times = distinct_times(modes);
+    std::vector<std::pair<double, std::string>> bodies, faces;
+    for (std::size_t j = 0; j < modes.size(); ++j)
       {
-        const double least = times.empty() ? 0. : (1. + least_relative_step) * times.back() + least_step;
-        times.push_back(std::max(mode.frequency, least));
+        const std::string mode = "modes/" + modes[j].name, contact = mode + "_contact.vtu";
+        bodies.emplace_back(times[j], mode + ".vtu");
+        if (folder.files().count(contact) > 0)
+          faces.emplace_back(times[j], contact);
       }
-    return times;
+    write_pvd(folder, name, bodies);
+    if (!faces.empty())
+      write_pvd(folder, name + "_contact", faces);
   }
 
-  std::unique_ptr<ModeFieldWriter> mode_field_writer(const FieldFormat                format,
-                                                     const Model                     &model,
-                                                     const ContactInterface          &interface,
-                                                     const std::vector<unsigned int> &closed,
-                                                     const ResultFolder              &folder)
+  void FieldWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
   {
-    if (format == FieldFormat::vtu)
-      return std::make_unique<VtuWriter>(model, interface, closed, folder);
-    return std::make_unique<XdmfWriter>(model, interface, closed, folder);
+    if (!surface)
+      surface.emplace(surface_mesh(model));
+    const auto                                  values = vertex_values(surface->mesh, dofs, mode.displacement);
+    std::vector<std::pair<double, std::string>> files;
+    for (const AnimationFrame &frame : animation_frames(mode, options, model.communicator()))
+      {
+        std::ostringstream name;
+        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << files.size();
+        write(*surface, "animations/" + name.str(), {}, {vector_field("displacement", values, [&](const Complex &u) {
+          return std::round(steps_of_animations * (frame.turn * u).real()) / steps_of_animations;
+        })});
+        files.emplace_back(frame.time, name.str() + ".vtu");
+      }
+    write_pvd(folder, "animations/" + mode.name, files);
+  }
+
+  void FieldWriter::write_contact(const std::string                                                       &name,
+                                  const std::string                                                       &title,
+                                  const std::vector<std::pair<const char *, const std::vector<double> *>> &fields) const
+  {
+    std::vector<VertexField> on_vertices;
+    for (const auto &[field, values] : fields)
+      {
+        on_vertices.push_back({field, 1, {}});
+        for (const unsigned int pair : pairs)
+          on_vertices.back().values.push_back(static_cast<float>((*values)[pair]));
+      }
+    if (!interface.empty())
+      write(contact_faces, name + "_contact", title, on_vertices);
+  }
+
+  void FieldWriter::write_contact_state(const ContactField &state)
+  {
+    const Stage &stage  = bodies({});
+    auto         values = vertex_values(stage.mesh, dofs, state.displacement);
+    // Clamped dofs follow their backplate
+    for (std::size_t i = 0; i < values.size(); ++i)
+      for (int d = 0; d < 3; ++d)
+        if (const Node &node = stage.mesh.nodes[i]; node.dofs[d] < 0)
+          values[i][d] = state.backplates[node.component][d];
+    write(stage, "sliding_state", {}, {vector_field("displacement", values, [](const double u) { return u; })});
+
+    std::vector<double> pressure;
+    for (unsigned int c = 0; c < interface.size(); ++c)
+      pressure.push_back(-state.reactions[c] / interface[c].area);
+    write_contact("sliding_state", {},
+                  {{"pressure", &pressure},
+                   {"normal_reaction", &state.reactions},
+                   {"gap", &state.gaps},
+                   {"closed", &closed},
+                   {"c_b", &state.radial_damping},
+                   {"c_t", &state.sliding_damping}});
   }
 } // namespace Squeal

@@ -179,33 +179,13 @@ namespace Squeal
     writer(stream);
     if (stream.bad())
       throw not_written(shown + "/" + name, ENOMEM);
-    write_now(name, stream.str());
-  }
-
-  fs::path ResultFolder::write_now(const std::string &name, const std::string &text) const
-  {
-    const fs::path  file = unfinished / name;
-    std::error_code ignored;
+    const std::string text = stream.str();
+    const fs::path    file = unfinished / name;
+    std::error_code   ignored;
     fs::create_directories(file.parent_path(), ignored);
     if (const int problem = write_file(file, O_TRUNC, {text}, false); problem != 0)
       throw not_written(shown + "/" + name, problem);
     written[name] = text.size();
-    return file;
-  }
-
-  fs::path ResultFolder::begin_file(const std::string &name) const
-  {
-    return is_root ? write_now(name, "") : fs::path();
-  }
-
-  void ResultFolder::end_file(const std::string &name) const
-  {
-    if (!is_root)
-      return;
-    std::error_code problem;
-    written[name] = fs::file_size(unfinished / name, problem);
-    if (problem)
-      throw not_written(shown + "/" + name, problem.value());
   }
 
   const FileSizes &ResultFolder::files() const

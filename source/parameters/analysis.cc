@@ -75,9 +75,6 @@ namespace Squeal
   {
     declarations.enter("Output");
     declarations.add("Mode shapes", fields, "Complex modes whose shapes are written.");
-    declarations.add(
-      "Field format", format,
-      "Files of shapes: XDMF with HDF5, which has the mesh once, in single precision and compressed, or VTU, in double precision.");
     declarations.add("Component mode shapes", component_fields,
                      "Writes the shapes of the modes of the disc alone and of the pins alone, free and sliding, too.");
     declarations.add("Real mode shapes", real_fields, "Writes the shapes of the coupled modes without friction, too.");

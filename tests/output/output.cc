@@ -2,7 +2,7 @@
 #include "scenes.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/output/vtu_writer.h>
+#include <squeal/output/fields.h>
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 #include <squeal/output/table.h>
@@ -255,7 +255,7 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
     {
       const DiscWithPin s(element);
       ResultFolder      folder(results, true);
-      VtuWriter         writer(s.model, s.interface, {}, folder);
+      FieldWriter       writer(s.model, s.interface, {}, folder);
       const ModeField   mode = s.mode({1., 1000.});
       writer.write_mode(mode);
       writer.write_animation(mode, {4});
@@ -264,9 +264,9 @@ TEST_F(ResultFolders, ModeShapesAndAnimations)
 
       const std::string body    = content(results + "/modes/complex_001_A0-2.vtu"),
                         contact = content(results + "/modes/complex_001_A0-2_contact.vtu");
-      for (const char *field : {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
+      for (const char *field : {"displacement_real", "displacement_imag", "amplitude", "phase", "component", "points"})
         EXPECT_NE(body.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
-      for (const char *field : {"normal_reaction_real", "normal_reaction_imag", "closed"})
+      for (const char *field : {"normal_reaction_real", "normal_reaction_imag", "closed", "mode"})
         EXPECT_NE(contact.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
       // The title as codes of its characters
       EXPECT_NE(body.find("Name=\"mode\""), std::string::npos);
@@ -292,7 +292,7 @@ TEST_F(ResultFolders, AnimationsWithGrowthAreLargestWhereTheModeIs)
     for (const bool grows : {false, true})
       {
         ResultFolder folder(results, true);
-        VtuWriter    writer(s.model, s.interface, {}, folder);
+        FieldWriter  writer(s.model, s.interface, {}, folder);
         writer.write_animation(s.mode(lambda), {4, 3, grows});
         folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
         folder.commit();
@@ -317,7 +317,7 @@ TEST_F(ResultFolders, RealModesOfAllBodiesAndOfOne)
 {
   const DiscWithPin         s(Element::trilinear);
   ResultFolder              folder(results, true);
-  VtuWriter                 writer(s.model, s.interface, {}, folder);
+  FieldWriter               writer(s.model, s.interface, {}, folder);
   const std::vector<double> displacement(s.model.free_map().n(), -3.);
   writer.write_mode({"real", "real mode A0-2", displacement, {}});
   writer.write_mode({"disc", "free disc A0-2", displacement, Component::disc});
@@ -340,7 +340,7 @@ TEST_F(ResultFolders, ListsOfModesHaveATimeForEach)
 {
   const DiscWithPin s(Element::trilinear);
   ResultFolder      folder(results, true);
-  VtuWriter         writer(s.model, s.interface, {}, folder);
+  FieldWriter       writer(s.model, s.interface, {}, folder);
   // Rigid-body modes, doublets equal to rounding, and one that is farther away
   const std::vector<double> frequencies = {0., 0., 500., 500., 500. * (1. + 1e-14), 500.1, 4999.};
   std::vector<ListedMode>   modes;

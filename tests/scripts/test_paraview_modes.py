@@ -23,7 +23,7 @@ class ParaviewModes(unittest.TestCase):
         (self.results / "complex_modes.csv").write_text("\n".join([HEADER, *ROWS]) + "\n", encoding="utf-8")
         (self.results / "modes").mkdir()
         for number, label in ((3, "F1"), (4, "F1")):
-            for ending in (".xdmf", "_contact.xdmf", ".h5"):
+            for ending in (".vtu", "_contact.vtu"):
                 (self.results / "modes" / f"complex_{number:03d}_{label}{ending}").write_text("", encoding="utf-8")
 
     def refused(self, *arguments):
@@ -40,7 +40,7 @@ class ParaviewModes(unittest.TestCase):
 
     def test_which_mode(self):
         rows, files = paraview_modes.rows_of(self.results), paraview_modes.files_of(self.results)
-        self.assertEqual({number: path.name for number, path in files.items()}, {3: "complex_003_F1.xdmf", 4: "complex_004_F1.xdmf"})
+        self.assertEqual({number: path.name for number, path in files.items()}, {3: "complex_003_F1.vtu", 4: "complex_004_F1.vtu"})
         self.assertEqual(paraview_modes.chosen("F1", rows, files), 4)
         self.assertEqual(paraview_modes.chosen("3", rows, files), 3)
 
@@ -54,7 +54,7 @@ class ParaviewModes(unittest.TestCase):
                 self.assertIn(words, self.refused(*arguments))
         for path in (self.results / "modes").iterdir():
             path.unlink()
-        self.assertIn("Field format", self.refused(self.results, *picture))
+        self.assertIn("Mode shapes = all", self.refused(self.results, *picture))
 
 
 if __name__ == "__main__":

@@ -119,7 +119,6 @@ namespace
                                                               {"Complex modes/Iteration tolerance", "1e-6"},
                                                               {"Complex modes/Maximum basis", "1000"},
                                                               {"Output/Mode shapes", "unstable"},
-                                                              {"Output/Field format", "VTU"},
                                                               {"Output/Component mode shapes", "true"},
                                                               {"Output/Real mode shapes", "true"},
                                                               {"Output/Animation frames", "3"},
@@ -229,12 +228,11 @@ TEST(ParameterUsage, OfStability)
             those_of(joined(others, {"Operation/Load"})));
   EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
             those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/",
-                             "Complex modes/Shift", "Complex modes/Tolerance", "Output/Field format", "Output/Animation"},
+                             "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"},
                             steady)));
   EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
             those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
                             {"Output/Animation periods", "Output/Animation growth"})));
-  EXPECT_EQ(unused_alone({"Output/Mode shapes=none", "Output/Real mode shapes=true"}).count("Output/Field format"), 0u);
 }
 
 TEST(ParameterUsage, OfAccuracy)

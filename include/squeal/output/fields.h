@@ -1,14 +1,17 @@
 #pragma once
 
-#include <squeal/base/field_format.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/model/model.h>
-#include <squeal/output/result_folder.h>
+#include <squeal/output/vtu_file.h>
+
+#include <deal.II/base/partitioner.h>
 
 #include <complex>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Squeal
@@ -48,64 +51,88 @@ namespace Squeal
     bool         grows             = false; ///< multiplied by e^{Rt}
   };
 
-  /// A picture of an animation.
-  struct AnimationFrame
+  /// A state of contact as the field writer needs it; one value for each pair of contact nodes.
+  struct ContactField
   {
-    double               time; ///< [s]
-    std::complex<double> turn; ///< Re(turn φ) is shown
+    std::vector<double>          displacement;    ///< on the free dofs [m], rows of this process, with that of the backplates
+    std::vector<Eigen::Vector3d> backplates;      ///< displacement of the backplate of each component [m]
+    std::vector<double>          reactions;       ///< R_n0 [N]
+    std::vector<double>          gaps;            ///< [m]
+    std::vector<double>          radial_damping;  ///< c_b [N s/m]
+    std::vector<double>          sliding_damping; ///< c_t [N s/m]
   };
 
-  /// Pictures of Re(φ e^{iωt}), or of Re(φ e^{λt}) where the animation grows, with a largest amplitude as ModeFieldWriter::write_animation() has it.
-  std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, MPI_Comm communicator);
-
-  /// Frequencies [Hz] as times that ParaView keeps apart, each beyond the one before by at least 10⁻⁶ of it; @p modes in ascending order.
-  std::vector<double> distinct_times(const std::vector<ListedMode> &modes);
-
-  /// Largest |u| of the dofs of all processes, by which fields are divided; one where nothing moves.
-  double largest_amplitude(const std::vector<double> &displacement, MPI_Comm communicator);
-  double largest_amplitude(const std::vector<std::complex<double>> &displacement, MPI_Comm communicator);
-
   /**
-   * Writes shapes of modes for ParaView. All processes must call.
+   * Writes fields as files of VTK (.vtu), each with its mesh, single precision, and lists of them (.pvd), for ParaView. All processes must call.
    *
-   * On the bodies are `displacement_real`, `displacement_imag` and `amplitude`, scaled so that the largest modulus of a displacement is one, with the
-   * cell field `component`; on the contact faces `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, `closed` (1: the
-   * node belongs to S_0) and, where it is known, `energy_input` [1/m²].
+   * Modes are scaled so that the largest modulus of a displacement is one. On the bodies are `displacement_real`, `displacement_imag`,
+   * `amplitude` (root of the sum of |u|² over the components), `phase` (argument of each component [rad]) and the cell field `component`; on
+   * the contact faces, in files `NAME_contact.vtu`, `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, `closed` (1: the
+   * node belongs to S_0) and, where it is known, `energy_input` [1/m²]. The title of a mode is the text `mode` of the file's field data.
    */
-  class ModeFieldWriter
+  class FieldWriter
   {
   public:
-    virtual ~ModeFieldWriter() = default;
+    /// @param closed numbers of the pairs that are in contact, among those of @p interface
+    FieldWriter(const Model &model, const ContactInterface &interface, const std::vector<unsigned int> &closed, const ResultFolder &folder);
 
-    /// Files `modes/NAME*`.
-    virtual void write_mode(const ModeField &mode) = 0;
+    /// Files `modes/NAME*.vtu`.
+    void write_mode(const ModeField &mode);
 
-    /// Files `modes/NAME*` with `displacement` and `amplitude`, in the same scale.
-    virtual void write_mode(const RealModeField &mode) = 0;
+    /// A file `modes/NAME.vtu` with `displacement` and `amplitude`, in the same scale.
+    void write_mode(const RealModeField &mode);
 
     /**
-     * A file `NAME.*` through which ParaView steps, frequencies [Hz] as times (see distinct_times()).
+     * A file `NAME.pvd` through which ParaView steps, and `NAME_contact.pvd` where the modes have contact faces: frequencies [Hz] as times that
+     * ParaView keeps apart, each beyond the one before by at least 10⁻⁶ of it.
      *
      * @param modes that have been written, in ascending order of frequency
      */
-    virtual void write_list(const std::string &name, const std::vector<ListedMode> &modes) = 0;
+    void write_list(const std::string &name, const std::vector<ListedMode> &modes) const;
 
     /**
-     * Periods of a mode as `animations/NAME.*`; time in the file is in seconds. The largest amplitude is one: at all times without growth,
-     * in the last picture of a mode that grows and in the first of one that decays. Without growth the last picture comes one step before
-     * the end, so that it may be repeated; with growth at the end.
+     * Periods of a mode on the surface of the bodies, with `displacement` in steps of 1/4096 of the largest, as `animations/NAME.pvd`; time in
+     * the file is in seconds. The largest amplitude is one: at all times without growth, in the last picture of a mode that grows and in the
+     * first of one that decays. Without growth the last picture comes one step before the end, so that it may be repeated; with growth at the
+     * end.
      */
-    virtual void write_animation(const ModeField &mode, const AnimationOptions &options) = 0;
-  };
+    void write_animation(const ModeField &mode, const AnimationOptions &options);
 
-  /**
-   * A writer of modes in the format asked for.
-   *
-   * @param closed numbers of the pairs that are in contact, among those of @p interface
-   */
-  std::unique_ptr<ModeFieldWriter> mode_field_writer(FieldFormat                      format,
-                                                     const Model                     &model,
-                                                     const ContactInterface          &interface,
-                                                     const std::vector<unsigned int> &closed,
-                                                     const ResultFolder              &folder);
+    /**
+     * `sliding_state.vtu` with `displacement` [m] on the bodies, and
+     * `sliding_state_contact.vtu` with `pressure` (−R_n0 over the area of the
+     * node) [Pa], `normal_reaction` [N], `gap` [m], `closed`, `c_b` and `c_t`
+     * [N s/m] on the contact faces.
+     */
+    void write_contact_state(const ContactField &state);
+
+  private:
+    /// A mesh, and the piece of a file that has no more yet.
+    struct Stage
+    {
+      explicit Stage(FieldMesh given);
+      FieldMesh mesh;
+      VtuPiece  piece;
+    };
+
+    /// All bodies, or those of a component.
+    const Stage &bodies(const std::optional<Component> &component);
+
+    void write(const Stage &stage, const std::string &name, const std::string &title, const std::vector<VertexField> &fields) const;
+
+    /// Fields on the contact faces: names, and values of the pairs of contact nodes.
+    void write_contact(const std::string                                                       &name,
+                       const std::string                                                       &title,
+                       const std::vector<std::pair<const char *, const std::vector<double> *>> &fields) const;
+
+    const Model                                               &model;
+    const ContactInterface                                    &interface;
+    const ResultFolder                                        &folder;
+    std::shared_ptr<const dealii::Utilities::MPI::Partitioner> dofs;   ///< free ones of the cells of this process
+    std::vector<double>                                        closed; ///< 1 for pairs in contact
+    std::map<std::optional<Component>, Stage>                  stages;
+    std::optional<Stage>                                       surface; ///< of animations
+    const Stage                                                contact_faces;
+    std::vector<unsigned int>                                  pairs; ///< of the vertices of these
+  };
 } // namespace Squeal

@@ -40,15 +40,6 @@ namespace Squeal
     /// Writes a file on the root process; throws FileError with the cause if it could not be written to the end.
     void write(const std::string &name, const std::function<void(std::ostream &)> &writer) const;
 
-    /**
-     * Begins a file that a library writes: an empty one, whose path the root process gets. Throws FileError with the cause, there, if it
-     * cannot be made.
-     */
-    std::filesystem::path begin_file(const std::string &name) const;
-
-    /// Notes what a library has written.
-    void end_file(const std::string &name) const;
-
     /// What the run has written so far, with sizes; for its record.
     const FileSizes &files() const;
 
@@ -70,7 +61,6 @@ namespace Squeal
   private:
     void                     open(const std::string &command);
     void                     take_lock(const std::string &command);
-    std::filesystem::path    write_now(const std::string &name, const std::string &text) const;
     std::vector<std::string> put_in_place() const;
     void                     remove_traces();
 

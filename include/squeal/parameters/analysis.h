@@ -3,7 +3,6 @@
 #include <squeal/base/element.h>
 #include <squeal/base/enum_table.h>
 #include <squeal/base/factorization_library.h>
-#include <squeal/base/field_format.h>
 #include <squeal/base/real_solver.h>
 #include <squeal/parameters/declarations.h>
 
@@ -83,7 +82,6 @@ namespace Squeal
   struct OutputParameters
   {
     FieldSelection fields            = FieldSelection::all;
-    FieldFormat    format            = FieldFormat::xdmf;
     bool           component_fields  = false; ///< modes of disc and pins alone, too
     bool           real_fields       = false; ///< coupled modes without friction, too
     unsigned int   animation_frames  = 16;    ///< per period of an unstable mode; 0: no animation

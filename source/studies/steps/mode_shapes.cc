@@ -42,7 +42,7 @@ namespace Squeal
     void write_complex_modes(const Linearisation &linearisation,
                              const FrictionModes &friction,
                              const PowerBalances &balances,
-                             ModeFieldWriter     &writer,
+                             FieldWriter         &writer,
                              Run                 &run)
     {
       const OutputParameters &output = run.parameters.output;
@@ -79,7 +79,7 @@ namespace Squeal
                                output.animation_growth && highest > 0. ? growth_text(highest, output.animation_periods) : ""));
     }
 
-    void write_real_modes(const FrictionlessModes &modes, ModeFieldWriter &writer, Run &run)
+    void write_real_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
     {
       std::vector<ListedMode> list;
       run.progress.begin("Real mode shapes");
@@ -96,7 +96,7 @@ namespace Squeal
       run.progress.finish(text(list.size(), " modes"));
     }
 
-    void write_component_modes(const FrictionlessModes &modes, ModeFieldWriter &writer, Run &run)
+    void write_component_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
     {
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
@@ -137,12 +137,12 @@ namespace Squeal
     const OutputParameters &output        = run.parameters.output;
     const Linearisation    &linearisation = frictionless.linearisation;
     const Scene            &scene         = *linearisation.scene;
-    const auto              writer = mode_field_writer(output.format, *scene.model, scene.interface, linearisation.closed, run.folder());
+    FieldWriter             writer(*scene.model, scene.interface, linearisation.closed, run.folder());
     if (output.fields != FieldSelection::none)
-      write_complex_modes(linearisation, friction, balances, *writer, run);
+      write_complex_modes(linearisation, friction, balances, writer, run);
     if (output.real_fields)
-      write_real_modes(frictionless, *writer, run);
+      write_real_modes(frictionless, writer, run);
     if (output.component_fields)
-      write_component_modes(frictionless, *writer, run);
+      write_component_modes(frictionless, writer, run);
   }
 } // namespace Squeal

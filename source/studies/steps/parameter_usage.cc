@@ -103,11 +103,6 @@ namespace Squeal
         {"Output/Mode shapes",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
-        {"Output/Field format",
-         [](const Parameters &p) {
-           const bool has_others = p.study->no_mode_shapes == nullptr && (p.output.real_fields || p.output.component_fields);
-           return has_others ? nullptr : no_complex_shapes(p);
-         }},
         {"Output/Animation frames",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},

@@ -1,6 +1,6 @@
 #include <squeal/contact/travel.h>
 #include <squeal/linear_algebra/replicate.h>
-#include <squeal/output/vtu_writer.h>
+#include <squeal/output/fields.h>
 #include <squeal/studies/steps/sliding_results.h>
 
 #include <cmath>
@@ -87,7 +87,7 @@ namespace Squeal
     const OperationParameters &operation = run.parameters.operation;
     const auto                 u         = state.total_displacement->col(0);
     const auto                 plates    = backplate_displacements(travels(*scene.model, scene.interface), state.approach);
-    VtuWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
+    FieldWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
       .write_contact_state({std::vector<double>(u.begin(), u.end()), plates, state.reactions, state.gaps,
                             radial_dissipation(scene.interface, state.reactions, operation),
                             sliding_dissipation(state.reactions, operation)});

@@ -134,8 +134,8 @@ namespace Squeal
     const auto &wanted = run.parameters.sweep.mode_shapes;
     if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
       return;
-    const Scene &scene  = model.plan.scene;
-    const auto   writer = mode_field_writer(run.parameters.output.format, *scene.model, scene.interface, model.regime.closed, run.folder());
+    const Scene &scene = model.plan.scene;
+    FieldWriter  writer(*scene.model, scene.interface, model.regime.closed, run.folder());
     run.progress.begin("Mode shapes");
     int n_written = 0;
     for (const double mu : wanted)
@@ -154,9 +154,9 @@ namespace Squeal
         const auto name     = text("mu_", mu, "_", file_text(label));
         ModeField  field    = mode_field(model.linearisation_at(mu), name, point.lambda[mode], re, im);
         field.title         = mode_title(label, point.lambda[mode]);
-        writer->write_mode(field);
+        writer.write_mode(field);
         if (run.parameters.output.animation_frames > 0)
-          writer->write_animation(field, animation_options(run.parameters.output));
+          writer.write_animation(field, animation_options(run.parameters.output));
         ++n_written;
       }
     run.progress.finish(text(n_written, " leading modes"));

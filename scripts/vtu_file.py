@@ -1,0 +1,58 @@
+"""Reads the .vtu files of a run without VTK."""
+
+import array
+import re
+import struct
+import xml.etree.ElementTree
+import zlib
+
+TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
+
+
+class VtuFile:
+    """
+    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 9
+    is a quadrilateral, 12 a hexahedron. Coincident points of several pieces are repeated. The title, or None.
+    """
+
+    def __init__(self, path):
+        head, _, self.data = path.read_bytes().partition(b'<AppendedData encoding="raw">\n_')
+        root = xml.etree.ElementTree.fromstring(head + b"</VTKFile>")
+        assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64", path
+        title = root.find(".//FieldData/DataArray[@Name='mode']")
+        self.title = None if title is None else bytes(map(int, title.text.split()[:-1])).decode()
+        self.points, self.fields, self.cells, self.cell_fields, self.cell_types = [], {}, [], {}, []
+        self.n_pieces = 0
+        for piece in root.iter("Piece"):
+            self.n_pieces += 1
+            first, (n_points, n_cells) = len(self.points), (int(piece.get(f"NumberOf{what}")) for what in ("Points", "Cells"))
+            cells = {data.get("Name"): self.values(data) for data in piece.findall("Cells/DataArray")}
+            self.points += self.values(piece.find("Points/DataArray"))
+            starts = [0, *cells["offsets"]]
+            self.cells += [[first + vertex for vertex in cells["connectivity"][a:b]] for a, b in zip(starts, starts[1:])]
+            self.cell_types += cells["types"]
+            for place, fields, n in (("PointData", self.fields, n_points), ("CellData", self.cell_fields, n_cells)):
+                for data in piece.findall(f"{place}/DataArray"):
+                    values = self.values(data)
+                    assert len(values) == n, (path, data.get("Name"))
+                    fields.setdefault(data.get("Name"), []).extend(values)
+            assert starts[-1] == len(cells["connectivity"]) and len(starts) == n_cells + 1, path
+            assert all(0 <= vertex < n_points for vertex in cells["connectivity"]) and len(self.points) == first + n_points, path
+
+    def values(self, data):
+        """Numbers, or triples, of an array: a single block compressed by zlib behind its sizes."""
+        offset = int(data.get("offset"))
+        n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
+        plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])
+        assert n_blocks == 1 and len(plain) == size, data.get("Name")
+        values = array.array(TYPE_CODES[data.get("type")], plain).tolist()
+        return list(zip(values[0::3], values[1::3], values[2::3])) if data.get("NumberOfComponents") == "3" else values
+
+    def corners(self, cell):
+        return [self.points[vertex] for vertex in self.cells[cell]]
+
+
+def arrays(path):
+    """Names of the fields of a file."""
+    return set(re.findall(r'<DataArray[^>]* Name="([a-z_]+)"', path.read_bytes().partition(b"<AppendedData")[0].decode())) - {
+        "points", "connectivity", "offsets", "types", "mode"}

@@ -1,0 +1,163 @@
+#include <squeal/base/tasks.h>
+#include <squeal/output/vtu_file.h>
+
+#include <zlib.h>
+
+#include <cstdint>
+#include <sstream>
+#include <type_traits>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Of 1 to 9: fields differ in every file, a mesh is compressed once for all.
+    constexpr int level_of_fields = 1, level_of_meshes = 9;
+
+    /// Types of cells in files of VTK.
+    constexpr std::uint8_t quadrilateral = 9, hexahedron = 12;
+
+    template <typename Number>
+    constexpr const char *type_name()
+    {
+      return std::is_same_v<Number, float> ? "Float32" : std::is_same_v<Number, std::uint8_t> ? "UInt8" : "Int32";
+    }
+
+    /// One block of @p size bytes as VTK's readers want it: the number of blocks, their size, that of a shorter last one, and the compressed sizes;
+    /// then the block.
+    std::string compressed(const void *values, const std::size_t size, const int level)
+    {
+      uLongf        length = compressBound(size);
+      std::string   result(4 * sizeof(std::uint64_t) + length, '\0');
+      std::uint64_t head[4] = {1, size, 0, 0};
+      if (compress2(reinterpret_cast<Bytef *>(result.data()) + sizeof(head), &length, static_cast<const Bytef *>(values), size, level) !=
+          Z_OK)
+        throw std::bad_alloc(); // the only cause there is
+      head[3] = length;
+      result.replace(0, sizeof(head), reinterpret_cast<const char *>(head), sizeof(head));
+      result.resize(sizeof(head) + length);
+      return result;
+    }
+
+    /// A text in the field data of a file, as codes of its characters, which need no escapes.
+    std::string field_data(const std::string &text)
+    {
+      std::ostringstream stream;
+      stream << "<FieldData>\n<DataArray type=\"String\" Name=\"mode\" NumberOfTuples=\"1\" format=\"ascii\">\n";
+      for (const char c : text)
+        stream << int(static_cast<unsigned char>(c)) << ' ';
+      stream << "0\n</DataArray>\n</FieldData>\n";
+      return stream.str();
+    }
+
+    void send(const std::string &text, const MPI_Comm communicator)
+    {
+      const auto size = static_cast<int>(text.size());
+      MPI_Send(&size, 1, MPI_INT, 0, 0, communicator);
+      MPI_Send(text.data(), size, MPI_CHAR, 0, 0, communicator);
+    }
+
+    /// On process 0: its own text, and what all others send().
+    void write_all(std::ostream &stream, const std::string &own, const MPI_Comm communicator)
+    {
+      int n_processes;
+      MPI_Comm_size(communicator, &n_processes);
+      stream << own;
+      for (int process = 1; process < n_processes; ++process)
+        {
+          int size;
+          MPI_Recv(&size, 1, MPI_INT, process, 0, communicator, MPI_STATUS_IGNORE);
+          std::string other(size, ' ');
+          MPI_Recv(other.data(), size, MPI_CHAR, process, 0, communicator, MPI_STATUS_IGNORE);
+          stream << other;
+        }
+    }
+  } // namespace
+
+  template <typename Number>
+  VtuPiece::Array VtuPiece::array(const char                *place,
+                                  const std::string         &name,
+                                  const std::vector<Number> &values,
+                                  const unsigned int         n_columns,
+                                  const int                  level)
+  {
+    return {place, name, type_name<Number>(), n_columns, compressed(values.data(), values.size() * sizeof(Number), level)};
+  }
+
+  VtuPiece::VtuPiece(const FieldMesh &mesh)
+    : n_points(mesh.nodes.size())
+    , n_cells(mesh.components.size())
+  {
+    std::vector<float>        points;
+    std::vector<std::int32_t> ends;
+    for (const Node &node : mesh.nodes)
+      points.insert(points.end(), node.position.begin(), node.position.end());
+    for (std::size_t cell = 1; cell <= n_cells; ++cell)
+      ends.push_back(static_cast<std::int32_t>(cell * mesh.corners));
+    const std::vector<std::uint8_t> types(n_cells, mesh.corners == 4 ? quadrilateral : hexahedron);
+    arrays = {array("CellData", "component", mesh.components, 1, level_of_meshes), array("Points", "points", points, 3, level_of_meshes),
+              array("Cells", "connectivity", mesh.cells, 1, level_of_meshes), array("Cells", "offsets", ends, 1, level_of_meshes),
+              array("Cells", "types", types, 1, level_of_meshes)};
+  }
+
+  void VtuPiece::add(const std::vector<VertexField> &fields)
+  {
+    const std::size_t n_before = arrays.size();
+    arrays.resize(n_before + fields.size());
+    run_tasks(static_cast<int>(fields.size()), [&](const int i) {
+      arrays[n_before + i] = array("PointData", fields[i].name, fields[i].values, fields[i].n_columns, level_of_fields);
+    });
+  }
+
+  std::string VtuPiece::description(std::size_t offset) const
+  {
+    if (n_cells == 0)
+      return {};
+    std::map<std::string, std::string> parts;
+    for (const Array &array : arrays)
+      {
+        std::ostringstream line;
+        line << "<DataArray type=\"" << array.type << "\" Name=\"" << array.name << "\" NumberOfComponents=\"" << array.n_columns
+             << "\" format=\"appended\" offset=\"" << offset << "\"/>\n";
+        parts[array.place] += line.str();
+        offset += array.data.size();
+      }
+    std::ostringstream result;
+    result << "<Piece NumberOfPoints=\"" << n_points << "\" NumberOfCells=\"" << n_cells << "\">\n";
+    for (const char *place : {"PointData", "CellData", "Points", "Cells"})
+      result << '<' << place << ">\n" << parts[place] << "</" << place << ">\n";
+    result << "</Piece>\n";
+    return result.str();
+  }
+
+  void VtuPiece::write(const ResultFolder &folder, const std::string &name, const std::string &title, const MPI_Comm communicator) const
+  {
+    std::string data;
+    if (n_cells > 0)
+      for (const Array &array : arrays)
+        data += array.data;
+    const std::uint64_t size   = data.size();
+    std::uint64_t       offset = 0;
+    int                 rank;
+    MPI_Exscan(&size, &offset, 1, MPI_UINT64_T, MPI_SUM, communicator);
+    MPI_Comm_rank(communicator, &rank);
+    const std::string piece = description(rank == 0 ? 0 : offset);
+    if (rank != 0)
+      {
+        send(piece, communicator);
+        send(data, communicator);
+        return;
+      }
+    folder.write(name, [&](std::ostream &stream) {
+      stream
+        << "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+           "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+      if (!title.empty())
+        stream << field_data(title);
+      write_all(stream, piece, communicator);
+      stream << "</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+      write_all(stream, data, communicator);
+      stream << "\n</AppendedData>\n</VTKFile>\n";
+    });
+  }
+} // namespace Squeal
