@@ -57,10 +57,15 @@ namespace Squeal
     return sparse_matrices(contact_damping_terms(radial, tangential), damping.values()).damping;
   }
 
-  CoupledSystem coupled_system(const std::vector<CoupledTerm> &bodies, Matrix tangential, Matrix radial, const ContactDamping &damping)
+  CoupledSystem coupled_system(const std::vector<CoupledTerm> &bodies,
+                               Matrix                          tangential,
+                               Matrix                          radial,
+                               const ContactDamping           &damping,
+                               const ParameterValues          &values)
   {
     CoupledSystem result;
-    result.values                            = damping.values();
+    result.values = damping.values();
+    result.values.insert(values.begin(), values.end());
     result.values[SystemParameter::friction] = {0.};
     result.friction_forces                   = std::make_shared<LowRankFactor>(std::move(tangential));
     for (const CoupledTerm &body : bodies)
@@ -91,7 +96,10 @@ namespace Squeal
     system.hidden_square = unresolved_square(*system.stiffness, *system.mass);
   }
 
-  CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping)
+  CoupledSystem couple(const std::vector<Term> &bodies,
+                       const ContactOperators  &contact,
+                       const ContactDamping    &damping,
+                       const ParameterValues   &values)
   {
     const SparseMatrix      &T_c = *contact.kernel;
     std::vector<CoupledTerm> coupled;
@@ -100,7 +108,7 @@ namespace Squeal
         coupled.push_back({body, multiply(*multiply(*contact.reaction, *body.matrix), T_c)});
         coupled.back().term.matrix = congruence(*body.matrix, T_c);
       }
-    CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping);
+    CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping, values);
     result.kernel        = contact.kernel;
     return result;
   }

@@ -38,10 +38,7 @@ namespace Squeal
 
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping)
   {
-    CoupledSystem result = couple(bodies.terms, contact, damping);
-    result.values.insert(bodies.values.begin(), bodies.values.end());
-    set_frictionless_matrices(result);
-    return result;
+    return couple(bodies.terms, contact, damping, bodies.values);
   }
 
   SystemMember member_of(const CoupledSystem &family, const ParameterValues &values)

@@ -90,17 +90,22 @@ namespace Squeal
    *
    * @param tangential Aᵀ = P_t T_c, n_c × n
    * @param radial     R = P_b T_c, n_c × n
+   * @param values     of the parameters of the bodies' coefficients
    */
   CoupledSystem coupled_system(const std::vector<CoupledTerm>     &bodies,
                                std::shared_ptr<const SparseMatrix> tangential,
                                std::shared_ptr<const SparseMatrix> radial,
-                               const ContactDamping               &damping = {});
+                               const ContactDamping               &damping = {},
+                               const ParameterValues              &values  = {});
 
   /// Finds the mass, the stiffness and what follows from them of a system with other terms or values.
   void set_frictionless_matrices(CoupledSystem &system);
 
-  /// Couples bodies, given by merged() terms.
-  CoupledSystem couple(const std::vector<Term> &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
+  /// Couples bodies, given by merged() terms, or by others with the values of their parameters.
+  CoupledSystem couple(const std::vector<Term> &bodies,
+                       const ContactOperators  &contact,
+                       const ContactDamping    &damping = {},
+                       const ParameterValues   &values  = {});
 
   /// The same system with other values of some parameters.
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others);
