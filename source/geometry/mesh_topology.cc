@@ -21,10 +21,10 @@ namespace Squeal
   {
     namespace bgi = boost::geometry::index;
 
-    using Point  = HexMesh::Point;
-    using Box    = dealii::BoundingBox<3>;
-    using Sample = std::pair<Point, unsigned int>; ///< a place with the index of a node, face or element
-    using Tree   = dealii::RTree<Sample>;
+    using Position = HexMesh::Point;
+    using Box      = dealii::BoundingBox<3>;
+    using Sample   = std::pair<Position, unsigned int>; ///< a place with the index of a node, face or element
+    using Tree     = dealii::RTree<Sample>;
 
     // Nodes coincide: far below what is drawn on purpose, above the rounding of files with six digits
     constexpr double of_shortest_edge = 1e-3, of_size = 2e-5, most_of_shortest_edge = 0.1, most_of_longest_edge = 5e-3;
@@ -37,7 +37,7 @@ namespace Squeal
 
     constexpr unsigned int edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
-    std::string place(const Point &p)
+    std::string place(const Position &p)
     {
       const auto coordinate = [&](const unsigned int d) { return std::abs(p[d]) > 1e-12 * p.norm() ? p[d] : 0.; };
       return text("(", coordinate(0), ", ", coordinate(1), ", ", coordinate(2), ") m");
@@ -54,7 +54,7 @@ namespace Squeal
       tree.query(bgi::intersects(box), boost::make_function_output_iterator(visit));
     }
 
-    Box box_around(const Point &point, const double distance)
+    Box box_around(const Position &point, const double distance)
     {
       Box box(std::make_pair(point, point));
       box.extend(distance);
@@ -63,7 +63,7 @@ namespace Squeal
 
     Box box_around(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
     {
-      std::array<Point, 8> corners;
+      std::array<Position, 8> corners;
       for (unsigned int v = 0; v < 8; ++v)
         corners[v] = mesh.points[hexahedron.nodes[v]];
       return Box(corners);
@@ -238,9 +238,9 @@ namespace Squeal
       std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their volume and that in which they are
     };
 
-    Point centre(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
+    Position centre(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
     {
-      Point sum;
+      Position sum;
       for (const unsigned int node : hexahedron.nodes)
         sum += mesh.points[node] / 8.;
       return sum;
@@ -248,7 +248,7 @@ namespace Squeal
 
     std::vector<Box> boxes_of_volumes(const HexMesh &mesh, const std::vector<unsigned int> &volumes)
     {
-      std::vector<std::vector<Point>> points(mesh.volume_names.size());
+      std::vector<std::vector<Position>> points(mesh.volume_names.size());
       for (std::size_t node = 0; node < volumes.size(); ++node)
         points[volumes[node]].push_back(mesh.points[node]);
       return std::vector<Box>(points.begin(), points.end());
