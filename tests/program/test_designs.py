@@ -11,6 +11,8 @@ import time
 from program import EXECUTABLE, SOURCE, ProgramTest, design_tables, read_table
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
+# Where the results of a design are not looked at
+QUICK = ["Study=geometry", "Sweep/Number of friction coefficients=3", "Sweep/Tolerance=1e-3", "Sweep/Threshold tolerance=1e-3"]
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, 1"
 
 
@@ -36,10 +38,8 @@ class DesignsTest(ProgramTest):
         self.assertFalse((self.folder / "study.checkpoint").exists())
 
     def test_designs_are_those_of_single_runs(self):
-        for row in read_table(self.study / "designs.csv"):
+        for row in read_table(self.study / "designs.csv")[1:4:2]:
             number = row["design [-]"]
-            if row["outcome"] != "solved":
-                continue
             single = self.run_scene(f"single_{number}", file=str(self.study / "designs" / f"{number}.prm"))
             mine = [t for t in read_table(self.study / "design_thresholds.csv") if t["design [-]"] == number]
             others = read_table(single / "thresholds.csv")
@@ -77,12 +77,10 @@ class DesignsTest(ProgramTest):
             self.assertEqual(len({mode["label"] for mode in clear}), len(clear))
 
     def test_one_design_alone_is_the_same(self):
-        one = self.run_scene_of_designs("one", "2")
-        self.assertEqual(design_tables(one)["designs"], [design_tables(self.study)["designs"][1]])
-        self.assertEqual([path.name for path in (one / "designs").iterdir()], ["2.prm"])
-        self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (one, self.study)))
-        two = self.run_scene_of_designs("two", "1, 5-5")
-        self.assertEqual(design_tables(two)["designs"], [design_tables(self.study)["designs"][i] for i in (0, 4)])
+        some = self.run_scene_of_designs("some", "2, 6-6")
+        self.assertEqual(design_tables(some)["designs"], [design_tables(self.study)["designs"][i] for i in (1, 5)])
+        self.assertEqual([path.name for path in (some / "designs").iterdir()], ["2.prm"])
+        self.assertEqual(*((folder / "designs" / "2.prm").read_text(encoding="utf-8") for folder in (some, self.study)))
 
     def run_scene_of_designs(self, output, designs):
         settings = [word for text in (*STUDY, VARIABLES) for word in ("--set", text)]
@@ -145,7 +143,7 @@ class DesignsTest(ProgramTest):
 
     def test_crashes_are_rows(self):
         """A process that is killed from outside takes nothing along but its design."""
-        settings = [word for text in (*STUDY, VARIABLES, "Designs/Processes=1") for word in ("--set", text)]
+        settings = [word for text in (*QUICK, "Designs/Variables=Geometry/Pin height = 0.030, 0.034, 0.032", "Designs/Processes=1") for word in ("--set", text)]
         process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "crash", *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=subprocess.PIPE, text=True)
         victims, deadline = [], time.monotonic() + 300
@@ -157,13 +155,13 @@ class DesignsTest(ProgramTest):
         errors = process.communicate(timeout=300)[1]
         self.assertEqual(process.returncode, 0, errors)
         rows = read_table(self.folder / "crash" / "designs.csv")
-        self.assertEqual([row["outcome"] for row in rows], ["solved", "failed", "refused", "solved", "solved", "refused"])
+        self.assertEqual([row["outcome"] for row in rows], ["solved", "failed", "solved"])
         self.assertIn("killed by SIGKILL", rows[1]["reason"])
 
     def test_geometries_that_cannot_be_meshed_are_rows(self):
         plan = (SOURCE / "geometry" / "disc_pins.geo").read_text(encoding="utf-8")
         (self.folder / "own.geo").write_text(plan + "\nDefineConstant[ broken = 0 ];\nIf (broken)\n  no plan at all;\nEndIf\n", encoding="utf-8")
-        folder = self.run_scene("meshes", *STUDY, "Geometry/File=own.geo", "Designs/Variables=Geometry/broken = 0, 1")
+        folder = self.run_scene("meshes", *QUICK, "Geometry/File=own.geo", "Designs/Variables=Geometry/broken = 0, 1")
         rows = read_table(folder / "designs.csv")
         self.assertEqual([row["outcome"] for row in rows], ["solved", "refused"])
         self.assertNotEqual(rows[1]["reason"], "")
@@ -171,7 +169,7 @@ class DesignsTest(ProgramTest):
     def test_designs_of_a_file(self):
         (self.folder / "designs.csv").write_text('Geometry/Pin height,"Geometry/Top pin angles + Geometry/Bottom pin angles"\n0.030,"-12, 12"\n',
                                                  encoding="utf-8")
-        study = self.run_scene("file", *STUDY, "Designs/Plan=file", "Designs/File=designs.csv")
+        study = self.run_scene("file", *QUICK, "Designs/Plan=file", "Designs/File=designs.csv")
         (self.folder / "designs.csv").replace(study / "designs.csv.former")
         process = self.call("file/parameters.prm", "--dry-run")
         self.assertEqual((process.returncode, process.stderr), (0, ""))
@@ -201,7 +199,7 @@ class DesignsTest(ProgramTest):
     def test_designs_that_their_parameters_refuse_need_no_process(self):
         """Values that only together make no sense: contact damping without a load."""
         variables = "Designs/Variables=Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"
-        settings = [word for text in (*STUDY, variables, "Designs/Processes=1") for word in ("--set", text)]
+        settings = [word for text in (*QUICK, variables, "Designs/Processes=1") for word in ("--set", text)]
         process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", "refused", *settings], cwd=self.folder, stdout=subprocess.DEVNULL)
         self.addCleanup(process.kill)
         deadline = time.monotonic() + 60

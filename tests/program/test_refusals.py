@@ -5,7 +5,6 @@ import pathlib
 import resource
 import shutil
 import subprocess
-import time
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from mesh_file import MeshFile
@@ -94,16 +93,11 @@ class Refusals(ProgramTest):
     # -------------------------------------------------------------- parameters
 
     def test_unknown_names(self):
-        for written, nearest in {"Operation/Frction": "Operation/Friction coefficient",
-                                 "Operation/Friction coeficient": "Operation/Friction coefficient",
+        for written, nearest in {"Operation/Friction coeficient": "Operation/Friction coefficient",
                                  "Geometry/Friction coefficient": "Operation/Friction coefficient",
-                                 "Operation/Rotaton": "Operation/Rotation",
-                                 "Geometry/Pin dia": "Geometry/Pin diameter",
-                                 "Geometry/Nodes per face": "Geometry/Nodes per pin face",
-                                 "Complex/Solver": "Complex modes/Solver",
-                                 "Output/Matrices": "Output/Write matrices"}.items():
+                                 "Complex/Solver": "Complex modes/Solver"}.items():
             with self.subTest(written):
-                self.scene_refused([f"unknown parameter `{written}`", f"nearest known name is `{nearest}`", "--set"], f"{written}=1")
+                self.scene_refused([f"`{written}`", f"`{nearest}`", "--set"], f"{written}=1")
 
     def test_unknown_names_in_a_file(self):
         self.write("wrong.prm", "subsection Operation\n\n  set Friction coeff = 0.3\nend\n")
@@ -112,15 +106,14 @@ class Refusals(ProgramTest):
         self.refused(["unknown section `Opration/`", "`Operation/`", "section.prm, line 1"], "section.prm")
 
     def test_values(self):
-        self.scene_refused(["Operation/Friction coefficient must lie in 0 ... 10, not -0.1"], "Operation/Friction coefficient=-0.1")
-        self.scene_refused(["must be one of trilinear, incompatible modes, quadratic"], "Discretization/Element=cubic")
+        """tests/parameters has every kind."""
+        self.scene_refused(["Operation/Friction coefficient", "-0.1"], "Operation/Friction coefficient=-0.1")
+        self.scene_refused(["trilinear, incompatible modes, quadratic"], "Discretization/Element=cubic")
         self.scene_refused(["sideways"], "Operation/Rotation=sideways")
-        self.scene_refused(["Band/Maximum frequency"], "Band/Maximum frequency=0")
-        self.scene_refused(["Poisson"], "Disc material/Poisson ratio=0.5")
         self.write("value.prm", "subsection Operation\n  set Friction coefficient = much\nend\n")
         self.refused(["`much`", "value.prm, line 2"], "value.prm")
         self.write("open.prm", "subsection Operation\n  set Friction coefficient = 0.3\n")
-        self.refused(["`Operation` is not closed", "open.prm, line 1"], "open.prm")
+        self.refused(["`Operation`", "open.prm, line 1"], "open.prm")
 
     def test_operation(self):
         for dissipation in ("consistent", "published"):
@@ -187,65 +180,30 @@ class Refusals(ProgramTest):
                            "Mounts/Elastic mounts=", output="new")
 
     def test_damping(self):
-        table, where = "Damping/Modal damping ratio", "parameter Damping/Modal damping ratio"
-        for value, mentions in {"1000": ["`1000` is not a frequency with its damping ratio", "frequency: ratio"],
-                                "1000: 0.01: 0.02": ["is not a frequency with its damping ratio"],
-                                "1000: 0.01; 2000: 0.02": ["is not a frequency with its damping ratio", "frequency: ratio, freq"],
-                                "1000: little": ["`little` is not a finite number"],
-                                "low: 0.01": ["`low` is not a finite number"],
-                                "1000: nan": ["`nan` is not a finite number"],
-                                "1000: 1": ["damping ratio 1 at 1000 Hz", "[0, 1)"],
-                                "1000: -0.01": ["damping ratio -0.01 at 1000 Hz", "[0, 1)"],
-                                "-1: 0.01": ["frequency -1 Hz"],
-                                "2000: 0.01, 1000: 0.02": ["1000 Hz does not exceed", "2000 Hz", "ascending"],
-                                "1000: 0.01, 1000: 0.02": ["1000 Hz does not exceed"]}.items():
-            with self.subTest(value):
-                self.scene_refused([where, *mentions], f"{table}={value}", output="new")
-        for material in ("Disc material", "Pin material"):
-            for name in ("Rayleigh alpha", "Rayleigh beta"):
-                self.scene_refused(["-1e-6", f"{material}/{name}"], f"{material}/{name}=-1e-6", output="new")
+        self.scene_refused(["parameter Damping/Modal damping ratio", "1000 Hz"], "Damping/Modal damping ratio=1000: 1", output="new")
         self.scene_refused(["steep", "Operation/Friction slope"], "Operation/Friction slope=steep", output="new")
         self.scene_refused(["load is zero", "Friction slope"], "Operation/Friction slope=-0.01", "Operation/Load per side=0", output="new")
 
     def test_mounts(self):
-        self.scene_refused(["is not an elastic mount", "radial, tangential, axial"], "Mounts/Elastic mounts=disc_bore: 1e10, 1e10")
-        self.scene_refused(["`stiff` is not a finite number"], "Mounts/Elastic mounts=disc_bore: 0, stiff, 0")
-        self.scene_refused(["twice"], "Mounts/Elastic mounts=disc_bore: 0, 1e10, 0; disc_bore: 0, 0, 1e10")
+        """tests/parameters has what is no mount."""
         self.scene_refused(["'disc_ear'", "disc_bore", "disc_rim"], "Mounts/Elastic mounts=disc_ear: 0, 1e10, 1e10")
 
     def test_linear_algebra(self):
         self.scene_refused(["CHOLMOD", "sparse LU"], "Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU")
-        start = time.monotonic()
         self.scene_refused(["CHOLMOD", "on 2 processes", "MUMPS"], "Linear algebra/Factorization=CHOLMOD", n_processes=2)
-        self.assertLess(time.monotonic() - start, 60)
 
     # ---------------------------------------------------------------- geometry
 
-    def test_layout(self):
-        self.scene_refused(["Top pin angles: pins 1 and 2", "overlap"], "Geometry/Top pin angles=0, 10")
-        self.scene_refused(["Bottom pin radii: pin 2", "beyond the outer radius"], "Geometry/Bottom pin radii=0.2275, 0.3")
-        self.scene_refused(["Top pin radii: pin 1", "beyond the inner radius"], "Geometry/Top pin radii=0.17, 0.2275")
+    def test_geometry(self):
+        """tests/geometry has the rest."""
+        self.scene_refused(["Top pin angles", "overlap"], "Geometry/Top pin angles=0, 10")
+        self.scene_refused(["Top pin radii", "Top pin angles"], "Geometry/Top pin angles=0")
         self.scene_refused(["Disc inner radius is 0.32", "outer radius"], "Geometry/Disc inner radius=0.32")
-        self.scene_refused(["Top pin radii has 2 values", "Top pin angles has 1"], "Geometry/Top pin angles=0")
-        self.scene_refused(["Nodes per pin face is 8", "nearest allowed value is 7"], "Geometry/Nodes per pin face=8")
+        self.scene_refused(["Nodes per pin face is 8", "7"], "Geometry/Nodes per pin face=8")
         self.scene_refused(["no contact"], *(f"Geometry/{side} pin {what}=" for side in ("Top", "Bottom") for what in ("radii", "angles")))
-        self.scene_refused(["Element size", "at most"], "Geometry/Element size=0.1")
-
-    def test_files(self):
         self.scene_refused(["missing.geo", "Geometry/File"], "Geometry/File=missing.geo")
-        self.geometry_refused(["other.geo", "line 2", "syntax error"], "Point(1) = {0, 0, 0};\nthis is not Gmsh\n")
-        self.geometry_refused(["neither physical volumes nor physical surfaces"], "Point(1) = {0, 0, 0};\n")
-
-    def test_names(self):
-        self.geometry_refused(["'pin_contact'", "disc_contact"],
-                              BLOCKS + HEXAHEDRA + VOLUMES + 'Physical Surface("disc_contact") = {6};')
-        self.geometry_refused(["'disc_boer'", "disc_bore"],
-                              BLOCKS + HEXAHEDRA + VOLUMES + SURFACES + 'Physical Surface("disc_boer") = {1};')
-        self.geometry_refused(["'disk'", "disc, pin_"],
-                              BLOCKS + HEXAHEDRA + VOLUMES.replace("disc", "disk") + SURFACES)
-
-    def test_tetrahedra(self):
-        self.geometry_refused(["'Tetrahedron 4'", "'Hexahedron 8'"], BLOCKS + "Mesh.MeshSizeMin = 0.1;\n" + VOLUMES + SURFACES)
+        self.geometry_refused(["other.geo", "line 2"], "Point(1) = {0, 0, 0};\nthis is not Gmsh\n")
+        self.geometry_refused(["'disk'", "disc, pin_"], BLOCKS + HEXAHEDRA + VOLUMES.replace("disc", "disk") + SURFACES)
 
     def test_unpaired_nodes(self):
         mesh = self.changed_mesh()
