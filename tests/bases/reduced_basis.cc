@@ -34,9 +34,9 @@ namespace
   /// Contact faces, element, mounts.
   struct Case
   {
-    const char               *name;
-    double                    slope; ///< of the contact faces
-    Element                   element;
+    const char        *name;
+    double             slope; ///< of the contact faces
+    Element            element;
     std::vector<Mount> mounts;
   };
   void PrintTo(const Case &c, std::ostream *stream)
@@ -45,7 +45,7 @@ namespace
   }
 
   const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
-  const Case                      flat = {"flat", 0., Element::trilinear, held};
+  const Case               flat = {"flat", 0., Element::trilinear, held};
 
   const std::vector<std::string> component_kinds = {"free",          "fixed",          "mixed",         "free with r.a.m.",
                                                     "free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m."};

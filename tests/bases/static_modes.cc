@@ -18,9 +18,9 @@ namespace
   /// Contact faces, element, mounts.
   struct Case
   {
-    const char               *name;
-    double                    slope; ///< of the contact faces
-    Element                   element;
+    const char        *name;
+    double             slope; ///< of the contact faces
+    Element            element;
     std::vector<Mount> mounts;
   };
   void PrintTo(const Case &c, std::ostream *stream)

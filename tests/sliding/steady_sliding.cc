@@ -18,8 +18,8 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  constexpr double                band = 2. * M_PI * 5000.;
-  const std::vector<ElasticMount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
+  constexpr double         band = 2. * M_PI * 5000.;
+  const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
 
   /// Two pins on each side of a disc, opposite each other; mirror images about y = 0.
   HexMesh four_pins()
@@ -34,10 +34,10 @@ namespace
 
   struct SlidingScene : Scene
   {
-    explicit SlidingScene(const HexMesh                   &mesh     = four_pins(),
-                          const std::vector<ElasticMount> &mounts   = held,
-                          const Element                    element  = Element::trilinear,
-                          const Rotation                   rotation = Rotation::positive)
+    explicit SlidingScene(const HexMesh            &mesh     = four_pins(),
+                          const std::vector<Mount> &mounts   = held,
+                          const Element             element  = Element::trilinear,
+                          const Rotation            rotation = Rotation::positive)
       : Scene(mesh, mounted(mounts), operating(RadialDissipation::none, rotation), element)
       , sliding(model, interface, contact, system, band, FactorizationLibrary::automatic)
     {}
@@ -357,7 +357,7 @@ TEST(SteadySliding, AFreeRingBetweenShoes)
 {
   // The drive takes the moment about the axis although turning changes gaps at the ends of shoes on a polygon; nothing holds the ring
   // along its axis, where no force acts.
-  for (const ElasticMount &mount : {ElasticMount{"disc_bore", 1e10, 0., 1e10}, ElasticMount{"disc_bore", 1e10, 1e10, 0.}})
+  for (const Mount &mount : {Mount{"disc_bore", 1e10, 0., 1e10}, Mount{"disc_bore", 1e10, 1e10, 0.}})
     {
       const SlidingScene s(turned_to_rims(four_pins()), {mount});
       const SlidingState state = s.solve();
@@ -372,7 +372,7 @@ TEST(SteadySliding, AFreeRingBetweenShoes)
 TEST(SteadySliding, FloatingDisc)
 {
   // Free along its axis, the disc floats between the pins: equal loads hold it. Turning freely, a drive takes the moment.
-  for (const ElasticMount &mount : {ElasticMount{"disc_bore", 0., 7.80e10, 0.}, ElasticMount{"disc_bore", 1e10, 0., 1e10}})
+  for (const Mount &mount : {Mount{"disc_bore", 0., 7.80e10, 0.}, Mount{"disc_bore", 1e10, 0., 1e10}})
     {
       const SlidingScene s(four_pins(), {mount});
       ASSERT_NE(s.sliding.response.rigid_body_modes(), nullptr);
@@ -400,7 +400,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
   };
   struct ChangedScene
   {
-    ChangedScene(const ElasticMount &mount, const Change &change)
+    ChangedScene(const Mount &mount, const Change &change)
       : s(mapped(four_pins(),
                  [&](const Point3 &p) {
                    const double r = std::hypot(p[0], p[1]), factor = 1. + change.bore * std::max(0., 0.2 - r) / r; // pins stand outside
@@ -415,7 +415,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
                          {s.model.component_names()[4], 0., -3e-5, 1e-4}};
     }
 
-    static MaterialParameters materials(const ElasticMount &mount, const Change &change)
+    static MaterialParameters materials(const Mount &mount, const Change &change)
     {
       MaterialParameters result = mounted({mount});
       result.disc.young_modulus *= 1. + change.young_modulus;
@@ -435,7 +435,7 @@ TEST(SteadySliding, RatesOfReactionsAgreeWithDifferences)
   // Central differences over one step and over two, extrapolated: what they leave falls with the fourth power of the step, and what
   // rounding adds with its inverse
   const double step = 2e-4;
-  for (const ElasticMount &mount : {held.front(), ElasticMount{"disc_bore", 1e9, 7.80e10, 0.}, ElasticMount{"disc_bore", 1e10, 0., 1e10}})
+  for (const Mount &mount : {held.front(), Mount{"disc_bore", 1e9, 7.80e10, 0.}, Mount{"disc_bore", 1e10, 0., 1e10}})
     {
       const ChangedScene here(mount, {0., 0., 0.});
       const SlidingState state = here.solve();
