@@ -10,7 +10,7 @@ namespace Squeal
     /// Whether both terms may be written as one, whatever the parameters that are left free.
     bool are_alike(const Term &x, const Term &y)
     {
-      if (x.kind != y.kind || x.power != y.power || (x.matrix == nullptr) != (y.matrix == nullptr) || x.weights != y.weights)
+      if (x.power != y.power || (x.matrix == nullptr) != (y.matrix == nullptr) || x.weights != y.weights)
         return false;
       return x.matrix ? x.symmetry == y.symmetry : x.weights.empty() && x.left == y.left;
     }
