@@ -203,7 +203,7 @@ namespace Squeal
         {
           std::error_code ignored;
           fs::remove(place / name, ignored);
-          if (const fs::path folder = fs::path(name).parent_path(); !folder.empty())
+          for (fs::path folder = fs::path(name).parent_path(); !folder.empty(); folder = folder.parent_path())
             fs::remove(place / folder, ignored); // which fails where there is something in it
         }
 
