@@ -94,7 +94,7 @@ class Results(ProgramTest):
             self.assertEqual(len(fields), 2)
             volume, contact = sorted(fields, key=lambda path: path.name.endswith("_contact.vtu"))
             self.assertEqual(arrays(volume), {"displacement_real", "displacement_imag", "amplitude", "phase", "component"})
-            self.assertEqual(arrays(contact), {"normal_reaction_real", "normal_reaction_imag", "closed", "energy_input"})
+            self.assertEqual(arrays(contact), {"component", "normal_reaction_real", "normal_reaction_imag", "closed", "energy_input"})
             self.assertEqual([set(VtuFile(path).cell_types) for path in (volume, contact)], [{12}, {9}])
 
             animation, = (self.results / "animations").glob(f"complex_{number:03d}_*.pvd")
