@@ -166,12 +166,14 @@ namespace Squeal
   {
     std::ifstream           stream(file, std::ios::binary);
     const std::vector<char> packed{std::istreambuf_iterator<char>(stream), {}};
-    Record                  record;
+    if (packed.empty()) // the file is missing
+      return false;
+    Record record;
     try
       {
         record = dealii::Utilities::unpack<Record>(packed.cbegin(), packed.cend(), false);
       }
-    catch (const std::exception &) // the file is missing, or a loss of power has taken its end
+    catch (const std::exception &) // a loss of power has taken its end
       {
         return false;
       }
