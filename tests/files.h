@@ -1,9 +1,15 @@
 #pragma once
 
+#include <deal.II/base/mpi.h>
+
+#include <unistd.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace Squeal::Testing
 {
@@ -15,4 +21,50 @@ namespace Squeal::Testing
     text << stream.rdbuf();
     return text.str();
   }
+
+  /// Writes a file, and the folders in which it lies.
+  inline void put(const std::filesystem::path &file, const std::string &text)
+  {
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+
+  /// An empty folder that all processes share, removed at the end.
+  class TemporaryFolder
+  {
+  public:
+    TemporaryFolder()
+      : path(std::filesystem::temp_directory_path() /
+             ("squeal_test_" + std::to_string(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, static_cast<int>(getpid()), 0))))
+    {
+      alone([&] { std::filesystem::create_directories(path); });
+    }
+    ~TemporaryFolder()
+    {
+      alone([&] { std::filesystem::remove_all(path); });
+    }
+
+    /// What one process does while the others wait.
+    template <typename Function>
+    void alone(const Function &action) const
+    {
+      MPI_Barrier(MPI_COMM_WORLD);
+      if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        action();
+      MPI_Barrier(MPI_COMM_WORLD);
+    }
+
+    /// Names of everything below it but folders, links as such.
+    std::vector<std::string> files() const
+    {
+      std::vector<std::string> names;
+      for (const auto &entry : std::filesystem::recursive_directory_iterator(path))
+        if (!std::filesystem::is_directory(entry.symlink_status()))
+          names.push_back(entry.path().lexically_relative(path).string());
+      std::sort(names.begin(), names.end());
+      return names;
+    }
+
+    const std::filesystem::path path;
+  };
 } // namespace Squeal::Testing

@@ -3,14 +3,10 @@
 #include <squeal/output/result_folder.h>
 #include <squeal/output/run_record.h>
 
-#include <deal.II/base/utilities.h>
-
 #include <fcntl.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <sstream>
@@ -22,7 +18,7 @@ namespace Squeal
 
   namespace
   {
-    constexpr const char *unfinished_name = ".unfinished", *lock_name = ".lock";
+    constexpr const char *unfinished_name = ".unfinished";
 
     /// As the user wrote it, without the slash at its end and detours.
     std::string shown_name(const std::string &directory)
@@ -39,16 +35,6 @@ namespace Squeal
                        "check permissions and free space");
     }
 
-    /// Waits until the disk has everything; returns the number of the error, or 0.
-    int store(const fs::path &folder)
-    {
-      const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-      const int problem    = descriptor < 0 || ::syncfs(descriptor) != 0 ? errno : 0;
-      if (descriptor >= 0)
-        ::close(descriptor);
-      return problem;
-    }
-
     bool is_there(const fs::path &file)
     {
       return fs::exists(fs::symlink_status(file));
@@ -62,17 +48,9 @@ namespace Squeal
         result = file.string() + ".kept-" + std::to_string(n);
       return result;
     }
-
-    /// Whether an open file still is the one that has this name.
-    bool has_name(const int descriptor, const fs::path &file)
-    {
-      struct stat opened, named;
-      return ::fstat(descriptor, &opened) == 0 && ::stat(file.c_str(), &named) == 0 && opened.st_dev == named.st_dev &&
-             opened.st_ino == named.st_ino;
-    }
   } // namespace
 
-  ResultFolder::ResultFolder(const std::string &directory, const bool is_root, const std::string &command)
+  ResultFolder::ResultFolder(const std::string &directory, const bool is_root)
     : shown(shown_name(directory))
     , is_root(is_root)
   {
@@ -84,7 +62,7 @@ namespace Squeal
       {
         place      = (fs::absolute(directory) / "").parent_path(); // without the slash at the end
         unfinished = place / unfinished_name;
-        open(command);
+        open();
       }
     catch (const fs::filesystem_error &error)
       {
@@ -99,7 +77,7 @@ namespace Squeal
       }
   }
 
-  void ResultFolder::open(const std::string &command)
+  void ResultFolder::open()
   {
     const std::string where = "--output " + shown;
     if (fs::exists(place) && !fs::is_directory(place))
@@ -108,46 +86,28 @@ namespace Squeal
     if (!fs::is_empty(place) && !fs::exists(place / run_record) && !fs::exists(unfinished))
       throw FileError("the folder `" + shown + "` holds files that are not the results of a run", where,
                       "choose another name, or empty the folder");
-    take_lock(command);
+    take_lock();
     fs::remove_all(unfinished); // of a run that was killed
     fs::create_directory(unfinished);
 
     // A disk that is full and names that are too long should show before the work, not after.
     constexpr std::size_t longest_name = 200, size = 4096;
     const fs::path        file    = unfinished / std::string(longest_name, 'x');
-    const int             problem = write_file(file, O_TRUNC, {std::string(size, ' ')}, true);
+    const int             problem = write_file(file, std::string(size, ' '));
     fs::remove(file);
     if (problem != 0)
       throw FileError(std::string("files cannot be written to the result folder: ") + std::strerror(problem), where,
                       "choose a folder that you may write to, with free space");
   }
 
-  void ResultFolder::take_lock(const std::string &command)
+  void ResultFolder::take_lock()
   {
-    const fs::path file = place / lock_name;
-    // Once more if the former run removed the file after it had been opened here
-    while (lock < 0)
-      {
-        const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (descriptor < 0)
-          throw fs::filesystem_error("open", file, std::error_code(errno, std::generic_category()));
-        if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-          {
-            std::array<char, 4096> text;
-            const ssize_t          n = ::pread(descriptor, text.data(), text.size(), 0);
-            ::close(descriptor);
-            throw FileError("another run writes to `" + shown + "`: " + std::string(text.data(), n > 0 ? n : 0), "--output " + shown,
-                            "wait until it has ended, or choose another name");
-          }
-        if (has_name(descriptor, file))
-          lock = descriptor;
-        else
-          ::close(descriptor);
-      }
-    const std::string holder = "process " + std::to_string(::getpid()) + " on " + dealii::Utilities::System::get_hostname() + " since " +
-                               utc_time() + ", `" + command + "`";
-    if (const int problem = write_file(file, O_TRUNC, {holder}, false); problem != 0)
-      throw fs::filesystem_error("write", file, std::error_code(problem, std::generic_category()));
+    lock = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) // some file systems have no locks
+      return;
+    ::close(lock);
+    lock = -1; // what lies there is the other's
+    throw FileError("another run writes to `" + shown + "`", "--output " + shown, "wait until it has ended, or choose another name");
   }
 
   ResultFolder::~ResultFolder()
@@ -163,7 +123,6 @@ namespace Squeal
       {
         if (!is_stuck)
           fs::remove_all(unfinished, ignored);
-        fs::remove(place / lock_name, ignored);
         ::close(lock);
         lock = -1;
       }
@@ -183,7 +142,7 @@ namespace Squeal
     const fs::path    file = unfinished / name;
     std::error_code   ignored;
     fs::create_directories(file.parent_path(), ignored);
-    if (const int problem = write_file(file, O_TRUNC, {text}, false); problem != 0)
+    if (const int problem = write_file(file, text); problem != 0)
       throw not_written(shown + "/" + name, problem);
     written[name] = text.size();
   }
@@ -238,9 +197,6 @@ namespace Squeal
           if (std::error_code missing; fs::file_size(unfinished / name, missing) != size)
             throw FileError("a result was removed or changed while the program ran", "file " + shown + "/" + name,
                             "let nothing else write to the folder of a run, and run again");
-        // The record must not come to list files that a failure of the machine could cut.
-        if (const int problem = store(unfinished); problem != 0)
-          throw not_written(shown, problem);
         try
           {
             remarks = put_in_place();

@@ -25,15 +25,16 @@ namespace Squeal
     using Json = nlohmann::ordered_json;
 
     constexpr const char *file_list = "files [byte]";
-  } // namespace
 
-  std::string utc_time()
-  {
-    const std::time_t  now = std::time(nullptr);
-    std::ostringstream text;
-    text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
-    return text.str();
-  }
+    /// Such as 2026-01-31T12:00:00Z.
+    std::string utc_time()
+    {
+      const std::time_t  now = std::time(nullptr);
+      std::ostringstream text;
+      text << std::put_time(std::gmtime(&now), "%Y-%m-%dT%H:%M:%SZ");
+      return text.str();
+    }
+  } // namespace
 
   void write_run_record(std::ostream &stream, const RunRecord &record, const Progress &progress)
   {

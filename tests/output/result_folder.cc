@@ -5,12 +5,8 @@
 #include <squeal/output/run_record.h>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
-#include <unistd.h>
-
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <ostream>
 
@@ -20,90 +16,79 @@ namespace fs = std::filesystem;
 
 namespace
 {
-  void put(const fs::path &file, const std::string &text)
-  {
-    fs::create_directories(file.parent_path());
-    std::ofstream(file) << text;
-  }
+  using Names = std::vector<std::string>;
 
-  /// What is said when something is refused; empty: nothing is.
-  std::string refusal(const std::function<void()> &action)
-  {
-    try
-      {
-        action();
-      }
-    catch (const FileError &error)
-      {
-        return error.what();
-      }
-    return {};
-  }
-
-  bool contains(const std::string &text, const std::string &word)
-  {
-    return text.find(word) != std::string::npos;
-  }
-
-  /// An empty folder of its own that is removed at the end.
-  class SafeFolders : public ::testing::Test
+  class ResultFolders : public ::testing::Test
   {
   protected:
-    SafeFolders()
-      : place(fs::temp_directory_path() / ("squeal_safe_test_" + std::to_string(getpid())))
-      , results((place / "results").string())
+    /// What is said when something is refused; empty: nothing is.
+    static std::string refusal(const std::function<void()> &action)
     {
-      fs::create_directories(place);
+      try
+        {
+          action();
+        }
+      catch (const FileError &error)
+        {
+          return error.what();
+        }
+      return {};
     }
-    ~SafeFolders() override
+    static bool contains(const std::string &text, const std::string &word)
     {
-      fs::remove_all(place);
+      return text.find(word) != std::string::npos;
+    }
+    static void write(const ResultFolder &folder, const std::string &name, const std::string &text)
+    {
+      folder.write(name, [&](std::ostream &stream) { stream << text; });
     }
     /// Leaves a result of two files and its record; returns what is to be said.
     std::vector<std::string> make_results(const std::string &text) const
     {
-      ResultFolder folder(results, true, "squeal first.prm");
-      folder.write("table.csv", [&](std::ostream &stream) { stream << text; });
-      folder.write("modes/" + text + ".vtu", [&](std::ostream &stream) { stream << text; });
-      write_record(folder);
+      ResultFolder folder(results, true);
+      write(folder, "table.csv", text);
+      write(folder, "modes/" + text + ".vtu", text);
+      const RunRecord record{"squeal", 1, 1, 1, {}, {}, {}, folder.files(), "abc"};
+      folder.write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, Progress()); });
       return folder.commit();
     }
-    static void write_record(const ResultFolder &folder)
+    Names files() const
     {
-      RunRecord record{"squeal", 1, 1, 1, {}, {}, {}, folder.files(), "abc"};
-      folder.write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, Progress()); });
+      return folder.files();
     }
-    /// Everything below the folder, links as such.
-    std::vector<std::string> files() const
-    {
-      std::vector<std::string> names;
-      for (const auto &entry : fs::recursive_directory_iterator(place))
-        if (!fs::is_directory(entry.symlink_status()))
-          names.push_back(entry.path().lexically_relative(place).string());
-      std::sort(names.begin(), names.end());
-      return names;
-    }
-    const fs::path    place;
-    const std::string results;
+    const TemporaryFolder folder;
+    const fs::path        place   = folder.path;
+    const std::string     results = (place / "results").string();
+    const Names           first   = {"results/modes/one.vtu", "results/run.json", "results/table.csv"}; ///< of make_results("one")
   };
-
-  using Names = std::vector<std::string>;
 } // namespace
 
-TEST_F(SafeFolders, ListTheirFiles)
+TEST_F(ResultFolders, ListTheirFiles)
 {
   make_results("one");
+  EXPECT_EQ(files(), first);
   const auto list = read_file_list(results + "/run.json");
   ASSERT_TRUE(list);
   EXPECT_EQ(*list, (FileSizes{{"modes/one.vtu", 3}, {"table.csv", 3}}));
   put(place / "old.json", "{\"command\": \"squeal\"}");
-  EXPECT_FALSE(read_file_list(place / "old.json"));
   put(place / "cut.json", "{\"files [byte]\": {");
-  EXPECT_FALSE(read_file_list(place / "cut.json"));
-  EXPECT_FALSE(read_file_list(place / "missing.json"));
+  for (const char *name : {"old.json", "cut.json", "missing.json"})
+    EXPECT_FALSE(read_file_list(place / name));
 }
 
-TEST_F(SafeFolders, KeepFilesOfTheUser)
+TEST_F(ResultFolders, OfOthersAreNotTouched)
+{
+  put(results + "/thesis.tex", "years of work");
+  for (const char *name : {"", "/", "/thesis.tex"})
+    EXPECT_THROW(ResultFolder(results + name, true), FileError);
+  EXPECT_EQ(content(results + "/thesis.tex"), "years of work");
+  EXPECT_EQ(files(), (Names{"results/thesis.tex"}));
+  // An empty folder is as good as none
+  fs::remove(results + "/thesis.tex");
+  EXPECT_NO_THROW(make_results("new"));
+}
+
+TEST_F(ResultFolders, KeepFilesOfTheUser)
 {
   make_results("one");
   put(results + "/notes.txt", "mine");
@@ -119,7 +104,7 @@ TEST_F(SafeFolders, KeepFilesOfTheUser)
   EXPECT_EQ(content(results + "/modes/own.vtu"), "mine too");
 }
 
-TEST_F(SafeFolders, RenameFilesOfTheUserThatAreInTheWay)
+TEST_F(ResultFolders, RenameFilesOfTheUserThatAreInTheWay)
 {
   make_results("one");
   put(results + "/modes/two.vtu", "mine");
@@ -132,114 +117,94 @@ TEST_F(SafeFolders, RenameFilesOfTheUserThatAreInTheWay)
   EXPECT_EQ(content(results + "/modes/two.vtu.kept"), "mine as well");
   EXPECT_EQ(content(results + "/modes/two.vtu.kept-2"), "mine");
   // A folder of the user where the results have a file
-  put(results + "/table.csv.d/a", "a");
   fs::remove(results + "/table.csv");
-  fs::rename(results + "/table.csv.d", results + "/table.csv");
-  put(results + "/table.csv/b", "b");
+  put(results + "/table.csv/a", "a");
   EXPECT_EQ(make_results("two").size(), 1u);
   EXPECT_EQ(content(results + "/table.csv"), "two");
   EXPECT_EQ(content(results + "/table.csv.kept/a"), "a");
-  EXPECT_EQ(content(results + "/table.csv.kept/b"), "b");
 }
 
-TEST_F(SafeFolders, AreForOneRunAtATime)
+TEST_F(ResultFolders, AreForOneRunAtATime)
 {
-  const ResultFolder folder(results, true, "squeal first.prm");
-  const std::string  message = refusal([&] { ResultFolder(results + "/", true, "squeal second.prm"); });
-  EXPECT_TRUE(contains(message, "another run")) << message;
-  EXPECT_TRUE(contains(message, "process " + std::to_string(getpid()))) << message;
-  EXPECT_TRUE(contains(message, "`squeal first.prm`")) << message;
+  const ResultFolder running(results, true);
   fs::create_symlink("results", place / "link");
-  EXPECT_TRUE(contains(refusal([&] { ResultFolder((place / "link").string(), true); }), "another run"));
-  // The first one goes on undisturbed.
-  folder.write("table.csv", [](std::ostream &stream) { stream << "here"; });
+  for (const std::string &name : {results, results + "/", (place / "link").string()})
+    EXPECT_TRUE(contains(refusal([&] { ResultFolder(name, true); }), "another run")) << name;
+  // The first one goes on undisturbed
+  write(running, "table.csv", "here");
   EXPECT_EQ(content(results + "/.unfinished/table.csv"), "here");
 }
 
-TEST_F(SafeFolders, TakeWhatOnlyAnUnfinishedRunNeedsWithThem)
+TEST_F(ResultFolders, OtherProcessesTouchNothing)
 {
-  const fs::path checkpoint = results + ".checkpoint";
-  put(checkpoint / "sweep.key", "so far");
-  ResultFolder folder(results, true);
-  folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
-  folder.commit([&] {
-    EXPECT_TRUE(fs::exists(results + "/run.json"));
-    fs::remove_all(checkpoint);
-  });
-  EXPECT_FALSE(fs::exists(checkpoint));
-}
-
-TEST_F(SafeFolders, AreNotLeftWhereFilesAreMissing)
-{
-  make_results("one");
-  for (const bool is_cut : {false, true})
-    {
-      ResultFolder folder(results, true);
-      folder.write("table.csv", [](std::ostream &stream) { stream << "two"; });
-      folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
-      if (is_cut)
-        fs::resize_file(results + "/.unfinished/table.csv", 2);
-      else
-        fs::remove(results + "/.unfinished/table.csv");
-      EXPECT_TRUE(contains(refusal([&] { folder.commit(); }), "results/table.csv"));
-    }
-  EXPECT_EQ(files(), (Names{"results/modes/one.vtu", "results/run.json", "results/table.csv"}));
-  EXPECT_EQ(content(results + "/table.csv"), "one");
-}
-
-TEST_F(SafeFolders, DoNotReplaceOthersWhereTheyVanish)
-{
-  make_results("one");
   {
-    ResultFolder folder(results, true);
-    folder.write("table.csv", [](std::ostream &stream) { stream << "two"; });
-    fs::remove_all(results + "/.unfinished");
-    EXPECT_TRUE(contains(refusal([&] { folder.commit(); }), "results/table.csv"));
+    ResultFolder other(results, false);
+    write(other, "table.csv", "not mine to write");
+    other.commit();
   }
-  EXPECT_EQ(files(), (Names{"results/modes/one.vtu", "results/run.json", "results/table.csv"}));
+  EXPECT_TRUE(files().empty());
 }
 
-TEST_F(SafeFolders, NameTheFileThatCannotBeWrittenAndLeaveNothing)
+TEST_F(ResultFolders, TakeWhatOnlyAnUnfinishedRunNeedsWithThem)
 {
-  make_results("one");
-  const Names before = files();
+  bool         done = false;
+  ResultFolder running(results, true);
+  write(running, ResultFolder::run_record, "{}");
+  running.commit([&] { done = fs::exists(results + "/run.json"); });
+  EXPECT_TRUE(done);
+}
+
+TEST_F(ResultFolders, LeaveFormerOnesWhereARunFails)
+{
   {
-    ResultFolder folder(results, true);
-    folder.write("matrices", [](std::ostream &stream) { stream << "a file where a folder is needed"; });
-    const std::string message = refusal([&] { folder.write("matrices/K.mtx", [](std::ostream &stream) { stream << "1"; }); });
-    EXPECT_TRUE(contains(message, "the file cannot be written: Not a directory")) << message;
+    const ResultFolder running(results, true);
+    write(running, "modes/one.txt", "half");
+  }
+  EXPECT_FALSE(fs::exists(results)) << "nothing was there";
+
+  make_results("one");
+  const auto lose = [&](const std::string &name, const std::function<void()> &loss) {
+    ResultFolder running(results, true);
+    write(running, "table.csv", "two");
+    write(running, ResultFolder::run_record, "{}");
+    loss();
+    EXPECT_TRUE(contains(refusal([&] { running.commit(); }), "results/" + name));
+  };
+  lose("table.csv", [&] { fs::resize_file(results + "/.unfinished/table.csv", 2); });
+  lose("table.csv", [&] { fs::remove(results + "/.unfinished/table.csv"); });
+  lose("run.json", [&] { fs::remove_all(results + "/.unfinished"); });
+  EXPECT_EQ(files(), first);
+  EXPECT_EQ(content(results + "/table.csv"), "one");
+
+  {
+    const ResultFolder running(results, true);
+    write(running, "matrices", "a file where a folder is needed");
+    const std::string message = refusal([&] { write(running, "matrices/K.mtx", "1"); });
     EXPECT_TRUE(contains(message, "file " + results + "/matrices/K.mtx")) << message;
     // What failed is not promised, and what could not be put together is not written.
-    EXPECT_TRUE(contains(refusal([&] { folder.write("mesh.msh", [](std::ostream &s) { s.setstate(std::ios::badbit); }); }), "mesh.msh"));
-    EXPECT_THROW(folder.write("table.csv", [](std::ostream &) { throw FileError("a number is not finite", "column", "report"); }),
+    EXPECT_TRUE(contains(refusal([&] { running.write("mesh.msh", [](std::ostream &s) { s.setstate(std::ios::badbit); }); }), "mesh.msh"));
+    EXPECT_THROW(running.write("table.csv", [](std::ostream &) { throw FileError("a number is not finite", "column", "report"); }),
                  FileError);
-    EXPECT_EQ(folder.files(), (FileSizes{{"matrices", 31}}));
+    EXPECT_EQ(running.files(), (FileSizes{{"matrices", 31}}));
   }
-  EXPECT_EQ(files(), before);
+  EXPECT_EQ(files(), first);
   EXPECT_EQ(content(results + "/table.csv"), "one");
 }
 
-TEST_F(SafeFolders, SettleWhatAKilledRunHasLeft)
+TEST_F(ResultFolders, SettleWhatAKilledRunHasLeft)
 {
-  const auto leave = [&] {
-    put(results + "/.lock", "process 1 on a host");
-    put(results + "/.unfinished/half", "half");
-  };
-  leave();
+  put(results + "/.unfinished/half", "half");
   make_results("one");
-  leave();
-  EXPECT_TRUE(ResultFolder(results, true).files().empty());
-  EXPECT_EQ(content(results + "/table.csv"), "one");
   // Killed while files were moved: there is no record that would list files of two runs.
-  leave();
+  put(results + "/.unfinished/half", "half");
   fs::remove(results + "/run.json");
   make_results("two");
   EXPECT_EQ(content(results + "/table.csv"), "two");
   EXPECT_TRUE(fs::exists(results + "/run.json"));
-  EXPECT_FALSE(fs::exists(results + "/.unfinished") || fs::exists(results + "/.lock"));
+  EXPECT_FALSE(fs::exists(results + "/.unfinished"));
 }
 
-TEST_F(SafeFolders, FollowLinks)
+TEST_F(ResultFolders, FollowLinks)
 {
   fs::create_directories(place / "deep" / "target");
   fs::create_symlink("deep/target", place / "link");
@@ -247,4 +212,27 @@ TEST_F(SafeFolders, FollowLinks)
   make_results("one");
   make_results("two");
   EXPECT_EQ(files(), (Names{"deep/target/modes/two.vtu", "deep/target/run.json", "deep/target/table.csv", "link", "results"}));
+}
+
+TEST(RunRecords, AreJson)
+{
+  Progress progress;
+  progress.begin("Mesh \"quoted\" \\ \n and more");
+  progress.finish("12 elements");
+  const RunRecord record{"squeal \"a b.prm\"", 3, 2, 1, {{"dofs", 123456789012L}}, {{"worst scaled Jacobian [-]", 0.5}}, {}, {}, "abc1234"};
+  std::ostringstream stream;
+  write_run_record(stream, record, progress);
+
+  const auto tree = nlohmann::json::parse(stream.str());
+  EXPECT_EQ(tree.at("command"), record.command);
+  EXPECT_EQ(tree.at("counts").at("dofs"), 123456789012L);
+  EXPECT_EQ(tree.at("quantities").at("worst scaled Jacobian [-]"), 0.5);
+  EXPECT_EQ(tree.at("machine").at("processes"), 3);
+  EXPECT_EQ(tree.at("machine").at("threads per process"), 2);
+  EXPECT_EQ(tree.at("steps").at(0).at("name"), "Mesh \"quoted\" \\ \n and more");
+  EXPECT_EQ(tree.at("steps").at(0).at("result"), "12 elements");
+  EXPECT_GT(tree.at("steps").at(0).at("peak memory so far [byte]"), 0.);
+  EXPECT_GE(tree.at("wall time [s]"), 0.);
+  for (const char *library : {"squeal", "revision", "deal.II", "Trilinos", "MUMPS", "CHOLMOD", "UMFPACK", "Gmsh"})
+    EXPECT_FALSE(tree.at("versions").at(library).get<std::string>().empty()) << library;
 }

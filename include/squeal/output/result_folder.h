@@ -13,7 +13,7 @@ namespace Squeal
   /**
    * The folder of the results of a run. Files are written into its folder `.unfinished` and moved to their place when the run is complete, the
    * run record last. A run that fails leaves former results as they are; what a killed one leaves in `.unfinished`, the next one clears away.
-   * A lock in the folder keeps a second run out.
+   * A lock on the folder keeps a second run out.
    *
    * Of former results, the files that the record lists are replaced or removed; the user's own files stay. A folder without a record that holds
    * anything else is never written to.
@@ -25,11 +25,10 @@ namespace Squeal
      * Makes the folder and tries whether files can be written there.
      *
      * @param is_root process that creates, moves and removes
-     * @param command of this run, for other runs that want the folder
      *
      * Throws FileError if @p directory holds something other than results, cannot be written to, or is in use.
      */
-    ResultFolder(const std::string &directory, bool is_root, const std::string &command = "");
+    ResultFolder(const std::string &directory, bool is_root);
 
     /// Removes what was not committed.
     ~ResultFolder();
@@ -59,8 +58,8 @@ namespace Squeal
     static constexpr const char *run_record = "run.json";
 
   private:
-    void                     open(const std::string &command);
-    void                     take_lock(const std::string &command);
+    void                     open();
+    void                     take_lock();
     std::vector<std::string> put_in_place() const;
     void                     remove_traces();
 
@@ -69,7 +68,7 @@ namespace Squeal
     std::filesystem::path place, unfinished;
     bool                  is_new   = false; ///< made by this run
     bool                  is_stuck = false; ///< complete, but could not be moved
-    int                   lock     = -1;    ///< descriptor of the file that is locked
+    int                   lock     = -1;    ///< descriptor of the folder, which is locked
 
     mutable FileSizes written; ///< whoever may write to the folder adds to the list
   };

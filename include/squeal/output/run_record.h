@@ -35,7 +35,4 @@ namespace Squeal
 
   /// The files that a record lists; nothing if it lists none or cannot be read.
   std::optional<FileSizes> read_file_list(const std::filesystem::path &record);
-
-  /// Date and time of day, such as 2026-01-31T12:00:00Z.
-  std::string utc_time();
 } // namespace Squeal

@@ -44,7 +44,7 @@ namespace Squeal
   {
     set_task_threads(record.n_threads);
     if (!is_dry)
-      results = std::make_unique<ResultFolder>(options.output, is_root, options.command);
+      results = std::make_unique<ResultFolder>(options.output, is_root);
   }
 
   Run::Run(const Parameters &parameters, const Run &whole, Progress &progress)
