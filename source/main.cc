@@ -130,11 +130,6 @@ Decides whether a disc rubbed by friction pins squeals.
                  "  change: take fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
         return std::string(error.what()) + "\n  where:  a library" + defect;
       }
-    catch (const int code)
-      {
-        // Trilinos throws error codes.
-        return "Trilinos failed with code " + std::to_string(code) + "\n  where:  distributed vectors and matrices" + defect;
-      }
   }
 
   void print_error(const std::string &message)

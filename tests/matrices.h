@@ -29,9 +29,9 @@ namespace Squeal::Testing
     if (n_processes == 1 || distribution == Distribution::even)
       return RowMap::even(n, MPI_COMM_WORLD);
     if (distribution == Distribution::last_process_all)
-      return RowMap::contiguous(rank == n_processes - 1 ? n : 0, MPI_COMM_WORLD);
+      return RowMap(rank == n_processes - 1 ? n : 0, MPI_COMM_WORLD);
     const int share = n / (n_processes - 1);
-    return RowMap::contiguous(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
+    return RowMap(rank == 0 ? 0 : (rank == n_processes - 1 ? n - share * (n_processes - 2) : share), MPI_COMM_WORLD);
   }
 
   /// Entries in [-1, 1], the same on every process: what a library draws on one of them, Eigen misses in its own sequence.

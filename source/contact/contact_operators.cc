@@ -70,7 +70,7 @@ namespace Squeal
       for (unsigned int i = 0; i < kept.size(); ++i)
         if (kept[i] && slaves.count(rows.number(i)) == 0)
           column[i] = n_own++;
-      const RowMap columns = RowMap::contiguous(n_own, rows.communicator());
+      const RowMap columns = RowMap(n_own, rows.communicator());
       const int    first   = n_own > 0 ? columns.number(0) : 0;
       const auto   masters = master_columns(rows, column, first, slaves);
       return std::make_shared<SparseMatrix>(rows, columns, [&](const int i, SparseMatrix::Row &row) {

@@ -96,7 +96,9 @@ namespace Squeal
     if (r > 0)
       {
         // The second round removes what rounding errors left of the first
-        const DenseMatrix most = gram(basis(), X), rest = subtract_then_gram(basis(), most, X);
+        const DenseMatrix most = gram(basis(), X);
+        multiply_add(-1., basis(), most, 1., X);
+        const DenseMatrix rest = gram(basis(), X);
         multiply_add(-1., basis(), rest, 1., X);
         coefficients = most + rest;
       }

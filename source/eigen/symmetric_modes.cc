@@ -13,7 +13,7 @@ namespace Squeal
   namespace
   {
     /// The modes of all uncoupled parts in one order, as vectors of the rows of all of them.
-    SymmetricModes merged(const std::vector<SymmetricModes> &parts, const RowMap &rows)
+    SymmetricModes merged(const std::vector<UncoupledPart> &uncoupled, const std::vector<SymmetricModes> &parts, const RowMap &rows)
     {
       SymmetricModes all;
       struct Place
@@ -41,11 +41,10 @@ namespace Squeal
           const int             mode  = order[column].mode;
           all.eigenvalues.push_back(modes.eigenvalues[mode]);
           all.residuals.push_back(modes.residuals[mode]);
-          insert_part(view(*modes.vectors, mode, 1), static_cast<int>(column), *all.vectors);
+          all.vectors->col(column)(uncoupled[order[column].part].places) = modes.vectors->col(mode);
         }
       return all;
     }
-
   } // namespace
 
   SymmetricModes symmetric_modes(const SparseMatrix          &K,
@@ -61,9 +60,10 @@ namespace Squeal
 
     std::vector<std::shared_ptr<const SparseMatrix>> matrices;
     std::deque<SymmetricSolver>                      solvers; // one for each part
-    for (const RowMap &map : uncoupled_parts(K))
+    const std::vector<UncoupledPart>                 uncoupled = uncoupled_parts(K);
+    for (const UncoupledPart &part : uncoupled)
       {
-        const auto part_K = matrices.emplace_back(part(K, map)), part_M = matrices.emplace_back(part(M, map));
+        const auto part_K = matrices.emplace_back(matrix_of(part, K)), part_M = matrices.emplace_back(matrix_of(part, M));
         solvers.emplace_back(*part_K, *part_M, largest_eigenvalue, options);
       }
     if (K.rows().n_processes() == 1)
@@ -74,6 +74,6 @@ namespace Squeal
     std::vector<SymmetricModes> parts;
     for (SymmetricSolver &solver : solvers)
       parts.push_back(solver.modes());
-    return merged(parts, K.columns());
+    return merged(uncoupled, parts, K.columns());
   }
 } // namespace Squeal

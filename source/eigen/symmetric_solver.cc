@@ -144,9 +144,7 @@ namespace Squeal
     dense_pairs.reset();
     const int   n_kept = std::min<int>(std::max(1, count.n_modes), all.values.size());
     MultiVector vectors(K.columns(), n_kept, false);
-    // Rows of an uncoupled part have numbers that are not those in its dense matrix
-    const int first_row = LocalRows(K).first_row;
-    vectors.local()     = all.vectors.block(first_row, 0, vectors.n_local_rows(), n_kept);
+    vectors.local() = all.vectors.block(K.rows().first(), 0, vectors.n_local_rows(), n_kept);
     return {{all.values.begin(), all.values.begin() + n_kept}, vectors};
   }
 

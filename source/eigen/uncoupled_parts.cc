@@ -45,29 +45,32 @@ namespace Squeal
     }
   } // namespace
 
-  std::vector<RowMap> uncoupled_parts(const SparseMatrix &A)
+  std::vector<UncoupledPart> uncoupled_parts(const SparseMatrix &A)
   {
-    const std::vector<int>          labels = part_labels(A);
-    std::map<int, std::vector<int>> rows; // of each part on this process
+    const std::vector<int>       labels  = part_labels(A);
+    const auto                   numbers = std::make_shared<std::vector<int>>();
+    std::map<int, UncoupledPart> parts;
+    std::map<int, int>           sizes;
+    // Rows keep their order, in which processes have them one after the other
     for (const int label : labels)
-      rows[label];
+      {
+        parts[label];
+        numbers->push_back(sizes[label]++);
+      }
     for (int i = 0; i < A.rows().n_local(); ++i)
-      rows[labels[A.rows().number(i)]].push_back(A.rows().number(i));
-    std::vector<RowMap> parts;
-    for (const auto &[label, numbers] : rows)
-      parts.push_back(RowMap::of(numbers, A.communicator()));
-    return parts;
+      parts[labels[A.rows().number(i)]].places.push_back(i);
+    std::vector<UncoupledPart> result;
+    for (auto &[label, part] : parts)
+      result.push_back({RowMap(static_cast<int>(part.places.size()), A.communicator()), std::move(part.places), numbers});
+    return result;
   }
 
-  std::shared_ptr<SparseMatrix> part(const SparseMatrix &A, const RowMap &rows)
+  std::shared_ptr<SparseMatrix> matrix_of(const UncoupledPart &part, const SparseMatrix &A)
   {
-    return std::make_shared<SparseMatrix>(rows, rows,
-                                          [&](const int i, SparseMatrix::Row &row) { A.get_row(A.rows().place(rows.number(i)), row); });
-  }
-
-  void insert_part(const MultiVector &vectors, const int first, MultiVector &target)
-  {
-    for (int i = 0; i < vectors.n_local_rows(); ++i)
-      target.local().row(target.map().place(vectors.map().number(i))).segment(first, vectors.n_columns()) = vectors.local().row(i);
+    return std::make_shared<SparseMatrix>(part.map, part.map, [&](const int i, SparseMatrix::Row &row) {
+      A.get_row(part.places[i], row);
+      for (auto &entry : row)
+        entry.first = (*part.numbers)[entry.first];
+    });
   }
 } // namespace Squeal

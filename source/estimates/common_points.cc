@@ -129,25 +129,6 @@ namespace Squeal
       }
     };
 
-    /// Which process has a row of a map by whose pieces the rows are numbered.
-    class RowOwners
-    {
-    public:
-      explicit RowOwners(const RowMap &map)
-        : ends(Utilities::MPI::all_gather(map.communicator(), map.n_local()))
-      {
-        std::partial_sum(ends.begin(), ends.end(), ends.begin());
-      }
-
-      unsigned int owner(const std::size_t number) const
-      {
-        return std::upper_bound(ends.begin(), ends.end(), static_cast<int>(number)) - ends.begin();
-      }
-
-    private:
-      std::vector<int> ends;
-    };
-
     /// Points in the cells of this process, and which process has each of them in a cell, or nearest to one: of several the first.
     std::pair<std::vector<PointInCell>, std::vector<int>> located(const CommonPoints              &points,
                                                                   const std::vector<unsigned int> &bodies,
@@ -206,7 +187,6 @@ namespace Squeal
     const auto [found, processes] = located(points, numbers, location, communicator);
 
     // Rows whose points are in cells of this process
-    const RowOwners                                 owners(map);
     std::map<unsigned int, std::vector<RowEntries>> sent;
     const int                                       me = map.rank();
     for (std::size_t number = 0; number < rows.size(); ++number)
@@ -223,7 +203,7 @@ namespace Squeal
               for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
                 if (const int dof = model.free_dof(cell_dofs[fe.component_to_system_index(component, i)]); dof >= 0)
                   result.entries.emplace_back(dof, factors[component] * fe.base_element(0).shape_value(i, place.reference));
-          sent[owners.owner(number)].push_back(result);
+          sent[map.owner(number)].push_back(result);
         }
     std::vector<SparseMatrix::Row> own(map.n_local());
     for (auto &[process, part] : Utilities::MPI::some_to_some(communicator, sent))

@@ -109,18 +109,17 @@ namespace Squeal
           : start(1, 0)
           , diagonal(A.n_rows(), 0.)
         {
-          const LocalRows rows(A); // gone before anything is factorised
-          row.reserve((rows.column.size() + rows.n_rows) / 2);
+          row.reserve((A.n_entries() + A.n_rows()) / 2);
           value.reserve(row.capacity());
-          for (int i = 0; i < rows.n_rows; ++i)
+          for (int i = 0; i < A.n_rows(); ++i)
             {
-              for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
-                if (rows.column[k] >= i)
+              for (SparseRows::InnerIterator entry(A.by_place(), i); entry; ++entry)
+                if (entry.col() >= i)
                   {
-                    row.push_back(rows.column[k]);
-                    value.push_back(rows.value[k]);
-                    if (rows.column[k] == i)
-                      diagonal[i] = rows.value[k];
+                    row.push_back(entry.col());
+                    value.push_back(entry.value());
+                    if (entry.col() == i)
+                      diagonal[i] = entry.value();
                   }
               start.push_back(row.size());
             }

@@ -1,15 +1,10 @@
-#include "lane_kernels.h"
-
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/multivector.h>
 
-#include <deal.II/base/aligned_vector.h>
-
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 
 namespace Squeal
 {
@@ -30,91 +25,11 @@ namespace Squeal
     /// Rows that are a task; the same however many threads there are, so that sums do not depend on their number.
     constexpr int rows_together = 8192;
 
-    /// Rows of vectors that stay in the nearest cache while many others pass by.
-    constexpr int rows_in_cache = 256;
-
-    /// Calls @p f with the first row and the number of rows of every block of @p n_rows that stays in the cache.
-    void for_blocks(const int n_rows, const std::function<void(int first, int n)> &f)
-    {
-      for (int first = 0; first < n_rows; first += rows_in_cache)
-        f(first, std::min(rows_in_cache, n_rows - first));
-    }
-
-    using ConstColumns = Eigen::Ref<const DenseMatrix>;
-
-    TallBlock block_of(const ConstColumns &X, const int first, const int n)
-    {
-      return {n, static_cast<int>(X.cols()), X.data() + first, static_cast<std::size_t>(X.outerStride())};
-    }
-
-    /// Y += X S for up to @p width columns of Y.
-    template <int width>
-    void add_few_columns(const ConstColumns &X, const DenseMatrix &S, Eigen::Ref<DenseMatrix> Y)
-    {
-      const int                             n = static_cast<int>(Y.cols());
-      dealii::AlignedVector<LaneRow<width>> factors(S.rows()), rows(rows_in_cache);
-      to_lanes(S.data(), S.outerStride(), static_cast<int>(S.rows()), n, factors.data());
-      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
-        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
-        add_combinations(block_of(X, first, n_rows), factors.data(), rows.data());
-        from_lanes(rows.data(), Y.data() + first, Y.outerStride(), n_rows, n);
-      });
-    }
-
-    /// Xᵀ Y for up to @p width columns of Y.
-    template <int width>
-    DenseMatrix products_with_few_columns(const ConstColumns &X, const ConstColumns &Y)
-    {
-      const int                             n = static_cast<int>(Y.cols());
-      dealii::AlignedVector<LaneRow<width>> sums(X.cols()), rows(rows_in_cache);
-      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
-        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
-        add_products(block_of(X, first, n_rows), rows.data(), sums.data());
-      });
-      DenseMatrix result(X.cols(), n);
-      from_lanes(sums.data(), result.data(), result.outerStride(), static_cast<int>(X.cols()), n);
-      return result;
-    }
-
-    /// Y += X S for up to @p width columns of Y; returns Xᵀ Y of the sum.
-    template <int width>
-    DenseMatrix add_few_columns_then_products(const ConstColumns &X, const DenseMatrix &S, Eigen::Ref<DenseMatrix> Y)
-    {
-      const int                             n = static_cast<int>(Y.cols());
-      dealii::AlignedVector<LaneRow<width>> factors(S.rows()), sums(X.cols()), rows(rows_in_cache);
-      to_lanes(S.data(), S.outerStride(), static_cast<int>(S.rows()), n, factors.data());
-      for_blocks(static_cast<int>(X.rows()), [&](const int first, const int n_rows) {
-        const TallBlock block = block_of(X, first, n_rows);
-        to_lanes(Y.data() + first, Y.outerStride(), n_rows, n, rows.data());
-        add_combinations(block, factors.data(), rows.data());
-        add_products(block, rows.data(), sums.data());
-        from_lanes(rows.data(), Y.data() + first, Y.outerStride(), n_rows, n);
-      });
-      DenseMatrix result(X.cols(), n);
-      from_lanes(sums.data(), result.data(), result.outerStride(), static_cast<int>(X.cols()), n);
-      return result;
-    }
-
-    /// Vectors beside which others are few or many: BLAS copies the many for each product, which is worth it for more than some.
-    constexpr int most_few = 16, least_many = 16;
-
-    bool few_meet_many(const Eigen::Index few, const Eigen::Index many)
-    {
-      return few > 1 && few <= most_few && many >= least_many;
-    }
-
-    DenseMatrix products(const ConstColumns &X, const ConstColumns &Y)
-    {
-      if (few_meet_many(Y.cols(), X.cols()))
-        return Y.cols() <= 8 ? products_with_few_columns<8>(X, Y) : products_with_few_columns<16>(X, Y);
-      return X.transpose() * Y;
-    }
-
     /// Columns that are copied together.
     constexpr int columns_of_copy = 8;
 
     /// Y = X. Several threads copy much: to write to new memory takes longer than to read.
-    void copy(const ConstColumns &X, Eigen::Ref<DenseMatrix> Y)
+    void copy(const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
       run_parts(static_cast<int>(X.cols()), columns_of_copy,
                 [&](const int first, const int n) { Y.middleCols(first, n) = X.middleCols(first, n); });
@@ -254,22 +169,11 @@ namespace Squeal
             "linear combination of vectors");
     if (Y.n_local_rows() == 0)
       return;
-    const auto        x      = X.local();
-    auto              y      = Y.local();
-    const bool        by_few = few_meet_many(Y.n_columns(), X.n_columns());
-    const DenseMatrix scaled = by_few ? DenseMatrix(alpha * S) : DenseMatrix();
+    const auto x = X.local();
+    auto       y = Y.local();
     run_parts(Y.n_local_rows(), rows_together, [&](const int first, const int n) {
       auto image = y.middleRows(first, n);
-      if (by_few)
-        {
-          if (beta == 0.)
-            image.setZero();
-          else if (beta != 1.)
-            image *= beta;
-          const auto add_columns = Y.n_columns() <= 8 ? add_few_columns<8> : add_few_columns<16>;
-          add_columns(x.middleRows(first, n), scaled, image);
-        }
-      else if (beta == 0.)
+      if (beta == 0.)
         image.noalias() = alpha * x.middleRows(first, n) * S;
       else
         {
@@ -280,43 +184,21 @@ namespace Squeal
     });
   }
 
-  namespace
-  {
-    /// Sum of what @p f returns for the first row and the number of rows of every part of the rows of X, of all processes.
-    DenseMatrix sum_over_parts(const MultiVector &X, const std::function<DenseMatrix(int first, int n)> &f)
-    {
-      std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
-      run_parts(X.n_local_rows(), rows_together, [&](const int first, const int n) { sums[first / rows_together] = f(first, n); });
-      DenseMatrix result = std::move(sums.front());
-      for (std::size_t part = 1; part < sums.size(); ++part)
-        result += sums[part];
-      sum_over_processes(X.communicator(), result.data(), result.size());
-      agree(X.communicator(), result);
-      return result;
-    }
-  } // namespace
-
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y)
   {
     require(X.n_local_rows() == Y.n_local_rows(), "inner products");
-    const auto x = X.local(), y = Y.local();
-    return sum_over_parts(X, [&](const int first, const int n) { return products(x.middleRows(first, n), y.middleRows(first, n)); });
-  }
-
-  DenseMatrix subtract_then_gram(const MultiVector &X, const DenseMatrix &S, MultiVector &Y)
-  {
-    if (!few_meet_many(Y.n_columns(), X.n_columns()))
-      {
-        multiply_add(-1., X, S, 1., Y);
-        return gram(X, Y);
-      }
-    require(X.n_local_rows() == Y.n_local_rows() && X.n_columns() == S.rows() && Y.n_columns() == S.cols(), "difference of vectors");
-    const auto        x             = X.local();
-    auto              y             = Y.local();
-    const DenseMatrix factors       = -S;
-    const auto        add_then_gram = Y.n_columns() <= 8 ? add_few_columns_then_products<8> : add_few_columns_then_products<16>;
-    return sum_over_parts(
-      X, [&](const int first, const int n) { return add_then_gram(x.middleRows(first, n), factors, y.middleRows(first, n)); });
+    const auto               x = X.local(), y = Y.local();
+    std::vector<DenseMatrix> sums(std::max(1, (X.n_local_rows() + rows_together - 1) / rows_together));
+    run_parts(X.n_local_rows(), rows_together, [&](const int first, const int n) {
+      sums[first / rows_together] = x.middleRows(first, n).transpose() * y.middleRows(first, n);
+    });
+    if (X.n_local_rows() == 0)
+      sums.front().setZero(X.n_columns(), Y.n_columns());
+    for (std::size_t part = 1; part < sums.size(); ++part)
+      sums.front() += sums[part];
+    sum_over_processes(X.communicator(), sums.front().data(), sums.front().size());
+    agree(X.communicator(), sums.front());
+    return sums.front();
   }
 
   RealPairs agreed(const MPI_Comm communicator, RealPairs pairs)

@@ -8,10 +8,8 @@
 #include <mpi.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
-#include <optional>
 
 namespace Squeal
 {
@@ -41,16 +39,16 @@ namespace Squeal
     public:
       Mumps(const SparseMatrix &A, const MatrixKind symmetry, const Factors factors, const std::string &what)
         : what(what)
-        , comm(A.communicator())
+        , map(A.rows())
         , own_rows(A.rows().n_local())
       {
         id.sym          = static_cast<int>(symmetry);
         id.par          = 1;
-        id.comm_fortran = MPI_Comm_c2f(comm);
+        id.comm_fortran = MPI_Comm_c2f(map.communicator());
         run(-1);
         try
           {
-            factorize(LocalRows(A), symmetry != MatrixKind::general, factors);
+            factorize(local_rows(A), symmetry != MatrixKind::general, factors);
           }
         catch (...)
           {
@@ -109,13 +107,15 @@ namespace Squeal
             id.icntl[26] = 32; // columns that pass through the factors together
             run(3);
             check("solution");
-            delivery(transpose).deliver(solution.data(), n_solved(), own_rows.empty() ? nullptr : Y.col(first).data(), own_rows.size(),
-                                        n_columns);
+            for (int &number : solved_rows)
+              --number;
+            RowDelivery(solved_rows, map)
+              .deliver(MultiVector::ConstLocal(solution.data(), n_solved(), n_columns), Y.local().middleCols(first, n_columns));
           }
       }
 
     private:
-      void factorize(const LocalRows &rows, const bool one_triangle, const Factors factors)
+      void factorize(const SparseRows &rows, const bool one_triangle, const Factors factors)
       {
         for (int output : {0, 1, 2})
           id.icntl[output] = -1;
@@ -133,17 +133,16 @@ namespace Squeal
         row.reserve(1);
         column.reserve(1);
         value.reserve(1);
-        first_row = rows.first_row;
-        std::iota(own_rows.begin(), own_rows.end(), first_row + 1);
-        for (int i = 0; i < static_cast<int>(own_rows.size()); ++i)
-          for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
-            if (!one_triangle || rows.column[k] <= rows.first_row + i)
+        std::iota(own_rows.begin(), own_rows.end(), map.first() + 1);
+        for (int i = 0; i < rows.rows(); ++i)
+          for (SparseRows::InnerIterator entry(rows, i); entry; ++entry)
+            if (!one_triangle || entry.col() <= map.number(i))
               {
-                row.push_back(rows.first_row + i + 1);
-                column.push_back(rows.column[k] + 1);
-                value.push_back(rows.value[k]);
+                row.push_back(map.number(i) + 1);
+                column.push_back(entry.col() + 1);
+                value.push_back(entry.value());
               }
-        id.n       = rows.n_rows;
+        id.n       = map.n();
         id.nnz_loc = value.size();
         id.irn_loc = row.data();
         id.jcn_loc = column.data();
@@ -183,20 +182,6 @@ namespace Squeal
         return numbers.data();
       }
 
-      /// From the rows of the last solution to their owners: the same for all of A, and for all of Aᵀ.
-      const RowDelivery &delivery(const bool transpose)
-      {
-        std::vector<int> numbers = solved_rows;
-        for (int &number : numbers)
-          --number;
-        std::optional<RowDelivery> &plan = deliveries[transpose];
-        if (!plan)
-          plan.emplace(numbers, first_row, own_rows.size(), comm);
-        if (plan->rows() != numbers)
-          throw_library_failure("MUMPS", "the solution is distributed differently from the one before", what);
-        return *plan;
-      }
-
       void run(const int job)
       {
         id.job = job;
@@ -210,14 +195,12 @@ namespace Squeal
             "MUMPS", "INFOG(1) = " + std::to_string(id.infog[0]) + ", INFOG(2) = " + std::to_string(id.infog[1]) + " of the " + step, what);
       }
 
-      const std::string                         what;
-      const MPI_Comm                            comm;
-      int                                       first_row = 0;
-      std::vector<int>                          own_rows, solved_rows; ///< numbers, from 1 on
-      std::vector<double>                       solution;              ///< n_solved() × columns of a block
-      double                                    nothing = 0.;          ///< what pointers to no rows point to
-      std::array<std::optional<RowDelivery>, 2> deliveries;
-      DMUMPS_STRUC_C                            id = {};
+      const std::string   what;
+      const RowMap        map;
+      std::vector<int>    own_rows, solved_rows; ///< numbers, from 1 on
+      std::vector<double> solution;              ///< n_solved() × columns of a block
+      double              nothing = 0.;          ///< what pointers to no rows point to
+      DMUMPS_STRUC_C      id      = {};
     };
 
     class MumpsFactorization : public Factorization

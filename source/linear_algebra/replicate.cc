@@ -1,32 +1,26 @@
-#include "epetra_view.h"
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/row_delivery.h>
 
-#include <Epetra_Import.h>
+#include <numeric>
 
 namespace Squeal
 {
   namespace
   {
-    /// All rows of @p map on process 0.
-    RowMap on_root(const RowMap &map)
+    /// Between process 0, where all rows lie, and their owners.
+    RowDelivery from_root(const RowMap &map)
     {
-      return RowMap::contiguous(map.rank() == 0 ? map.n() : 0, map.communicator());
-    }
-
-    /// The entries of @p X in the rows that @p Y has.
-    void redistribute(const MultiVector &X, MultiVector &Y)
-    {
-      if (X.n_columns() > 0)
-        epetra_view(Y).Import(epetra_view(X), Epetra_Import(Y.map().implementation(), X.map().implementation()), Insert);
+      std::vector<int> numbers(map.rank() == 0 ? map.n() : 0);
+      std::iota(numbers.begin(), numbers.end(), 0);
+      return {numbers, map};
     }
   } // namespace
 
   DenseMatrix replicate(const MultiVector &X)
   {
-    DenseMatrix result = DenseMatrix::Zero(X.map().n(), X.n_columns());
-    for (int i = 0; i < X.n_local_rows(); ++i)
-      result.row(X.map().number(i)) = X.local().row(i);
+    DenseMatrix result                                   = DenseMatrix::Zero(X.map().n(), X.n_columns());
+    result.middleRows(X.map().first(), X.n_local_rows()) = X.local();
     sum_over_processes(X.communicator(), result.data(), result.size());
     return result;
   }
@@ -34,26 +28,27 @@ namespace Squeal
   MultiVector distribute(const DenseMatrix &X, const RowMap &map)
   {
     MultiVector result(map, X.cols(), false);
-    for (int i = 0; i < map.n_local(); ++i)
-      result.local().row(i) = X.row(map.number(i));
+    result.local() = X.middleRows(map.first(), map.n_local());
     return result;
   }
 
   DenseMatrix gather(const MultiVector &X)
   {
-    MultiVector whole(on_root(X.map()), X.n_columns(), false);
-    redistribute(X, whole);
-    return whole.local();
+    if (is_alone(X.communicator())) // any thread may gather
+      return X.local();
+    DenseMatrix whole(X.map().rank() == 0 ? X.map().n() : 0, X.n_columns());
+    from_root(X.map()).fetch(X.local(), whole);
+    return whole;
   }
 
   MultiVector scatter(const DenseMatrix &X, const RowMap &map)
   {
+    if (is_alone(map.communicator()))
+      return distribute(X, map);
     int n_columns = X.cols();
     agree(map.communicator(), &n_columns, 1);
-    MultiVector whole(on_root(map), n_columns, false), result(map, n_columns, false);
-    if (whole.n_local_rows() > 0)
-      whole.local() = X;
-    redistribute(whole, result);
+    MultiVector result(map, n_columns, false);
+    from_root(map).deliver(map.rank() == 0 ? X : DenseMatrix(0, n_columns), result.local());
     return result;
   }
 } // namespace Squeal

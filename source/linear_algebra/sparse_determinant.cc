@@ -17,18 +17,20 @@ namespace Squeal
     const char *const what = "the determinant of a sparse matrix";
 
     /// The entries of A in the places of a pattern that contains its own.
-    std::vector<double> on_pattern(const LocalRows &pattern, const SparseMatrix &A)
+    std::vector<double> on_pattern(const SparseRows &pattern, const SparseMatrix &A)
     {
-      const LocalRows     rows(A);
-      std::vector<double> values(pattern.value.size(), 0.);
-      for (int i = 0; i < rows.n_rows; ++i)
-        for (int k = rows.start[i], place = pattern.start[i]; k < rows.start[i + 1]; ++k, ++place)
-          {
-            // Columns ascend in both
-            while (pattern.column[place] != rows.column[k])
-              ++place;
-            values[place] = rows.value[k];
-          }
+      std::vector<double> values(pattern.nonZeros(), 0.);
+      for (int i = 0; i < A.n_rows(); ++i)
+        {
+          const int *place = pattern.innerIndexPtr() + pattern.outerIndexPtr()[i];
+          for (SparseRows::InnerIterator entry(A.by_place(), i); entry; ++entry)
+            {
+              // Columns ascend in both
+              while (*place != entry.col())
+                ++place;
+              values[place - pattern.innerIndexPtr()] = entry.value();
+            }
+        }
       return values;
     }
 
@@ -43,7 +45,7 @@ namespace Squeal
   struct SparseDeterminant::Implementation
   {
     Implementation(const SparseMatrix &M, const SparseMatrix *C, const SparseMatrix &K)
-      : pattern(*union_pattern(M, C, K))
+      : pattern(union_pattern(M, C, K)->by_place())
       , mass(on_pattern(pattern, M))
       , damping(C ? on_pattern(pattern, *C) : std::vector<double>())
       , stiffness(on_pattern(pattern, K))
@@ -51,8 +53,8 @@ namespace Squeal
     {
       umfpack_zi_defaults(control.data());
       control[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;
-      const int status = umfpack_zi_symbolic(pattern.n_rows, pattern.n_rows, pattern.start.data(), pattern.column.data(), nullptr, nullptr,
-                                             &symbolic, control.data(), nullptr);
+      const int status = umfpack_zi_symbolic(pattern.rows(), pattern.rows(), pattern.outerIndexPtr(), pattern.innerIndexPtr(), nullptr,
+                                             nullptr, &symbolic, control.data(), nullptr);
       if (status != UMFPACK_OK)
         throw_library_failure("UMFPACK", "status " + std::to_string(status) + " of the analysis", what);
     }
@@ -62,7 +64,7 @@ namespace Squeal
       umfpack_zi_free_symbolic(&symbolic);
     }
 
-    const LocalRows           pattern;
+    const SparseRows          pattern;
     const std::vector<double> mass, damping, stiffness;
     std::vector<double>       control;
     void                     *symbolic = nullptr;
@@ -81,9 +83,9 @@ namespace Squeal
 
   std::complex<double> SparseDeterminant::logarithm(const std::complex<double> lambda) const
   {
-    const LocalRows           &pattern = implementation->pattern;
+    const SparseRows          &pattern = implementation->pattern;
     const std::complex<double> square  = lambda * lambda;
-    std::vector<double>        real(pattern.value.size()), imaginary(pattern.value.size());
+    std::vector<double>        real(pattern.nonZeros()), imaginary(pattern.nonZeros());
     for (std::size_t k = 0; k < real.size(); ++k)
       {
         std::complex<double> entry = implementation->stiffness[k] + square * implementation->mass[k];
@@ -95,7 +97,7 @@ namespace Squeal
 
     // UMFPACK takes rows for columns: the determinant is the same.
     void     *numeric = nullptr;
-    const int status  = umfpack_zi_numeric(pattern.start.data(), pattern.column.data(), real.data(), imaginary.data(),
+    const int status  = umfpack_zi_numeric(pattern.outerIndexPtr(), pattern.innerIndexPtr(), real.data(), imaginary.data(),
                                            implementation->symbolic, &numeric, implementation->control.data(), nullptr);
     // determinant = (mantissa_re + i mantissa_im) · 10^exponent
     double mantissa_re = 0., mantissa_im = 0., exponent = 0.;

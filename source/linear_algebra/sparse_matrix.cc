@@ -1,244 +1,216 @@
-#include "epetra_view.h"
 #include "sparse_products.h"
 #include <squeal/base/exceptions.h>
-#include <squeal/base/text.h>
 #include <squeal/linear_algebra/communication.h>
+#include <squeal/linear_algebra/row_delivery.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-
-#include <EpetraExt_MatrixMatrix.h>
-#include <Epetra_CrsMatrix.h>
-#include <Epetra_Import.h>
-#include <Epetra_IntVector.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
-#include <numeric>
 #include <sstream>
 
 namespace Squeal
 {
+  struct SparseMatrix::Halo
+  {
+    std::vector<int> numbers;   ///< of the columns, ascending
+    RowDelivery      delivery;  ///< between their owners and here
+    long long        n_entries; ///< of all processes
+
+    int index(const int number) const
+    {
+      return static_cast<int>(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin());
+    }
+  };
+
   namespace
   {
-    void check_epetra(const int error, const char *operation)
+    /// Rows from entries in any order; those of one column are added.
+    SparseRows filled(const int n_rows, const int n_columns, const std::function<void(int, SparseMatrix::Row &)> &fill)
     {
-      // Positive values are warnings of Epetra.
-      if (error < 0)
-        throw SolverError("Epetra returned error " + std::to_string(error), operation,
-                          "check that the shapes and distributions of the matrices fit together");
-    }
-
-    /// Rows whose columns ascend, given by their numbers, as a matrix of several processes.
-    std::unique_ptr<Epetra_CrsMatrix> distributed(const RowMap &rows, const RowMap &columns, const RowArrays &given)
-    {
-      std::vector<int> lengths(rows.n_local());
-      for (int i = 0; i < rows.n_local(); ++i)
-        lengths[i] = given.start[i + 1] - given.start[i];
-      const Epetra_Map &map    = rows.implementation();
-      auto              matrix = std::make_unique<Epetra_CrsMatrix>(Copy, map, lengths.data());
-      for (int i = 0; i < rows.n_local(); ++i)
-        check_epetra(
-          matrix->InsertGlobalValues(rows.number(i), lengths[i], given.value.data() + given.start[i], given.column.data() + given.start[i]),
-          "rows of a sparse matrix");
-      check_epetra(matrix->FillComplete(columns.implementation(), map), "rows of a sparse matrix");
-      return matrix;
-    }
-
-    /// Rows whose columns ascend, given by their places where a process is alone, else by their numbers.
-    RowArrays filled(const RowMap &rows, const RowMap &columns, const std::function<void(int, SparseMatrix::Row &)> &fill)
-    {
-      const bool        is_alone = rows.n_processes() == 1;
+      SparseRows        result(n_rows, n_columns);
       SparseMatrix::Row row;
-      RowArrays         result{{0}, {}, {}};
-      for (int i = 0; i < rows.n_local(); ++i)
+      const auto        by_column = [](const auto &a, const auto &b) { return a.first < b.first; };
+      for (int i = 0; i < n_rows; ++i)
         {
           row.clear();
           fill(i, row);
-          if (is_alone)
-            for (auto &entry : row)
-              entry.first = columns.place(entry.first);
-          const auto by_column = [](const auto &a, const auto &b) { return a.first < b.first; };
           if (!std::is_sorted(row.begin(), row.end(), by_column))
             std::stable_sort(row.begin(), row.end(), by_column);
+          result.startVec(i);
+          int last = -1;
           for (const auto &[column, value] : row)
-            if (static_cast<int>(result.column.size()) > result.start.back() && result.column.back() == column)
-              result.value.back() += value;
+            if (column == last)
+              result.valuePtr()[result.data().size() - 1] += value;
             else
-              {
-                result.column.push_back(column);
-                result.value.push_back(value);
-              }
-          result.start.push_back(static_cast<int>(result.column.size()));
+              result.insertBackByOuterInner(i, last = column) = value;
         }
+      result.finalize();
       return result;
     }
 
-    /// Entries of a matrix of one process, or of its transpose.
-    struct EntriesHere
+    /// Number of the column at a place here, that of one in the halo included.
+    int column_number(const SparseMatrix &A, const int place)
     {
-      EntriesHere(const SparseMatrix &A, const bool transpose)
-        : of_transpose(transpose ? transposed(A.entries()->rows(), A.n_columns()) : RowArrays())
-        , rows(transpose ? of_transpose.rows() : A.entries()->rows())
-      {}
-      EntriesHere(const EntriesHere &)            = delete;
-      EntriesHere &operator=(const EntriesHere &) = delete;
+      const int n_own = A.columns().n_local();
+      return place < n_own ? A.columns().number(place) : A.halo()->numbers[place - n_own];
+    }
 
-      const RowArrays  of_transpose;
-      const SparseRows rows;
+    /// Calls @p f(place of the row, number of the column, value) for the entries of the rows of this process.
+    template <typename Function>
+    void for_entries(const SparseMatrix &A, const Function &f)
+    {
+      for (int i = 0; i < A.rows().n_local(); ++i)
+        for (SparseRows::InnerIterator entry(A.by_place(), i); entry; ++entry)
+          f(i, column_number(A, entry.col()), entry.value());
+    }
+
+    /// An entry on its way to another process.
+    struct Entry
+    {
+      int    i, j;
+      double x;
+
+      // As Eigen's triplets have them
+      int row() const
+      {
+        return i;
+      }
+      int col() const
+      {
+        return j;
+      }
+      double value() const
+      {
+        return x;
+      }
+
+      template <typename Archive>
+      void serialize(Archive &archive, unsigned int)
+      {
+        archive &i &j &x;
+      }
     };
 
-    /// op(A) op(B), of distributed matrices with Epetra's product.
-    std::shared_ptr<SparseMatrix> product(const SparseMatrix &A, const bool transpose_A, const SparseMatrix &B, const bool transpose_B)
+    /// Entries by the process that shall have them.
+    using EntriesOfProcesses = std::map<unsigned int, std::vector<Entry>>;
+
+    /// Sends entries; returns those for this process.
+    std::vector<Entry> delivered(const MPI_Comm communicator, EntriesOfProcesses sent)
     {
-      const RowMap &rows    = transpose_A ? A.columns() : A.rows();
-      const RowMap &columns = transpose_B ? B.rows() : B.columns();
-      if (A.entries() != nullptr)
-        return std::make_shared<SparseMatrix>(rows, columns,
-                                              product(EntriesHere(A, transpose_A).rows, EntriesHere(B, transpose_B).rows, columns.n()));
-      auto C = std::make_unique<Epetra_CrsMatrix>(Copy, rows.implementation(), 0);
-      check_epetra(EpetraExt::MatrixMatrix::Multiply(A.implementation(), transpose_A, B.implementation(), transpose_B, *C, false),
-                   "product of two sparse matrices");
-      check_epetra(C->FillComplete(columns.implementation(), rows.implementation()), "product of two sparse matrices");
-      return std::make_shared<SparseMatrix>(std::move(C));
+      std::vector<Entry> result;
+      for (const auto &[process, entries] : is_alone(communicator) ? sent : dealii::Utilities::MPI::some_to_some(communicator, sent))
+        result.insert(result.end(), entries.begin(), entries.end());
+      return result;
     }
 
-    /// All rows of a matrix of several processes on process 0.
-    std::shared_ptr<SparseMatrix> on_root(const SparseMatrix &A)
+    SparseRows rows_of(const std::vector<Entry> &entries, const int n_rows, const int n_columns)
     {
-      std::vector<int> all_rows(A.rows().rank() == 0 ? A.n_rows() : 0);
-      std::iota(all_rows.begin(), all_rows.end(), 0);
-      const Epetra_CrsMatrix &given  = A.implementation();
-      const RowMap            target = RowMap::of(all_rows, A.communicator());
-      auto                    result = std::make_unique<Epetra_CrsMatrix>(Copy, target.implementation(), 0);
-      check_epetra(result->Import(given, Epetra_Import(target.implementation(), given.RowMap()), Insert), "gathering of a matrix");
-      check_epetra(result->FillComplete(given.DomainMap(), target.implementation()), "gathering of a matrix");
-      return std::make_shared<SparseMatrix>(std::move(result));
+      SparseRows result(n_rows, n_columns);
+      result.setFromTriplets(entries.begin(), entries.end());
+      return result;
     }
 
-    /// Number of the first local row when the rows of all processes are numbered without gaps.
-    int first_number(const RowMap &map)
+    /// The rows of B that the columns of A refer to, in the order of the places of A's columns.
+    SparseRows rows_for(const SparseMatrix &A, const SparseMatrix &B)
     {
-      const int n_local = map.n_local();
-      int       n_upto_here;
-      MPI_Scan(&n_local, &n_upto_here, 1, MPI_INT, MPI_SUM, map.communicator());
-      return n_upto_here - n_local;
+      std::map<unsigned int, std::vector<int>> wanted;
+      for (const int number : A.halo()->numbers)
+        wanted[B.rows().owner(number)].push_back(number);
+      EntriesOfProcesses sent;
+      for (const auto &[process, numbers] : dealii::Utilities::MPI::some_to_some(A.communicator(), wanted))
+        for (const int number : numbers)
+          for (SparseRows::InnerIterator entry(B.by_place(), B.rows().place(number)); entry; ++entry)
+            sent[process].push_back({number, column_number(B, entry.col()), entry.value()});
+      std::vector<Entry> entries = delivered(A.communicator(), std::move(sent));
+      const int          n_own   = A.columns().n_local();
+      for (Entry &entry : entries)
+        entry.i = n_own + A.halo()->index(entry.i);
+      for_entries(B, [&](const int i, const int column, const double value) { entries.push_back({i, column, value}); });
+      return rows_of(entries, n_own + static_cast<int>(A.halo()->numbers.size()), B.n_columns());
     }
 
-    /// Calls @p f with the entries of every row of this process.
-    template <typename Function>
-    void for_rows(const SparseMatrix &A, const Function &f)
+    [[noreturn]] void throw_misfit(const char *operation)
     {
-      SparseMatrix::Row row;
-      for (int i = 0; i < A.rows().n_local(); ++i)
-        {
-          A.get_row(i, row);
-          f(i, row);
-        }
-    }
-
-    double largest_of_all(const SparseMatrix &A, const double local)
-    {
-      return largest_of_processes(A.communicator(), local);
+      throw SolverError("shapes or distributions do not fit together", operation, "this is a mistake in the program: please report it");
     }
   } // namespace
 
   SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill)
-    : row_map(rows)
-    , column_map(columns)
-  {
-    if (rows.n_processes() == 1)
-      arrays = std::make_unique<const RowArrays>(filled(rows, columns, fill));
-    else
-      matrix = distributed(rows, columns, filled(rows, columns, fill));
-  }
+    : SparseMatrix(rows, columns, filled(rows.n_local(), columns.n(), fill))
+  {}
 
-  SparseMatrix::SparseMatrix(std::unique_ptr<Epetra_CrsMatrix> given)
-    : matrix(std::move(given))
-    , row_map(matrix->RangeMap())
-    , column_map(matrix->DomainMap())
-  {
-    if (!matrix->RowMap().PointSameAs(matrix->RangeMap()))
-      throw SolverError("a matrix whose rows are distributed differently from its results", "a sparse matrix",
-                        "this is a mistake in the program: please report it");
-  }
-
-  SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, RowArrays entries)
-    : arrays(std::make_unique<const RowArrays>(std::move(entries)))
+  SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, SparseRows by_number)
+    : local(std::move(by_number))
     , row_map(rows)
     , column_map(columns)
-  {}
+  {
+    local.makeCompressed();
+    if (is_alone(rows.communicator()))
+      return;
+    const int        n_own = columns.n_local();
+    std::vector<int> elsewhere;
+    std::copy_if(local.innerIndexPtr(), local.innerIndexPtr() + local.nonZeros(), std::back_inserter(elsewhere),
+                 [&](const int number) { return columns.place(number) < 0; });
+    std::sort(elsewhere.begin(), elsewhere.end());
+    elsewhere.erase(std::unique(elsewhere.begin(), elsewhere.end()), elsewhere.end());
+    auto halo =
+      std::make_unique<Halo>(Halo{elsewhere, RowDelivery(elsewhere, columns),
+                                  static_cast<long long>(dealii::Utilities::MPI::sum<std::uint64_t>(local.nonZeros(), communicator()))});
+    local             = filled(rows.n_local(), n_own + static_cast<int>(elsewhere.size()), [&](const int i, Row &row) {
+      for (SparseRows::InnerIterator entry(local, i); entry; ++entry)
+        {
+          const int place = columns.place(entry.col());
+          row.emplace_back(place >= 0 ? place : n_own + halo->index(entry.col()), entry.value());
+        }
+    });
+    columns_elsewhere = std::move(halo);
+  }
 
   SparseMatrix::~SparseMatrix() = default;
 
-  const Epetra_CrsMatrix &SparseMatrix::implementation() const
-  {
-    return *matrix;
-  }
-
-  const RowArrays *SparseMatrix::entries() const
-  {
-    return arrays.get();
-  }
-
   long long SparseMatrix::n_entries() const
   {
-    return arrays ? static_cast<long long>(arrays->column.size()) : matrix->NumGlobalNonzeros64();
+    return columns_elsewhere ? columns_elsewhere->n_entries : local.nonZeros();
   }
 
   void SparseMatrix::get_row(const int place, Row &row) const
   {
     row.clear();
-    if (arrays)
-      {
-        for (int k = arrays->start[place]; k < arrays->start[place + 1]; ++k)
-          row.emplace_back(column_map.number(arrays->column[k]), arrays->value[k]);
-        return;
-      }
-    int     n;
-    double *values;
-    int    *columns;
-    check_epetra(matrix->ExtractMyRowView(place, n, values, columns), "a row of a sparse matrix");
-    for (int k = 0; k < n; ++k)
-      row.emplace_back(matrix->GCID(columns[k]), values[k]);
+    for (SparseRows::InnerIterator entry(local, place); entry; ++entry)
+      row.emplace_back(column_number(*this, entry.col()), entry.value());
   }
 
   void SparseMatrix::multiply(const bool transposed, const MultiVector &X, MultiVector &Y) const
   {
     if (X.n_columns() != Y.n_columns() || X.n_local_rows() != (transposed ? rows() : columns()).n_local() ||
         Y.n_local_rows() != (transposed ? columns() : rows()).n_local())
-      throw SolverError("the shapes of a matrix and of vectors do not fit together", "product of a sparse matrix and vectors",
-                        "this is a mistake in the program: please report it");
-    if (X.n_columns() == 0)
-      return;
-    if (arrays)
+      throw_misfit("product of a sparse matrix and vectors");
+    const auto product = transposed ? multiply_transpose : multiply_rows;
+    if (!columns_elsewhere || columns_elsewhere->delivery.empty())
       {
-        if (transposed)
-          multiply_transpose(arrays->rows(), X.local(), Y.local());
-        else
-          multiply_rows(arrays->rows(), X.local(), Y.local());
+        product(local, X.local(), Y.local());
         return;
       }
 
-    const char *operation = "product of a sparse matrix and vectors";
-    int        *start, *columns;
-    double     *values;
-    if (transposed || !matrix->StorageOptimized() || matrix->ExtractCrsDataPointers(start, columns, values) != 0)
+    // The rows of X or Aᵀ X here, those of the halo behind the own ones
+    const RowDelivery &delivery = columns_elsewhere->delivery;
+    const int          n_own    = columns().n_local();
+    DenseMatrix        here(local.cols(), X.n_columns());
+    if (transposed)
       {
-        Epetra_MultiVector image = epetra_view(Y);
-        check_epetra(matrix->Multiply(transposed, epetra_view(X), image), operation);
-        return;
-      }
-
-    const SparseRows A{matrix->NumMyRows(), start, columns, values};
-    if (const Epetra_Import *importer = matrix->Importer())
-      {
-        Epetra_MultiVector here(matrix->ColMap(), X.n_columns(), false);
-        check_epetra(here.Import(epetra_view(X), *importer, Insert), operation);
-        multiply_rows(A, Eigen::Map<const DenseMatrix>(here.Values(), matrix->NumMyCols(), X.n_columns()), Y.local());
+        product(local, X.local(), here);
+        Y.local() = here.topRows(n_own);
+        delivery.add(here.bottomRows(here.rows() - n_own), Y.local());
       }
     else
-      multiply_rows(A, X.local(), Y.local());
+      {
+        here.topRows(n_own) = X.local();
+        delivery.fetch(X.local(), here.bottomRows(here.rows() - n_own));
+        product(local, here, Y.local());
+      }
   }
 
   MultiVector operator*(const SparseMatrix &A, const MultiVector &X)
@@ -257,47 +229,39 @@ namespace Squeal
 
   std::shared_ptr<SparseMatrix> multiply(const SparseMatrix &A, const SparseMatrix &B, const bool transpose_A, const bool transpose_B)
   {
-    // Where three processes share the rows Epetra's product of two transposed matrices loses entries: (B A)ᵀ instead
-    if (transpose_A && transpose_B)
-      return transpose(*multiply(B, A));
-    return product(A, transpose_A, B, transpose_B);
+    if (transpose_A)
+      return multiply(*transpose(A), B, false, transpose_B);
+    if (transpose_B)
+      return multiply(A, *transpose(B));
+    if (!(A.columns() == B.rows()))
+      throw_misfit("product of two sparse matrices");
+    return std::make_shared<SparseMatrix>(A.rows(), B.columns(),
+                                          A.halo() ? SparseRows(A.by_place() * rows_for(A, B)) : SparseRows(A.by_place() * B.by_place()));
   }
 
   std::shared_ptr<SparseMatrix> transpose(const SparseMatrix &A)
   {
-    const RowMap      &rows = A.rows();
-    const SparseMatrix unit(rows, rows, [&](const int i, SparseMatrix::Row &row) { row = {{rows.number(i), 1.}}; });
-    return product(A, true, unit, false);
+    if (A.halo() == nullptr)
+      return std::make_shared<SparseMatrix>(A.columns(), A.rows(), SparseRows(A.by_place().transpose()));
+    EntriesOfProcesses sent;
+    for_entries(A, [&](const int i, const int column, const double value) {
+      const int owner = A.columns().owner(column);
+      sent[owner].push_back({column, A.rows().number(i), value});
+    });
+    std::vector<Entry> entries = delivered(A.communicator(), std::move(sent));
+    for (Entry &entry : entries)
+      entry.i = A.columns().place(entry.i);
+    return std::make_shared<SparseMatrix>(A.columns(), A.rows(), rows_of(entries, A.columns().n_local(), A.n_rows()));
   }
 
   std::shared_ptr<SparseMatrix> congruence(const SparseMatrix &A, const SparseMatrix &T)
   {
-    if (T.entries() == nullptr)
-      return multiply(T, *multiply(A, T), true, false);
-    const EntriesHere from_left(T, true), from_right(T, false);
-    const int         n  = T.n_columns();
-    const RowArrays   AT = product(EntriesHere(A, false).rows, from_right.rows, n);
-    return std::make_shared<SparseMatrix>(T.columns(), T.columns(), product(from_left.rows, AT.rows(), n));
+    return multiply(T, *multiply(A, T), true, false);
   }
 
   std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
   {
-    if (A.entries() != nullptr)
-      {
-        RowArrays result = *A.entries();
-        for (double &value : result.value)
-          value = std::abs(value);
-        return std::make_shared<SparseMatrix>(A.rows(), A.columns(), std::move(result));
-      }
-    auto result = std::make_unique<Epetra_CrsMatrix>(A.implementation());
-    for (int i = 0; i < result->NumMyRows(); ++i)
-      {
-        int     n;
-        double *values;
-        check_epetra(result->ExtractMyRowView(i, n, values), "a row of a sparse matrix");
-        std::transform(values, values + n, values, [](const double value) { return std::abs(value); });
-      }
-    return std::make_shared<SparseMatrix>(std::move(result));
+    return std::make_shared<SparseMatrix>(A.rows(), A.columns(), SparseRows(local_rows(A).cwiseAbs()));
   }
 
   std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f)
@@ -319,45 +283,26 @@ namespace Squeal
     const SparseMatrix &first = *summands.front().second;
     for (const auto &[factor, A] : summands)
       if (!(A->rows() == first.rows()) || !(A->columns() == first.columns()))
-        throw SolverError("matrices of different shape or distribution", "sum of sparse matrices",
-                          "this is a mistake in the program: please report it");
-
-    if (first.entries() != nullptr)
-      {
-        std::vector<std::pair<double, SparseRows>> rows;
-        for (const auto &[factor, A] : summands)
-          rows.emplace_back(factor, A->entries()->rows());
-        return std::make_shared<SparseMatrix>(first.rows(), first.columns(), sum(rows, first.n_columns()));
-      }
-    SparseMatrix::Row part;
+        throw_misfit("sum of sparse matrices");
     return std::make_shared<SparseMatrix>(first.rows(), first.columns(), [&](const int i, SparseMatrix::Row &row) {
       for (const auto &[factor, A] : summands)
-        {
-          A->get_row(i, part);
-          for (const auto &[column, value] : part)
-            row.emplace_back(column, factor * value);
-        }
+        for (SparseRows::InnerIterator entry(A->by_place(), i); entry; ++entry)
+          row.emplace_back(column_number(*A, entry.col()), factor * entry.value());
     });
   }
 
   double max_norm(const SparseMatrix &A)
   {
     double largest = 0.;
-    for_rows(A, [&](int, const SparseMatrix::Row &row) {
-      for (const auto &[column, value] : row)
-        largest = std::max(largest, std::abs(value));
-    });
-    return largest_of_all(A, largest);
+    for_entries(A, [&](int, int, const double value) { largest = std::max(largest, std::abs(value)); });
+    return largest_of_processes(A.communicator(), largest);
   }
 
   double row_sum_norm(const SparseMatrix &A)
   {
-    double largest = 0.;
-    for_rows(A, [&](int, const SparseMatrix::Row &row) {
-      largest = std::max(largest, std::accumulate(row.begin(), row.end(), 0.,
-                                                  [](const double sum, const auto &entry) { return sum + std::abs(entry.second); }));
-    });
-    return largest_of_all(A, largest);
+    std::vector<double> sums(A.rows().n_local() + 1, 0.);
+    for_entries(A, [&](const int i, int, const double value) { sums[i] += std::abs(value); });
+    return largest_of_processes(A.communicator(), *std::max_element(sums.begin(), sums.end()));
   }
 
   double symmetry_defect(const SparseMatrix &A)
@@ -368,77 +313,38 @@ namespace Squeal
 
   DenseMatrix to_dense(const SparseMatrix &A)
   {
-    const LocalRows rows(A);
-    DenseMatrix     local = DenseMatrix::Zero(rows.n_rows, rows.n_columns);
-    for (std::size_t i = 0; i + 1 < rows.start.size(); ++i)
-      for (int k = rows.start[i]; k < rows.start[i + 1]; ++k)
-        local(rows.first_row + i, rows.column[k]) = rows.value[k];
-    sum_over_processes(A.communicator(), local.data(), local.size());
-    return local;
+    DenseMatrix result = DenseMatrix::Zero(A.n_rows(), A.n_columns());
+    for_entries(A, [&](const int i, const int column, const double value) { result(A.rows().number(i), column) = value; });
+    sum_over_processes(A.communicator(), result.data(), result.size());
+    return result;
   }
 
   std::string matrix_market(const SparseMatrix &A, const MatrixMarketSymmetry symmetry)
   {
-    const bool is_writer = A.rows().rank() == 0;
-    const bool symmetric = symmetry == MatrixMarketSymmetry::symmetric;
-
-    // Global numbers are what the file shows
-    const auto          gathered = A.entries() != nullptr ? nullptr : on_root(A);
-    const SparseMatrix &whole    = gathered ? *gathered : A;
-    if (!is_writer)
+    EntriesOfProcesses sent;
+    const bool         symmetric = symmetry == MatrixMarketSymmetry::symmetric;
+    for_entries(A, [&](const int i, const int column, const double value) {
+      if (const int number = A.rows().number(i); !symmetric || column <= number)
+        sent[0].push_back({number, column, value});
+    });
+    const std::vector<Entry> entries = delivered(A.communicator(), std::move(sent));
+    if (A.rows().rank() != 0)
       return "";
-
-    std::ostringstream entries;
-    entries.precision(std::numeric_limits<double>::max_digits10);
-    long long         n_entries = 0;
-    SparseMatrix::Row row;
-    for (int i = 0; i < whole.n_rows(); ++i)
-      {
-        whole.get_row(whole.rows().place(i), row);
-        std::sort(row.begin(), row.end());
-        for (const auto &[j, entry] : row)
-          if (!symmetric || j <= i)
-            {
-              entries << i + 1 << ' ' << j + 1 << ' ' << entry << '\n';
-              ++n_entries;
-            }
-      }
-    return text("%%MatrixMarket matrix coordinate real ", symmetric ? "symmetric" : "general", "\n", A.n_rows(), " ", A.n_columns(), " ",
-                n_entries, "\n") +
-           entries.str();
+    const SparseRows   all = rows_of(entries, A.n_rows(), A.n_columns());
+    std::ostringstream stream;
+    stream.precision(std::numeric_limits<double>::max_digits10);
+    stream << "%%MatrixMarket matrix coordinate real " << (symmetric ? "symmetric" : "general") << '\n'
+           << A.n_rows() << ' ' << A.n_columns() << ' ' << all.nonZeros() << '\n';
+    for (int i = 0; i < A.n_rows(); ++i)
+      for (SparseRows::InnerIterator entry(all, i); entry; ++entry)
+        stream << i + 1 << ' ' << entry.col() + 1 << ' ' << entry.value() << '\n';
+    return stream.str();
   }
 
-  LocalRows::LocalRows(const SparseMatrix &A)
-    : first_row(A.entries() != nullptr ? 0 : first_number(A.rows()))
-    , n_rows(A.n_rows())
-    , n_columns(A.n_columns())
+  SparseRows local_rows(const SparseMatrix &A)
   {
-    if (const RowArrays *entries = A.entries())
-      {
-        start  = entries->start;
-        column = entries->column;
-        value  = entries->value;
-        return;
-      }
-
-    // Number the columns without gaps and look the numbers up for all columns stored here.
-    const Epetra_CrsMatrix &matrix = A.implementation();
-    Epetra_IntVector        own(matrix.DomainMap()), here(matrix.ColMap());
-    std::iota(own.Values(), own.Values() + own.MyLength(), first_number(A.columns()));
-    check_epetra(here.Import(own, Epetra_Import(matrix.ColMap(), matrix.DomainMap()), Insert),
-                 "numbering of the columns of a sparse matrix");
-
-    start.push_back(0);
-    for_rows(A, [&](int, SparseMatrix::Row &row) {
-      for (auto &entry : row)
-        entry.first = here[matrix.LCID(entry.first)];
-      std::sort(row.begin(), row.end());
-      for (const auto &[j, entry] : row)
-        {
-          column.push_back(j);
-          value.push_back(entry);
-        }
-      start.push_back(column.size());
-    });
+    if (A.halo() == nullptr)
+      return A.by_place();
+    return filled(A.rows().n_local(), A.n_columns(), [&](const int i, SparseMatrix::Row &row) { A.get_row(i, row); });
   }
 } // namespace Squeal

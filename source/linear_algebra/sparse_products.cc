@@ -4,7 +4,13 @@
 
 #include <deal.II/base/aligned_vector.h>
 
-#include <algorithm>
+// The program is compiled for any processor of its family. A function marked so is compiled for newer ones, too; which of its versions runs is
+// chosen when the program starts. What it calls has to be inlined, or is compiled for the oldest processor.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#  define SQUEAL_PROCESSORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#  define SQUEAL_PROCESSORS
+#endif
 
 namespace Squeal
 {
@@ -13,162 +19,91 @@ namespace Squeal
     /// Rows of a product that are a task.
     constexpr int rows_of_task = 2048;
 
-    /// Y = A X for a few columns, whose rows are put side by side so that the entries of A are read once for all of them.
+    /// Entries of a row of some vectors, in a register of the processor.
+    constexpr int  lanes = 8;
+    typedef double Lanes __attribute__((vector_size(lanes * sizeof(double))));
+
+    /// Rows [first, end) of A X, @p width registers for a row of X.
     template <int width>
-    void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
+    __attribute__((always_inline)) inline void rows_of_product(const int     first,
+                                                               const int     end,
+                                                               const int    *start,
+                                                               const int    *column,
+                                                               const double *value,
+                                                               const Lanes  *X,
+                                                               Lanes        *Y)
     {
-      const int                             n_columns = static_cast<int>(X.cols());
-      dealii::AlignedVector<LaneRow<width>> rows, image;
-      rows.resize_fast(X.rows());
-      image.resize_fast(A.n_rows);
-      run_parts(static_cast<int>(X.rows()), rows_of_task, [&](const int first, const int n_rows) {
-        to_lanes(X.data() + first, X.outerStride(), n_rows, n_columns, rows.data() + first);
-      });
-      run_parts(A.n_rows, rows_of_task, [&](const int first, const int n_rows) {
-        set_products({n_rows, A.start + first, A.column, A.value}, rows.data(), image.data() + first);
-        from_lanes(image.data() + first, Y.data() + first, Y.outerStride(), n_rows, n_columns);
-      });
-    }
-
-    /// The same for one column.
-    void multiply_column(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
-    {
-      run_parts(A.n_rows, rows_of_task, [&](const int first, const int n_rows) {
-        for (int i = first; i < first + n_rows; ++i)
-          {
-            double sum = 0.;
-            for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-              sum += A.value[k] * X(A.column[k], 0);
-            Y(i, 0) = sum;
-          }
-      });
-    }
-
-    /**
-     * Rows [first, last) of a matrix of which each is a sum of multiples of rows of others (F. G. Gustavson, ACM Trans. Math. Softw.
-     * 4 (1978) 250).
-     *
-     * @param add_rows calls add(factor, matrix, row) for each of them
-     */
-    template <typename AddRows>
-    RowArrays some_rows(const int first, const int last, const int n_columns, const AddRows &add_rows)
-    {
-      RowArrays           result{{0}, {}, {}};
-      std::vector<double> sums(n_columns, 0.);
-      std::vector<int>    last_row(n_columns, -1), columns; // in which a column occurred
-      for (int i = first; i < last; ++i)
+      for (int i = first; i < end; ++i)
         {
-          columns.clear();
-          add_rows(i, [&](const double factor, const SparseRows &B, const int row) {
-            for (int p = B.start[row]; p < B.start[row + 1]; ++p)
+          // Two sums side by side, since one has to wait for its last addition
+          Lanes even[width] = {}, odd[width] = {};
+          int   k = start[i];
+          for (; k + 1 < start[i + 1]; k += 2)
+            for (int w = 0; w < width; ++w)
               {
-                const int j = B.column[p];
-                if (last_row[j] != i)
-                  {
-                    last_row[j] = i;
-                    sums[j]     = 0.;
-                    columns.push_back(j);
-                  }
-                sums[j] += factor * B.value[p];
+                even[w] += value[k] * X[std::size_t(column[k]) * width + w];
+                odd[w] += value[k + 1] * X[std::size_t(column[k + 1]) * width + w];
               }
-          });
-          std::sort(columns.begin(), columns.end());
-          for (const int j : columns)
-            result.value.push_back(sums[j]);
-          result.column.insert(result.column.end(), columns.begin(), columns.end());
-          result.start.push_back(static_cast<int>(result.column.size()));
+          for (int w = 0; w < width; ++w)
+            Y[std::size_t(i) * width + w] =
+              even[w] + odd[w] + (k < start[i + 1] ? value[k] * X[std::size_t(column[k]) * width + w] : Lanes{});
         }
-      return result;
     }
 
-    /// All rows, some of them a task.
-    template <typename AddRows>
-    RowArrays all_rows(const int n_rows, const int n_columns, const AddRows &add_rows)
+    SQUEAL_PROCESSORS void multiply_8(const int     first,
+                                      const int     end,
+                                      const int    *start,
+                                      const int    *column,
+                                      const double *value,
+                                      const Lanes  *X,
+                                      Lanes        *Y)
     {
-      std::vector<RowArrays> parts((n_rows + rows_of_task - 1) / rows_of_task);
-      run_tasks(static_cast<int>(parts.size()), [&](const int part) {
-        parts[part] = some_rows(part * rows_of_task, std::min(n_rows, (part + 1) * rows_of_task), n_columns, add_rows);
-      });
-      RowArrays   result{{0}, {}, {}};
-      std::size_t n_entries = 0;
-      for (const RowArrays &part : parts)
-        n_entries += part.column.size();
-      result.column.reserve(n_entries);
-      result.value.reserve(n_entries);
-      for (RowArrays &part : parts)
-        {
-          const int before = result.start.back();
-          std::transform(part.start.begin() + 1, part.start.end(), std::back_inserter(result.start),
-                         [&](const int end) { return before + end; });
-          result.column.insert(result.column.end(), part.column.begin(), part.column.end());
-          result.value.insert(result.value.end(), part.value.begin(), part.value.end());
-          part = {};
-        }
-      return result;
+      rows_of_product<1>(first, end, start, column, value, X, Y);
+    }
+
+    SQUEAL_PROCESSORS void multiply_16(const int     first,
+                                       const int     end,
+                                       const int    *start,
+                                       const int    *column,
+                                       const double *value,
+                                       const Lanes  *X,
+                                       Lanes        *Y)
+    {
+      rows_of_product<2>(first, end, start, column, value, X, Y);
     }
   } // namespace
 
-  RowArrays transposed(const SparseRows &A, const int n_columns)
-  {
-    const int n_entries = A.start[A.n_rows];
-    RowArrays result{std::vector<int>(n_columns + 1, 0), std::vector<int>(n_entries), std::vector<double>(n_entries)};
-    for (int p = 0; p < n_entries; ++p)
-      ++result.start[A.column[p] + 1];
-    for (int j = 0; j < n_columns; ++j)
-      result.start[j + 1] += result.start[j];
-    std::vector<int> next = result.start;
-    for (int i = 0; i < A.n_rows; ++i)
-      for (int p = A.start[i]; p < A.start[i + 1]; ++p)
-        {
-          const int place      = next[A.column[p]]++;
-          result.column[place] = i;
-          result.value[place]  = A.value[p];
-        }
-    return result;
-  }
-
-  RowArrays product(const SparseRows &A, const SparseRows &B, const int n_columns)
-  {
-    return all_rows(A.n_rows, n_columns, [&](const int i, const auto &add) {
-      for (int p = A.start[i]; p < A.start[i + 1]; ++p)
-        add(A.value[p], B, A.column[p]);
-    });
-  }
-
-  RowArrays sum(const std::vector<std::pair<double, SparseRows>> &summands, const int n_columns)
-  {
-    return all_rows(summands.front().second.n_rows, n_columns, [&](const int i, const auto &add) {
-      for (const auto &[factor, A] : summands)
-        add(factor, A, i);
-    });
-  }
-
   void multiply_rows(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
   {
-    const Eigen::Index n = X.cols();
     // To put rows of X side by side would cost more than the product
-    if (A.start[A.n_rows] < X.rows())
+    if (X.cols() == 1 || A.nonZeros() < X.rows())
       {
-        run_tasks(static_cast<int>(n), [&](const int j) { multiply_column(A, X.col(j), Y.col(j)); });
+        run_parts(A.rows(), rows_of_task, [&](const int first, const int n) { Y.middleRows(first, n) = A.middleRows(first, n) * X; });
         return;
       }
-    Eigen::Index width;
-    for (Eigen::Index first = 0; first < n; first += width)
+    // Rows of some columns side by side, so that the entries of A are read once for all of them
+    using SideBySide   = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, Eigen::Aligned64>;
+    constexpr int most = 2 * lanes;
+    for (Eigen::Index first_column = 0; first_column < X.cols(); first_column += most)
       {
-        width                    = std::min<Eigen::Index>(n - first, 16);
-        const auto multiply_some = width == 1 ? multiply_column : width <= 8 ? multiply_columns<8> : multiply_columns<16>;
-        multiply_some(A, X.middleCols(first, width), Y.middleCols(first, width));
+        const Eigen::Index           n_columns = std::min<Eigen::Index>(X.cols() - first_column, most);
+        const int                    width     = n_columns <= lanes ? 1 : 2;
+        dealii::AlignedVector<Lanes> rows(X.rows() * width), image;
+        image.resize_fast(A.rows() * width);
+        SideBySide x(reinterpret_cast<double *>(rows.data()), X.rows(), lanes * width);
+        SideBySide y(reinterpret_cast<double *>(image.data()), A.rows(), lanes * width);
+        run_parts(X.rows(), rows_of_task,
+                  [&](const int first, const int n) { x.block(first, 0, n, n_columns) = X.block(first, first_column, n, n_columns); });
+        run_parts(A.rows(), rows_of_task, [&](const int first, const int n) {
+          (width == 1 ? multiply_8 : multiply_16)(first, first + n, A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr(), rows.data(),
+                                                  image.data());
+          Y.block(first, first_column, n, n_columns) = y.block(first, 0, n, n_columns);
+        });
       }
   }
 
   void multiply_transpose(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
   {
-    run_tasks(static_cast<int>(X.cols()), [&](const int j) {
-      auto y = Y.col(j);
-      y.setZero();
-      for (int i = 0; i < A.n_rows; ++i)
-        for (int k = A.start[i]; k < A.start[i + 1]; ++k)
-          y(A.column[k]) += A.value[k] * X(i, j);
-    });
+    run_tasks(static_cast<int>(X.cols()), [&](const int j) { Y.col(j) = A.transpose() * X.col(j); });
   }
 } // namespace Squeal

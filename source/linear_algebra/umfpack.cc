@@ -17,7 +17,7 @@ namespace Squeal
       UmfpackFactorization(const SparseMatrix &A, const std::string &what)
         : row_map(A.rows())
         , what(what)
-        , rows(A)
+        , rows(A.by_place())
         , info(UMFPACK_INFO)
         , control(UMFPACK_CONTROL)
       {
@@ -28,12 +28,12 @@ namespace Squeal
         control[UMFPACK_IRSTEP] = 0;
 
         void     *symbolic   = nullptr;
-        const int analysed   = umfpack_di_symbolic(rows.n_rows, rows.n_rows, rows.start.data(), rows.column.data(), rows.value.data(),
+        const int analysed   = umfpack_di_symbolic(rows.rows(), rows.rows(), rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr(),
                                                    &symbolic, control.data(), info.data());
         int       factorised = UMFPACK_OK;
         if (analysed == UMFPACK_OK)
-          factorised =
-            umfpack_di_numeric(rows.start.data(), rows.column.data(), rows.value.data(), symbolic, &numeric, control.data(), info.data());
+          factorised = umfpack_di_numeric(rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr(), symbolic, &numeric, control.data(),
+                                          info.data());
         umfpack_di_free_symbolic(&symbolic);
 
         const bool singular = factorised == UMFPACK_WARNING_singular_matrix ||
@@ -81,13 +81,13 @@ namespace Squeal
     private:
       void solve(const int system, const MultiVector &X, MultiVector &Y) const
       {
-        std::vector<int>    integers(rows.n_rows);
-        std::vector<double> reals(5 * static_cast<std::size_t>(rows.n_rows)), solve_info(UMFPACK_INFO);
+        std::vector<int>    integers(rows.rows());
+        std::vector<double> reals(5 * static_cast<std::size_t>(rows.rows())), solve_info(UMFPACK_INFO);
         for (int j = 0; j < X.n_columns(); ++j)
           {
             const int status =
-              umfpack_di_wsolve(system, rows.start.data(), rows.column.data(), rows.value.data(), Y.col(j).data(), X.col(j).data(), numeric,
-                                control.data(), solve_info.data(), integers.data(), reals.data());
+              umfpack_di_wsolve(system, rows.outerIndexPtr(), rows.innerIndexPtr(), rows.valuePtr(), Y.col(j).data(), X.col(j).data(),
+                                numeric, control.data(), solve_info.data(), integers.data(), reals.data());
             if (status != UMFPACK_OK)
               throw_library_failure("UMFPACK", "status " + std::to_string(status) + " while solving", what);
           }
@@ -95,7 +95,7 @@ namespace Squeal
 
       const RowMap        row_map;
       const std::string   what;
-      const LocalRows     rows;
+      const SparseRows    rows;
       std::vector<double> info, control;
       void               *numeric = nullptr;
     };

@@ -242,7 +242,7 @@ namespace Squeal
     int n_own = 0;
     for (const auto dof : own)
       n_own += !clamped.is_element(dof);
-    map               = RowMap::contiguous(n_own, communicator());
+    map               = RowMap(n_own, communicator());
     int        number = n_own > 0 ? map.number(0) : 0;
     DofNumbers numbers(own, relevant, communicator());
     for (const auto dof : own)

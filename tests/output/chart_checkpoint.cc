@@ -65,17 +65,6 @@ namespace
     return {friction, {}, line};
   }
 
-  /// The rows dealt out to the processes as cards are, in descending order: unlike an even distribution even on one process.
-  RowMap dealt_rows()
-  {
-    const RowMap     even = RowMap::even(n_rows, MPI_COMM_WORLD);
-    std::vector<int> mine;
-    for (int i = n_rows - 1; i >= 0; --i)
-      if (i % even.n_processes() == even.rank())
-        mine.push_back(i);
-    return RowMap::of(mine, MPI_COMM_WORLD);
-  }
-
   class ChartCheckpoints : public ::testing::Test
   {
   protected:
@@ -126,7 +115,7 @@ namespace
 TEST_F(ChartCheckpoints, ReturnEveryBit)
 {
   keep_some();
-  for (const RowMap &map : {rows, dealt_rows(), Testing::rows(n_rows, Testing::Distribution::last_process_all)})
+  for (const RowMap &map : {rows, Testing::rows(n_rows, Testing::Distribution::last_process_all)})
     {
       ChartCheckpoint kept = checkpoint();
       EXPECT_EQ(kept.n_found(), 3);

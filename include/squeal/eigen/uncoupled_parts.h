@@ -1,6 +1,5 @@
 #pragma once
 
-#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <memory>
@@ -8,15 +7,17 @@
 
 namespace Squeal
 {
-  /**
-   * Rows of a square symmetric matrix that belong together: the connected parts of its graph, in the order of their first rows.
-   * Of each the map of its rows, which bear the same global numbers and stay where they are.
-   */
-  std::vector<RowMap> uncoupled_parts(const SparseMatrix &A);
+  /// Rows of a matrix that nothing couples with others; they stay on their processes.
+  struct UncoupledPart
+  {
+    RowMap                                  map;
+    std::vector<int>                        places;  ///< of its rows among those of this process
+    std::shared_ptr<const std::vector<int>> numbers; ///< of all rows of the matrix, each in its part
+  };
+
+  /// The connected parts of the graph of a square symmetric matrix, in the order of their first rows.
+  std::vector<UncoupledPart> uncoupled_parts(const SparseMatrix &A);
 
   /// Rows and columns of @p A in one of its uncoupled parts.
-  std::shared_ptr<SparseMatrix> part(const SparseMatrix &A, const RowMap &rows);
-
-  /// Copies vectors of a part into columns @p first, ... of @p target, which lives on all rows.
-  void insert_part(const MultiVector &vectors, int first, MultiVector &target);
+  std::shared_ptr<SparseMatrix> matrix_of(const UncoupledPart &part, const SparseMatrix &A);
 } // namespace Squeal

@@ -120,9 +120,6 @@ namespace Squeal
   /// Y = alpha X S + beta Y; X and Y must not share memory.
   void multiply_add(double alpha, const MultiVector &X, const DenseMatrix &S, double beta, MultiVector &Y);
 
-  /// Y −= X S; returns XᵀY of the difference. X is read once for both.
-  DenseMatrix subtract_then_gram(const MultiVector &X, const DenseMatrix &S, MultiVector &Y);
-
   /// X S.
   MultiVector operator*(const MultiVector &X, const DenseMatrix &S);
 

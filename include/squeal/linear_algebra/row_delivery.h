@@ -1,45 +1,59 @@
 #pragma once
 
-#include <mpi.h>
+#include <squeal/linear_algebra/dense.h>
+#include <squeal/linear_algebra/row_map.h>
 
-#include <cstddef>
+#include <map>
 #include <vector>
 
 namespace Squeal
 {
   /**
-   * Brings rows of vectors that a library has left on any process to the processes that own them. Rows are numbered without gaps
-   * over all processes, those of process 0 first. Who sends what to whom is found once; all processes must call.
+   * Brings rows of vectors from where they are to where they are wanted: from any process to those that own them, and back. Who sends what
+   * to whom is found once; all processes must call.
    */
   class RowDelivery
   {
   public:
-    /**
-     * @param numbers   of the rows here, in the order in which they lie; every row is on one process
-     * @param first_row number of the first row that this process owns
-     * @param n_rows    that it owns
-     */
-    RowDelivery(std::vector<int> numbers, int first_row, int n_rows, MPI_Comm communicator);
+    /// @param numbers of the rows here, in the order in which they lie; several processes may have the same
+    RowDelivery(const std::vector<int> &numbers, const RowMap &owners);
 
-    /// Numbers of the rows here.
-    const std::vector<int> &rows() const
+    /// Whether no process has a row here.
+    bool empty() const
     {
-      return numbers;
+      return nothing;
     }
 
-    /// Y = the own rows of vectors of which X has those that are here; @p X_stride and @p Y_stride are the distances of columns.
-    void deliver(const double *X, std::size_t X_stride, double *Y, std::size_t Y_stride, int n_columns) const;
+    /// Own rows become those that are here.
+    void deliver(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
+    {
+      exchange(places_here, here, places_owned, own, false);
+    }
+
+    /// The same, but what is here is added to the own rows, process after process.
+    void add(const Eigen::Ref<const DenseMatrix> &here, Eigen::Ref<DenseMatrix> own) const
+    {
+      exchange(places_here, here, places_owned, own, true);
+    }
+
+    /// Rows here become those of their owners.
+    void fetch(const Eigen::Ref<const DenseMatrix> &own, Eigen::Ref<DenseMatrix> here) const
+    {
+      exchange(places_owned, own, places_here, here, false);
+    }
 
   private:
-    /// Rows that are sent or received: one process after the other.
-    struct Messages
-    {
-      std::vector<int> counts, offsets; ///< of each process
-      std::vector<int> places;          ///< of the rows among those here, or among the own ones
-    };
+    /// Of the rows that are exchanged with each process.
+    using Places = std::map<unsigned int, std::vector<int>>;
 
-    const std::vector<int> numbers;
-    const MPI_Comm         communicator;
-    Messages               sent, received;
+    void exchange(const Places                        &from,
+                  const Eigen::Ref<const DenseMatrix> &X,
+                  const Places                        &to,
+                  Eigen::Ref<DenseMatrix>              Y,
+                  bool                                 adding) const;
+
+    MPI_Comm communicator;
+    Places   places_here, places_owned;
+    bool     nothing;
   };
 } // namespace Squeal

@@ -2,17 +2,13 @@
 
 #include <mpi.h>
 
-#include <memory>
 #include <vector>
-
-class Epetra_Map;
 
 namespace Squeal
 {
   /**
-   * Which rows of distributed vectors and matrices each process has: every row
-   * has a number and belongs to one process, where it has a place 0, 1, ....
-   * Copies share their data.
+   * Which rows of distributed vectors and matrices each process has: rows 0, 1, ... in pieces, that of process 0 first. A row has a number
+   * among all, and a place 0, 1, ... among those of its process.
    */
   class RowMap
   {
@@ -20,41 +16,70 @@ namespace Squeal
     /// No rows.
     RowMap() = default;
 
-    /// Rows 0, ..., n - 1 in pieces of nearly equal size.
+    /// @p n_local rows on this process. All processes must call.
+    RowMap(int n_local, MPI_Comm communicator);
+
+    /// @p n rows in pieces of nearly equal size.
     static RowMap even(int n, MPI_Comm communicator);
 
-    /// @p n_local rows on this process, numbered from 0 in the order of the processes.
-    static RowMap contiguous(int n_local, MPI_Comm communicator);
-
-    /// The rows with these numbers, ≥ 0, on this process.
-    static RowMap of(const std::vector<int> &numbers, MPI_Comm communicator);
-
     /// Rows of all processes.
-    int n() const;
+    int n() const
+    {
+      return starts.back();
+    }
 
     /// Rows of this process.
-    int n_local() const;
+    int n_local() const
+    {
+      return starts[process + 1] - starts[process];
+    }
+
+    /// Number of the first row of this process.
+    int first() const
+    {
+      return starts[process];
+    }
 
     /// Number of the row at a place of this process.
-    int number(int place) const;
+    int number(const int place) const
+    {
+      return first() + place;
+    }
 
     /// Place of a row; -1 if it belongs to another process or the number is negative.
-    int place(int number) const;
+    int place(const int number) const
+    {
+      return number >= first() && number < first() + n_local() ? number - first() : -1;
+    }
 
-    MPI_Comm communicator() const;
+    /// The process that has a row.
+    int owner(int number) const;
+
+    MPI_Comm communicator() const
+    {
+      return processes;
+    }
 
     /// This process among those of the communicator.
-    int rank() const;
-    int n_processes() const;
+    int rank() const
+    {
+      return process;
+    }
 
-    /// Whether all processes have the same rows in the same order. All processes must call.
-    bool operator==(const RowMap &other) const;
+    int n_processes() const
+    {
+      return static_cast<int>(starts.size()) - 1;
+    }
 
-    /// For linear_algebra/ alone.
-    explicit RowMap(const Epetra_Map &map);
-    const Epetra_Map &implementation() const;
+    /// Whether all processes have the same rows.
+    bool operator==(const RowMap &other) const
+    {
+      return starts == other.starts;
+    }
 
   private:
-    std::shared_ptr<const Epetra_Map> map;
+    MPI_Comm         processes = MPI_COMM_SELF;
+    int              process   = 0;
+    std::vector<int> starts    = {0, 0}; ///< number of the first row of each process, and of all rows
   };
 } // namespace Squeal

@@ -2,19 +2,20 @@
 
 #include <squeal/linear_algebra/linear_operator.h>
 
+#include <Eigen/SparseCore>
+
 #include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-class Epetra_CrsMatrix;
-
 namespace Squeal
 {
-  struct RowArrays;
+  /// Rows of a sparse matrix on one process; columns ascend in each.
+  using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  /// A sparse matrix: distributed by rows, constant once it is there. Of one process it is arrays of rows, of several a matrix of Epetra.
+  /// A sparse matrix, distributed by rows, constant once it is there.
   class SparseMatrix : public LinearOperator
   {
   public:
@@ -28,17 +29,23 @@ namespace Squeal
      */
     SparseMatrix(const RowMap &rows, const RowMap &columns, const std::function<void(int place, Row &row)> &fill);
 
-    /// For linear_algebra/ alone: of several processes; throws SolverError if rows and results are distributed differently.
-    explicit SparseMatrix(std::unique_ptr<Epetra_CrsMatrix> matrix);
+    /// From the rows of this process, with the columns of all. All processes must call.
+    SparseMatrix(const RowMap &rows, const RowMap &columns, SparseRows by_number);
 
-    /// For linear_algebra/ alone: of one process, columns by their places and ascending in each row.
-    SparseMatrix(const RowMap &rows, const RowMap &columns, RowArrays entries);
+    /// Columns that the rows here have and other processes own.
+    struct Halo;
 
-    /// For linear_algebra/ alone: where several processes share the matrix.
-    const Epetra_CrsMatrix &implementation() const;
+    /// For linear_algebra/ alone: rows of this process, columns by their places; those of the halo are behind the own ones.
+    const SparseRows &by_place() const
+    {
+      return local;
+    }
 
-    /// For linear_algebra/ alone: where one process has the matrix; else null.
-    const RowArrays *entries() const;
+    /// For linear_algebra/ alone: null where one process has the matrix.
+    const Halo *halo() const
+    {
+      return columns_elsewhere.get();
+    }
 
     ~SparseMatrix() override;
     SparseMatrix(const SparseMatrix &)            = delete;
@@ -65,6 +72,7 @@ namespace Squeal
       return column_map.n();
     }
 
+    /// Of all processes.
     long long n_entries() const;
 
     MPI_Comm communicator() const
@@ -94,9 +102,9 @@ namespace Squeal
   private:
     void multiply(bool transposed, const MultiVector &X, MultiVector &Y) const;
 
-    std::unique_ptr<const Epetra_CrsMatrix> matrix; ///< of several processes
-    std::unique_ptr<const RowArrays>        arrays; ///< of one process
-    RowMap                                  row_map, column_map;
+    std::unique_ptr<const Halo> columns_elsewhere;
+    SparseRows                  local;
+    RowMap                      row_map, column_map;
   };
 
   /// A X.
@@ -151,20 +159,6 @@ namespace Squeal
    */
   std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 
-  /**
-   * The local rows of a matrix with rows and columns numbered without gaps over
-   * all processes: those of process 0 first, then those of process 1, and so
-   * on, in the order of the local entries of vectors. Columns ascend in a row.
-   */
-  struct LocalRows
-  {
-    explicit LocalRows(const SparseMatrix &A);
-
-    int                 first_row; ///< number of the first local row
-    int                 n_rows;    ///< of all processes
-    int                 n_columns; ///< of all processes
-    std::vector<int>    start;     ///< start[i], ..., start[i+1]: entries of local row i
-    std::vector<int>    column;
-    std::vector<double> value;
-  };
+  /// Rows of this process with the columns of all.
+  SparseRows local_rows(const SparseMatrix &A);
 } // namespace Squeal
