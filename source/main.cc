@@ -3,7 +3,7 @@
 #include <squeal/base/command_line.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/mpi_environment.h>
-#include <squeal/base/resident_memory.h>
+#include <squeal/base/memory.h>
 #include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/parameters/parameters.h>
@@ -16,10 +16,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <new>
@@ -82,15 +80,6 @@ Decides whether a disc rubbed by friction pins squeals.
     run_study(run);
   }
 
-  /// Whether a library or this program could not start a thread.
-  bool is_limit_of_threads(const std::exception &error)
-  {
-    const auto *system = dynamic_cast<const std::system_error *>(&error);
-    // TBB throws the text alone
-    return (system != nullptr && system->code() == std::errc::resource_unavailable_try_again) ||
-           std::string(error.what()).find(std::strerror(EAGAIN)) != std::string::npos;
-  }
-
   /// Closed standard streams become /dev/null: files and pipes opened later would take their numbers, and what is printed.
   void open_closed_streams()
   {
@@ -122,12 +111,14 @@ Decides whether a disc rubbed by friction pins squeals.
         return "the memory is exhausted\n  where:  this machine, or the limit of this process\n"
                "  change: take larger elements or fewer layers, a lower frequency, or more processes on more machines";
       }
+    catch (const std::system_error &error)
+      {
+        return std::string("the system refuses something: ") + error.what() +
+               "\n  where:  this machine, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
+               "  change: take fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
+      }
     catch (const std::exception &error)
       {
-        if (is_limit_of_threads(error))
-          return std::string("a thread cannot be started: ") + std::strerror(EAGAIN) +
-                 "\n  where:  this machine, or the limits of this process on threads (ulimit -u) and memory (ulimit -v)\n"
-                 "  change: take fewer threads, OMP_NUM_THREADS=1 or Linear algebra/Threads = 1, or raise the limit";
         return std::string(error.what()) + "\n  where:  a library" + defect;
       }
   }

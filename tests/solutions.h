@@ -16,13 +16,10 @@
 
 #include <algorithm>
 #include <complex>
-#include <limits>
 #include <vector>
 
 namespace Squeal::Testing
 {
-  using Complex = std::complex<double>;
-
   // ------------------------------------------------------------------ scenes
 
   /// End of the band of the scenes [rad/s].
@@ -139,28 +136,6 @@ namespace Squeal::Testing
   }
 
   // ------------------------------------------------------------- comparisons
-
-  /// For each of @p values the relative distance to its own neighbour in @p others; as many must there be.
-  inline std::vector<double> distances(const std::vector<Complex> &values, std::vector<Complex> others)
-  {
-    EXPECT_EQ(values.size(), others.size());
-    std::vector<double> result;
-    if (values.size() != others.size())
-      return result;
-    for (const Complex &value : values)
-      {
-        const auto nearest = std::min_element(
-          others.begin(), others.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - value) < std::abs(b - value); });
-        result.push_back(std::abs(*nearest - value) / std::abs(value));
-        others.erase(nearest);
-      }
-    return result;
-  }
-
-  inline double largest(const std::vector<double> &values)
-  {
-    return values.empty() ? std::numeric_limits<double>::infinity() : *std::max_element(values.begin(), values.end());
-  }
 
   inline int n_unstable(const ComplexModes &modes)
   {

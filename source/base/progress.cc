@@ -1,5 +1,5 @@
 #include <squeal/base/progress.h>
-#include <squeal/base/resident_memory.h>
+#include <squeal/base/memory.h>
 
 #include <sys/resource.h>
 

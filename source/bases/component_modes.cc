@@ -1,9 +1,10 @@
 #include <squeal/base/assignment.h>
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <algorithm>
-#include <functional>
+#include <complex>
 #include <map>
 
 namespace Squeal
@@ -77,41 +78,15 @@ namespace Squeal
                            options);
   }
 
-  namespace
-  {
-    /// Adds the shares of the modes of a set, from their products with real and imaginary parts, divided by @p norms.
-    void add_shares(const ComponentModes      &reference,
-                    const DenseMatrix         &re,
-                    const DenseMatrix         &im,
-                    const std::vector<double> &norms,
-                    std::vector<ShapeShares>  &shares)
-    {
-      for (int j = 0; j < re.cols(); ++j)
-        for (int i = 0; i < re.rows(); ++i)
-          shares[j][reference.labels[i].shape()] += (re(i, j) * re(i, j) + im(i, j) * im(i, j)) / norms[j];
-    }
-  } // namespace
-
   std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,
                                         const SparseMatrix                        &mass,
                                         const MultiVector                         &real_part,
                                         const MultiVector                         *imaginary_part)
   {
-    const int         n_modes = real_part.n_columns();
-    const MultiVector M_re    = mass * real_part;
-    const MultiVector M_im    = imaginary_part ? mass * *imaginary_part : MultiVector(real_part.map(), n_modes);
-
-    std::vector<double> norms = column_products(real_part, M_re);
-    if (imaginary_part)
-      {
-        const auto of_imaginary = column_products(*imaginary_part, M_im);
-        std::transform(norms.begin(), norms.end(), of_imaginary.begin(), norms.begin(), std::plus<>());
-      }
-    std::vector<ShapeShares> shares(n_modes);
-    for (const ComponentModes *reference : references)
-      if (reference->vectors)
-        add_shares(*reference, gram(*reference->vectors, M_re), gram(*reference->vectors, M_im), norms, shares);
-    return shares;
+    const MultiVector zero(real_part.map(), imaginary_part ? 0 : real_part.n_columns());
+    const MultiVector X   = join({&real_part, imaginary_part ? imaginary_part : &zero});
+    const DenseMatrix one = DenseMatrix::Identity(X.n_columns(), X.n_columns());
+    return shape_shares(references, products_with(references, mass, X), weighted_gram(X, mass), one);
   }
 
   std::vector<DenseMatrix> products_with(const std::vector<const ComponentModes *> &references,
@@ -136,7 +111,9 @@ namespace Squeal
     for (std::size_t i = 0; i < references.size(); ++i)
       {
         const DenseMatrix of_modes = products[i] * coordinates;
-        add_shares(*references[i], of_modes.leftCols(k), of_modes.rightCols(k), {sums.begin(), sums.end()}, shares);
+        for (Eigen::Index j = 0; j < k; ++j)
+          for (Eigen::Index v = 0; v < of_modes.rows(); ++v)
+            shares[j][references[i]->labels[v].shape()] += (std::norm(of_modes(v, j)) + std::norm(of_modes(v, k + j))) / sums[j];
       }
     return shares;
   }

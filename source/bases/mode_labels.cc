@@ -11,6 +11,55 @@
 
 namespace Squeal
 {
+  bool operator==(const ModeLabel &a, const ModeLabel &b)
+  {
+    return a.shape() == b.shape() && a.sign == b.sign;
+  }
+
+  namespace
+  {
+    std::string text_of(const ModeLabel &label, const char *minus, const char *plus)
+    {
+      std::string text = to_string(label.family);
+      if (label.is_of_pins())
+        text += std::to_string(label.rank);
+      else if (label.family != ModeFamily::unnamed && label.family != ModeFamily::rigid_body)
+        text += std::to_string(label.nodal_circles) + "-" + std::to_string(label.nodal_diameters);
+      return text + (label.sign == DoubletSign::none ? "" : label.sign == DoubletSign::minus ? minus : plus);
+    }
+  } // namespace
+
+  std::string to_string(const ModeLabel &label)
+  {
+    return text_of(label, " -", " +");
+  }
+
+  std::string file_text(const ModeLabel &label)
+  {
+    return text_of(label, "_minus", "_plus");
+  }
+
+  std::string shape_text(ModeLabel label)
+  {
+    label.sign = DoubletSign::none;
+    return to_string(label);
+  }
+
+  void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates)
+  {
+    std::map<ModeShape, std::vector<std::size_t>> places;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      if (labels[i].family != ModeFamily::unnamed)
+        places[labels[i].shape()].push_back(i);
+    for (const auto &[shape, modes] : places)
+      if (modes.size() == 2)
+        {
+          const bool first_grows_more           = !growth_rates.empty() && growth_rates[modes[0]] > growth_rates[modes[1]];
+          labels[modes[!first_grows_more]].sign = DoubletSign::plus;
+          labels[modes[first_grows_more]].sign  = DoubletSign::minus;
+        }
+  }
+
   namespace
   {
     /// Norm of what projection leaves of a function r^k e^{inθ}, over its norm, up to which the others span it: well above rounding errors.
@@ -33,21 +82,22 @@ namespace Squeal
        * @param weights    n_nodes
        */
       Projection(const MPI_Comm communicator, const DenseMatrix &functions, const Eigen::VectorXd &weights)
-        : roots(weights.cwiseSqrt())
+        : communicator(communicator)
+        , roots(weights.cwiseSqrt())
         , Q(roots.asDiagonal() * functions)
         , R(DenseMatrix::Identity(functions.cols(), functions.cols()))
       {
         // Gram-Schmidt, twice; functions that others span (r^k on a single radius) are dropped
         for (Eigen::Index j = 0; j < Q.cols(); ++j)
           {
-            const double before = norm(communicator, j);
+            const double before = norm(j);
             for (int pass = 0; pass < 2 && j > 0; ++pass)
               {
                 const Eigen::VectorXd c = summed(communicator, Q.leftCols(j).transpose() * Q.col(j));
                 R.col(j).head(j) += c;
                 Q.col(j).noalias() -= Q.leftCols(j) * c;
               }
-            const double after = norm(communicator, j);
+            const double after = norm(j);
             if (after / before > smallest_rest)
               {
                 R(j, j) = after;
@@ -58,18 +108,10 @@ namespace Squeal
           }
       }
 
-      int n_functions() const
+      /// Orthonormal coefficients of fields, n_functions × k; the sum of their squares is the energy of the projection.
+      DenseMatrix coefficients(const DenseMatrix &fields) const
       {
-        return static_cast<int>(Q.cols());
-      }
-
-      /**
-       * What the nodes of this process add to the orthonormal coefficients of fields, n_functions × k. The squares of their sums over the
-       * processes are the energy of the projection.
-       */
-      DenseMatrix coefficients_here(const DenseMatrix &fields) const
-      {
-        return Q.transpose() * (roots.asDiagonal() * fields);
+        return summed(communicator, Q.transpose() * (roots.asDiagonal() * fields));
       }
 
       /// Factors of the functions from orthonormal coefficients.
@@ -79,11 +121,12 @@ namespace Squeal
       }
 
     private:
-      double norm(const MPI_Comm communicator, const Eigen::Index j) const
+      double norm(const Eigen::Index j) const
       {
         return std::sqrt(summed(communicator, DenseMatrix::Constant(1, 1, Q.col(j).squaredNorm()))(0, 0));
       }
 
+      MPI_Comm        communicator;
       Eigen::VectorXd roots; ///< of the weights
       DenseMatrix     Q, R;  ///< functions times roots = Q R; dropped ones are zero in Q and have ones on the diagonal of R
     };
@@ -187,39 +230,9 @@ namespace Squeal
         return fields;
       }
 
-      /// Orthonormal coefficients of fields, those of one harmonic after those of the other.
-      std::vector<DenseMatrix> coefficients(const DenseMatrix &fields) const
-      {
-        std::vector<DenseMatrix> result;
-        int                      n = 0;
-        for (const Projection &harmonic : harmonics)
-          {
-            result.push_back(harmonic.coefficients_here(fields));
-            n += harmonic.n_functions();
-          }
-        // One sum over the processes for all
-        DenseMatrix all(n, fields.cols());
-        n = 0;
-        for (const DenseMatrix &part : result)
-          {
-            all.middleRows(n, part.rows()) = part;
-            n += static_cast<int>(part.rows());
-          }
-        all = summed(disc.communicator, all);
-        n   = 0;
-        for (DenseMatrix &part : result)
-          {
-            part = DenseMatrix(all.middleRows(n, part.rows()));
-            n += static_cast<int>(part.rows());
-          }
-        return result;
-      }
-
       /**
-       * Sign changes of the radial profile of harmonic n. The projection is
-       * sampled in narrow rings: in each, its cosine and sine amplitude; the
-       * nodal line pattern may be turned, so the amplitudes are taken along
-       * their common direction in the cosine-sine plane.
+       * Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their common direction in
+       * the cosine-sine plane, as the nodal line pattern may be turned.
        */
       int nodal_circles(const Eigen::VectorXd &coefficients, const int n) const
       {
@@ -228,9 +241,7 @@ namespace Squeal
         const DenseMatrix     radial    = powers(Eigen::VectorXd::LinSpaced(n_samples, -1., 1.), n_radial_functions);
         const Eigen::VectorXd factors   = harmonics[n].factors(coefficients);
         const Eigen::VectorXd a         = radial * factors.head(n_radial_functions);
-        Eigen::VectorXd       b         = Eigen::VectorXd::Zero(n_samples);
-        if (n > 0)
-          b = radial * factors.tail(n_radial_functions);
+        const Eigen::VectorXd b = n > 0 ? Eigen::VectorXd(radial * factors.tail(n_radial_functions)) : Eigen::VectorXd::Zero(n_samples);
 
         // Common direction: dominant axis of Σ (a, b)ᵀ(a, b)
         const double          angle     = 0.5 * std::atan2(2. * a.dot(b), a.squaredNorm() - b.squaredNorm());
@@ -256,15 +267,14 @@ namespace Squeal
         constexpr std::complex<double> i(0., 1.);
         DenseMatrix                    fields(real_part.size(), 2);
         fields << real_part, imaginary_part;
-        const DenseMatrix      coefficients = summed(disc.communicator, harmonics[n].coefficients_here(fields));
+        const DenseMatrix      coefficients = harmonics[n].coefficients(fields);
         const Eigen::VectorXcd factors      = harmonics[n].factors(coefficients.col(0)) + i * harmonics[n].factors(coefficients.col(1));
         const Eigen::VectorXcd a = radial * factors.head(n_radial_functions), b = radial * factors.tail(n_radial_functions);
-        DenseMatrix            parts(2, 1);
-        parts << disc.masses.dot((a + i * b).cwiseAbs2()), disc.masses.dot((a - i * b).cwiseAbs2());
-        parts                 = summed(disc.communicator, parts);
-        const double positive = parts(0, 0), negative = parts(1, 0);
-        const double both = positive + negative;
-        return both > 0. ? std::make_optional(WaveShares{positive / both, negative / both}) : std::nullopt;
+        const DenseMatrix      parts =
+          summed(disc.communicator,
+                 (DenseMatrix(2, 1) << disc.masses.dot((a + i * b).cwiseAbs2()), disc.masses.dot((a - i * b).cwiseAbs2())).finished());
+        const double both = parts.sum();
+        return both > 0. ? std::make_optional(WaveShares{parts(0, 0) / both, parts(1, 0) / both}) : std::nullopt;
       }
     };
 
@@ -312,22 +322,13 @@ namespace Squeal
       const Projection  translation(pin.communicator, functions, pin.masses),
         torsion(pin.communicator, radii.asDiagonal() * functions, pin.masses);
 
-      // Of each mode the coefficients of three directions across, of torsion, and along
-      constexpr int n_fields = 5;
-      DenseMatrix   coefficients(n_height_functions, n_fields * modes.n_columns());
       for (int m = 0; m < modes.n_columns(); ++m)
         {
           const Eigen::MatrixX3d u       = pin.displacements(modes, m);
           const Eigen::VectorXd  axially = u * along;
-          coefficients.middleCols(n_fields * m, n_fields) << translation.coefficients_here(u - axially * along.transpose()),
-            torsion.coefficients_here(u.cwiseProduct(around).rowwise().sum()), translation.coefficients_here(axially);
-        }
-      coefficients = summed(pin.communicator, coefficients);
-      for (int m = 0; m < modes.n_columns(); ++m)
-        {
-          energies(0, m) += coefficients.middleCols(n_fields * m, 3).squaredNorm();
-          energies(1, m) += coefficients.col(n_fields * m + 3).squaredNorm();
-          energies(2, m) += coefficients.col(n_fields * m + 4).squaredNorm();
+          energies(0, m) += translation.coefficients(u - axially * along.transpose()).squaredNorm();
+          energies(1, m) += torsion.coefficients(u.cwiseProduct(around).rowwise().sum()).squaredNorm();
+          energies(2, m) += translation.coefficients(axially).squaredNorm();
         }
     }
   } // namespace
@@ -338,7 +339,10 @@ namespace Squeal
     std::vector<ModeLabel> labels;
     for (int j = 0; j < modes.n_columns(); ++j)
       {
-        const std::vector<DenseMatrix> coefficients = disc.coefficients(disc.cylindrical(modes, j));
+        const Eigen::MatrixX3d   fields = disc.cylindrical(modes, j);
+        std::vector<DenseMatrix> coefficients;
+        for (const Projection &harmonic : disc.harmonics)
+          coefficients.push_back(harmonic.coefficients(fields));
 
         // Harmonic of the largest energy, the three directions together
         DenseMatrix energies(3, largest_harmonic + 1);

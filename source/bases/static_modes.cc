@@ -96,11 +96,6 @@ namespace Squeal
     return u;
   }
 
-  int StaticModes::n_contact() const
-  {
-    return contact.normal->n_rows();
-  }
-
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, const Side side)
   {
     const auto V_K = normal_reactions(system, 0.);

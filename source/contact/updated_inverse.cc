@@ -1,4 +1,4 @@
-#include <squeal/base/memory_limit.h>
+#include <squeal/base/memory.h>
 #include <squeal/contact/updated_inverse.h>
 #include <squeal/linear_algebra/replicate.h>
 #include <squeal/linear_algebra/sparse_matrix.h>

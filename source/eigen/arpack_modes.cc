@@ -62,7 +62,7 @@ namespace Squeal
               A.apply_to_image(vector(workd.data() + ipntr[2] - 1), y);
               break;
             case 2:
-              A.mass().apply(x, y);
+              A.mass.apply(x, y);
               break;
             default:
               throw_arpack("pdsaupd (unknown request)", ido, request.what);

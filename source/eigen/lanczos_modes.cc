@@ -135,7 +135,7 @@ namespace Squeal
       Coefficients append(MultiVector &W)
       {
         const MultiVector V = view(*basis, 0, m);
-        MultiVector       B = A.mass() * W;
+        MultiVector       B = A.mass * W;
         DenseMatrix       H = DenseMatrix::Zero(m, W.n_columns()), all = DenseMatrix::Identity(W.n_columns(), W.n_columns());
         // Normalising between the rounds makes "twice is enough" hold for each direction, however little the first one left.
         for (const double smallest : {rounding_of_whole, rounding_of_unit})
@@ -147,7 +147,7 @@ namespace Squeal
                 multiply_add(-1., V, removed, 1., rest);
                 H += removed * all;
               }
-            A.mass().apply(rest, its_image);
+            A.mass.apply(rest, its_image);
             all = mass_qr(rest, its_image, smallest) * all;
           }
         b = static_cast<int>(all.rows());

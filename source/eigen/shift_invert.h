@@ -18,27 +18,47 @@ namespace Squeal
   {
   public:
     /// @p deflated, M-orthonormal, may be null; all must outlive this object.
-    ShiftInvert(const LinearOperator &inverse, const SparseMatrix &M, const MultiVector *deflated);
+    ShiftInvert(const LinearOperator &inverse, const SparseMatrix &mass, const MultiVector *deflated)
+      : mass(mass)
+      , inverse(inverse)
+      , deflated(deflated)
+    {}
 
     /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ M X.
-    void apply(const MultiVector &X, MultiVector &Y) const override;
+    void apply(const MultiVector &X, MultiVector &Y) const override
+    {
+      apply_to_image(mass * X, Y);
+    }
 
-    const RowMap &map() const override;
+    const RowMap &map() const override
+    {
+      return mass.map();
+    }
 
     /// Y = (I - ΦΦᵀM) (K + s M)⁻¹ B where B = M X is at hand.
-    void apply_to_image(const MultiVector &B, MultiVector &Y) const;
+    void apply_to_image(const MultiVector &B, MultiVector &Y) const
+    {
+      inverse.apply(B, Y);
+      project(Y);
+    }
 
     /// X ← (I - ΦΦᵀM) X.
-    void project(MultiVector &X) const;
-
-    const SparseMatrix &mass() const;
+    void project(MultiVector &X) const
+    {
+      if (deflated != nullptr)
+        multiply_add(-1., *deflated, gram(*deflated, mass * X), 1., X);
+    }
 
     /// Dimension of the complement.
-    int n_free() const;
+    int n_free() const
+    {
+      return mass.n_rows() - (deflated != nullptr ? deflated->n_columns() : 0);
+    }
+
+    const SparseMatrix &mass; ///< M
 
   private:
     const LinearOperator &inverse;
-    const SparseMatrix   &M;
     const MultiVector    *deflated;
   };
 

@@ -1,4 +1,5 @@
 #include <squeal/estimates/conditioning.h>
+#include <squeal/estimates/subspaces.h>
 #include <squeal/linear_algebra/weighted_gram.h>
 
 #include <Eigen/Cholesky>
@@ -124,18 +125,6 @@ namespace Squeal
       return result;
     }
 
-    /// XᴴY of complex vectors kept as halves, from [Re X, Im X]ᵀ [Re Y, Im Y].
-    ComplexDenseMatrix hermitian_product(const DenseMatrix &products)
-    {
-      const Eigen::Index k  = products.rows() / 2;
-      const DenseMatrix  re = products.topLeftCorner(k, k) + products.bottomRightCorner(k, k),
-                        im  = products.topRightCorner(k, k) - products.bottomLeftCorner(k, k);
-      ComplexDenseMatrix result(k, k);
-      result.real() = re;
-      result.imag() = im;
-      return result;
-    }
-
     /**
      * Of a multiple eigenvalue any basis of its space is found, which says nothing about how this space lies to others: T, for which
      * TᴴGT = I in each cluster.
@@ -170,9 +159,9 @@ namespace Squeal
       // [Re X, Im X]ᵀ A [Re X, −Im X] makes Xᴴ A X̄
       const Eigen::Index k         = stiffness.rows() / 2;
       const auto         with_conj = [k](DenseMatrix products) {
-        const ComplexDenseMatrix direct = hermitian_product(products);
+        const ComplexDenseMatrix direct = hermitian_products(products);
         products.rightCols(k) *= -1.;
-        const ComplexDenseMatrix crossed = hermitian_product(products);
+        const ComplexDenseMatrix crossed = hermitian_products(products);
         ComplexDenseMatrix       result(2 * k, 2 * k);
         result << direct, crossed, crossed.conjugate(), direct.conjugate();
         return result;

@@ -1,5 +1,5 @@
 #include <squeal/geometry/extrusion.h>
-#include <squeal/geometry/grading.h>
+#include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan_smoothing.h>
 
 #include <set>
@@ -18,7 +18,26 @@ namespace Squeal
       first_curve
     };
 
-    /// A stack of layers of hexahedra over some faces of the plan, with nodes of its own.
+    /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces turn over on the way.
+    std::vector<Plan::Point> points_between(const Plan                     &plan,
+                                            const std::vector<Plan::Point> &lower,
+                                            const std::vector<Plan::Point> &upper,
+                                            const double                    t)
+    {
+      std::vector<Plan::Point> points(lower.size());
+      for (std::size_t node = 0; node < points.size(); ++node)
+        points[node] = (1. - t) * lower[node] + t * upper[node];
+      if (t > 0. && t < 1. && lower != upper)
+        {
+          std::vector<bool> boundary(points.size(), false);
+          for (const Plan::Edge &edge : boundary_edges(plan.faces))
+            boundary[edge[0]] = boundary[edge[1]] = true;
+          untangle(plan.faces, boundary, {}, points);
+        }
+      return points;
+    }
+
+    /// A stack of layers of cells over some faces of the plan, with nodes of its own.
     class Stack
     {
     public:

@@ -6,7 +6,6 @@
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/mesher.h>
-#include <squeal/geometry/outlines.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/plan_smoothing.h>
@@ -155,7 +154,7 @@ namespace Squeal
       constexpr unsigned int least_degree = 1;
       constexpr double       no_modes     = 0.;
       size.contact_nodes                  = 0.; // their attachment modes are not always needed
-      check_memory(size, least_degree, no_modes, where, 0., communicator);
+      check_memory(size, least_degree, no_modes, where, communicator);
     }
 
     /// Refuses a mesh whose groups, of the dimensions that count, do not say what they are.

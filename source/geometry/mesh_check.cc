@@ -1,6 +1,5 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/geometry/faces.h>
 #include <squeal/geometry/mesh_check.h>
 
 #include <boost/algorithm/string/join.hpp>

@@ -1,8 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/geometry/faces.h>
 #include <squeal/geometry/mesh_topology.h>
-#include <squeal/geometry/trilinear_map.h>
 
 #include <deal.II/numerics/rtree.h>
 
@@ -287,16 +285,13 @@ namespace Squeal
 
           const bool is_pinched = any_node(pinched);
           box.extend(is_pinched ? off_curved_faces * mesh.points[nodes[0]].distance(mesh.points[nodes[6]]) : tolerances[nodes[0]]);
-          std::optional<TrilinearMap> map;
           visit_box(tree, box, [&, &own = nodes, own_volume = volume](const Sample &sample) {
             const auto &[point, index] = sample;
             const bool         is_node = index < n_nodes;
             const unsigned int body    = is_node ? volumes[index] : mesh.hexahedra[index - n_nodes].volume;
             if (body == own_volume && (!is_node || std::count(own.begin(), own.end(), index) > 0))
               return;
-            if (!map)
-              map.emplace(mesh, hexahedron);
-            const std::optional<Depth> depth = map->depth(point);
+            const std::optional<Depth> depth = depth_in_cell(mesh, hexahedron, point);
             if (!depth)
               return;
             if (body != own_volume)

@@ -2,7 +2,6 @@
 #include <squeal/base/installation.h>
 #include <squeal/base/text.h>
 #include <squeal/geometry/mesher.h>
-#include <squeal/geometry/mesher_protocol.h>
 
 #include <algorithm>
 #include <cerrno>

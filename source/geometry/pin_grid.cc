@@ -1,6 +1,7 @@
-#include <squeal/geometry/grading.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/polygon.h>
+
+#include <cmath>
 
 namespace Squeal
 {
@@ -33,6 +34,18 @@ namespace Squeal
       return result;
     }
   } // namespace
+
+  std::vector<double> graded_intervals(const unsigned int n, const double ratio)
+  {
+    std::vector<double> ends = {0.};
+    if (ratio == 1.)
+      for (unsigned int i = 1; i <= n; ++i)
+        ends.push_back(double(i) / n);
+    else
+      for (unsigned int i = 1; i <= n; ++i)
+        ends.push_back((1. - std::pow(ratio, -double(i))) / (1. - std::pow(ratio, -double(n))));
+    return ends;
+  }
 
   std::vector<Plan::Face> fill_with_o_grid(const std::vector<unsigned int> &loop, std::vector<Plan::Point> &points)
   {

@@ -1,6 +1,6 @@
 #include <squeal/geometry/polygon.h>
 
-#include <deal.II/base/tensor.h>
+#include <Eigen/QR>
 
 #include <cmath>
 #include <map>
@@ -11,39 +11,8 @@ namespace Squeal
 {
   namespace
   {
-    using dealii::Point;
-    using dealii::Tensor;
-
     /// Largest distance of a point from its circle, relative to the radius.
     constexpr double roundness = 1e-6;
-
-    constexpr std::size_t fewest_points = 6;
-
-    Point<2> mean(const std::vector<Point<2>> &points)
-    {
-      Point<2> sum;
-      for (const Point<2> &p : points)
-        sum += p;
-      return sum / double(points.size());
-    }
-
-    /// Root of the mean square of the distances.
-    double mean_distance(const std::vector<Point<2>> &points, const Point<2> &from)
-    {
-      double sum = 0.;
-      for (const Point<2> &p : points)
-        sum += p.distance_square(from);
-      return std::sqrt(sum / double(points.size()));
-    }
-
-    /// Those that differ by @p length or more.
-    std::size_t n_different(const std::vector<Point<2>> &points, const Point<2> &origin, const double length)
-    {
-      std::set<std::pair<long, long>> places;
-      for (const Point<2> &p : points)
-        places.insert({std::lround((p[0] - origin[0]) / length), std::lround((p[1] - origin[1]) / length)});
-      return places.size();
-    }
   } // namespace
 
   std::vector<unsigned int> closed_polygon(const std::vector<std::array<unsigned int, 2>> &edges)
@@ -80,34 +49,37 @@ namespace Squeal
     return sum / double(nodes.size());
   }
 
-  std::optional<Circle> circle_through(const std::vector<Point<2>> &points)
+  std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points)
   {
-    if (points.empty())
+    constexpr std::size_t fewest_points = 6;
+    constexpr double      straight      = 1e-8;
+    if (points.size() < fewest_points)
       return {};
-    // About the centroid and in units of their distances from it the normal equations are well scaled
-    const Point<2> origin = mean(points);
-    const double   length = mean_distance(points, origin);
-    if (length == 0. || n_different(points, origin, roundness * length) < fewest_points)
+    // About the centroid and in units of their distances from it
+    Eigen::MatrixX2d x(points.size(), 2);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      x.row(i) << points[i][0], points[i][1];
+    const Eigen::RowVector2d origin = x.colwise().mean();
+    x.rowwise() -= origin;
+    const double length = std::sqrt(x.rowwise().squaredNorm().mean());
+    x /= length;
+    std::set<std::pair<long, long>> places;
+    for (Eigen::Index i = 0; i < x.rows(); ++i)
+      places.insert({std::lround(x(i, 0) / roundness), std::lround(x(i, 1) / roundness)});
+    if (!(length > 0.) || places.size() < fewest_points)
       return {};
 
-    Tensor<2, 3> normal;
-    Tensor<1, 3> rhs;
-    for (const Point<2> &p : points)
-      {
-        const Tensor<1, 2> d = (p - origin) / length;
-        const Tensor<1, 3> row({2. * d[0], 2. * d[1], 1.});
-        normal += outer_product(row, row);
-        rhs += d.norm_square() * row;
-      }
-    if (std::abs(determinant(normal)) < 1e-14 * std::pow(normal.norm(), 3))
-      return {}; // on a straight line
-    const Tensor<1, 3> solution = invert(normal) * rhs;
-    const Circle       circle{origin + length * Point<2>(solution[0], solution[1]),
-                        length * std::sqrt(solution[2] + solution[0] * solution[0] + solution[1] * solution[1])};
-
-    for (const Point<2> &p : points)
-      if (std::abs(p.distance(circle.centre) - circle.radius) > roundness * circle.radius)
-        return {};
-    return circle;
+    Eigen::MatrixX3d rows(x.rows(), 3);
+    rows << 2. * x, Eigen::VectorXd::Ones(x.rows());
+    Eigen::ColPivHouseholderQR<Eigen::MatrixX3d> factors(rows);
+    factors.setThreshold(straight);
+    if (factors.rank() < 3)
+      return {};
+    const Eigen::Vector3d    solution = factors.solve(x.rowwise().squaredNorm());
+    const Eigen::RowVector2d centre   = solution.head<2>();
+    const double             radius   = std::sqrt(solution[2] + centre.squaredNorm());
+    if (((x.rowwise() - centre).rowwise().norm().array() - radius).abs().maxCoeff() > roundness * radius)
+      return {};
+    return Circle{{origin[0] + length * centre[0], origin[1] + length * centre[1]}, length * radius};
   }
 } // namespace Squeal

@@ -1,12 +1,9 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/memory_limit.h>
+#include <squeal/base/memory.h>
 #include <squeal/base/text.h>
-#include <squeal/geometry/faces.h>
 #include <squeal/geometry/scene_size.h>
 #include <squeal/parameters/pin_face.h>
-
-#include <deal.II/base/bounding_box.h>
 
 #include <Eigen/Eigenvalues>
 
@@ -86,46 +83,16 @@ namespace Squeal
                     const unsigned int degree,
                     const double       n_modes,
                     const std::string &where,
-                    const double       further,
                     const MPI_Comm     communicator)
   {
-    const double needed = size.memory(degree, n_modes) + further, available = available_memory(communicator);
+    const double needed = size.memory(degree, n_modes), available = available_memory(communicator);
     if (!(needed > available))
       return;
-    throw MeshError(text("The scene has about ", size.hexahedra, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,
+    throw MeshError(text("The scene has about ", size.cells, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,
                          " GB of memory; ", available / 1e9, " GB are available"),
                     where,
                     "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
                     "Band/Maximum frequency");
-  }
-
-  std::vector<BodyShape> body_shapes(const HexMesh &mesh)
-  {
-    constexpr double                         infinity = std::numeric_limits<double>::infinity();
-    std::vector<BodyShape>                   bodies;
-    std::vector<std::vector<HexMesh::Point>> points(mesh.volume_names.size());
-    const std::vector<unsigned int>          volume_of_node = volume_of_nodes(mesh);
-    for (std::size_t node = 0; node < mesh.points.size(); ++node)
-      points[volume_of_node[node]].push_back(mesh.points[node]);
-    for (std::size_t b = 0; b < points.size(); ++b)
-      {
-        bodies.push_back({mesh.volume_names[b], infinity, 0., dealii::BoundingBox<3>(points[b]).side_length(2), 0., 0.});
-        for (const HexMesh::Point &p : points[b])
-          {
-            const double radius    = std::hypot(p[0], p[1]);
-            bodies[b].inner_radius = std::min(bodies[b].inner_radius, radius);
-            bodies[b].outer_radius = std::max(bodies[b].outer_radius, radius);
-          }
-      }
-    for (const HexFace &face : outer_faces(mesh))
-      {
-        const auto [centre, normal] = face_geometry(mesh, face.nodes);
-        bodies[face.volume].volume += centre * normal / 3.; // Gauss' theorem
-      }
-    for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
-      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact || mesh.surface_names[face.surface] == PhysicalNames::disc_contact)
-        bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
-    return bodies;
   }
 
   namespace

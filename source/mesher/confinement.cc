@@ -1,6 +1,6 @@
-#include "confinement.h"
+#include "meshing.h"
 
-#include <squeal/geometry/mesher_protocol.h>
+#include <squeal/geometry/gmsh_mesh.h>
 
 #include <cmath>
 #include <csignal>

@@ -1,10 +1,9 @@
 // Runs Gmsh for squeal in a process of its own, which a geometry can neither take down nor get out of.
 // Started by run_mesher() (geometry/mesher.h); no program for users.
 
-#include "confinement.h"
 #include "meshing.h"
 
-#include <squeal/geometry/mesher_protocol.h>
+#include <squeal/geometry/gmsh_mesh.h>
 
 #include <csignal>
 #include <cstdlib>

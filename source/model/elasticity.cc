@@ -28,16 +28,17 @@ namespace Squeal
                           "Geometry/Element size, or choose another Discretization/Element than quadratic");
     }
 
-    /// ∫ φ·φ over one cell.
-    void integrate_mass(const FEValues<3> &values, FullMatrix<double> &M)
+    /// ∫ of an integrand(i, j, q) over one cell, of shape functions of the same direction.
+    template <typename Integrand>
+    void integrate(const FEValues<3> &values, FullMatrix<double> &matrix, const Integrand &integrand)
     {
       const auto &fe = values.get_fe();
-      M              = 0.;
-      for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-        for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
-          for (unsigned int j = 0; j < fe.n_dofs_per_cell(); ++j)
+      matrix         = 0.;
+      for (const unsigned int q : values.quadrature_point_indices())
+        for (const unsigned int i : values.dof_indices())
+          for (const unsigned int j : values.dof_indices())
             if (fe.system_to_component_index(i).first == fe.system_to_component_index(j).first)
-              M(i, j) += values.shape_value(i, q) * values.shape_value(j, q) * values.JxW(q);
+              matrix(i, j) += integrand(i, j, q) * values.JxW(q);
     }
 
     enum Direction
@@ -80,7 +81,10 @@ namespace Squeal
           cell_stiffness->integrate(*values, K);
         };
         // The values are those of the cell whose stiffness has been integrated
-        const CellIntegral mass = [values](const Cell &, FullMatrix<double> &M) { integrate_mass(*values, M); };
+        const CellIntegral mass = [values](const Cell &, FullMatrix<double> &M) {
+          integrate(*values, M,
+                    [&values](const auto i, const auto j, const auto q) { return values->shape_value(i, q) * values->shape_value(j, q); });
+        };
         return std::vector{stiffness, mass};
       };
       const auto  matrices = assemble_cells(model, belongs, integrals);
@@ -197,5 +201,36 @@ namespace Squeal
   {
     const BodyTerms bodies = body_terms(model, materials);
     return sparse_matrices(bodies.terms, bodies.values);
+  }
+
+  void add_rotation(BodyTerms &bodies, const Model &model, const double angular_velocity)
+  {
+    const CellPredicate is_disc   = [](const Cell &cell) { return cell->material_id() == 0; };
+    const MakeIntegrals integrals = [&model] {
+      const auto values = std::make_shared<FEValues<3>>(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(model.degree() + 1),
+                                                        update_values | update_gradients | update_quadrature_points | update_JxW_values);
+      const auto turned = [values](const unsigned int i, const unsigned int q) { // ∂_θ of a shape function
+        const Point<3> &x = values->quadrature_point(q);
+        return x[0] * values->shape_grad(i, q)[1] - x[1] * values->shape_grad(i, q)[0];
+      };
+      const CellIntegral gyroscopic = [values, turned](const Cell &cell, FullMatrix<double> &G) {
+        values->reinit(cell);
+        integrate(*values, G, [&](const auto i, const auto j, const auto q) {
+          return values->shape_value(i, q) * turned(j, q) - turned(i, q) * values->shape_value(j, q);
+        });
+      };
+      const CellIntegral convective = [values, turned](const Cell &, FullMatrix<double> &N) {
+        integrate(*values, N, [&](const auto i, const auto j, const auto q) { return turned(i, q) * turned(j, q); });
+      };
+      return std::vector{gyroscopic, convective};
+    };
+    const auto matrices = assemble_cells(model, is_disc, integrals);
+
+    const std::string speed = BodyParameter::angular_velocity, density = BodyParameter::density(model.component_names().front());
+    bodies.values[speed] = {angular_velocity};
+    bodies.terms.push_back(
+      sparse_term("gyroscopic forces of the disc", 1, {1., {{density, 1}, {speed, 1}}}, matrices[0], Symmetry::skew, TermKind::rotation));
+    bodies.terms.push_back(sparse_term("convective stiffness of the disc", 0, {-1., {{density, 1}, {speed, 2}}}, matrices[1],
+                                       Symmetry::symmetric, TermKind::rotation));
   }
 } // namespace Squeal

@@ -1,6 +1,5 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/model/curved_boundaries.h>
-#include <squeal/model/mesh_parts.h>
 #include <squeal/model/model.h>
 
 #include <deal.II/base/mpi.h>
@@ -8,6 +7,7 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
+#include <deal.II/grid/tria_description.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <boost/algorithm/string/join.hpp>
@@ -26,6 +26,14 @@ namespace Squeal
   namespace
   {
     using Description = TriangulationDescription::Description<3, 3>;
+
+    /// The hexahedra of all bodies with what deal.II needs to know of them.
+    struct CellLists
+    {
+      std::vector<Point<3>>    vertices;
+      std::vector<CellData<3>> cells; ///< with their material ids
+      SubCellData              faces; ///< named surfaces, by boundary id
+    };
 
     /// Gmsh numbers the vertices of a quadrilateral around it, deal.II lexicographically.
     constexpr std::array<unsigned int, 8> gmsh_vertex = {{0, 1, 3, 2, 4, 5, 7, 6}};
@@ -71,36 +79,6 @@ namespace Squeal
             ids[name].insert(face.boundary_id);
         }
       return ids;
-    }
-
-    /// Brings vertices and cells into deal.II's order.
-    void order(CellLists &lists)
-    {
-      GridTools::delete_unused_vertices(lists.vertices, lists.cells, lists.faces);
-      GridTools::invert_all_negative_measure_cells(lists.vertices, lists.cells);
-      GridTools::consistently_order_cells(lists.cells);
-    }
-
-    /// Manifolds of cells that have an edge or a face on a cylinder, by their numbers.
-    std::map<unsigned int, CellManifolds> cell_manifolds(const Triangulation<3> &triangulation)
-    {
-      std::map<unsigned int, CellManifolds> result;
-      for (const auto &cell : triangulation.active_cell_iterators())
-        {
-          CellManifolds manifolds;
-          bool          is_flat = true;
-          const auto    note    = [&](const types::manifold_id id) {
-            is_flat = is_flat && id == numbers::flat_manifold_id;
-            return id;
-          };
-          for (unsigned int line = 0; line < cell->n_lines(); ++line)
-            manifolds.lines[line] = note(cell->line(line)->manifold_id());
-          for (unsigned int face = 0; face < cell->n_faces(); ++face)
-            manifolds.quads[face] = note(cell->face(face)->manifold_id());
-          if (!is_flat)
-            result[cell->active_cell_index()] = manifolds;
-        }
-      return result;
     }
 
     /// Does what may fail on one process; then all throw.
@@ -194,32 +172,33 @@ namespace Squeal
     const bool         is_root     = Utilities::MPI::this_mpi_process(communicator()) == 0;
 
     // Process 0 alone has all cells, and of the parts of other processes one at a time
-    std::vector<Cylinder>      cylinders;
-    std::unique_ptr<MeshParts> parts;
+    std::vector<Cylinder> cylinders;
+    Triangulation<3>      all;
     together(communicator(), [&] {
       if (!is_root)
         return;
       CellLists lists = cell_lists(mesh);
       ids_of_surfaces = add_faces(mesh, lists);
-      order(lists);
-      std::map<unsigned int, CellManifolds> manifolds;
+      GridTools::delete_unused_vertices(lists.vertices, lists.cells, lists.faces);
+      GridTools::invert_all_negative_measure_cells(lists.vertices, lists.cells);
+      GridTools::consistently_order_cells(lists.cells);
+      all.create_triangulation(lists.vertices, lists.cells, lists.faces);
       if (element_type == Element::quadratic)
-        {
-          Triangulation<3> all;
-          all.create_triangulation(lists.vertices, lists.cells, lists.faces);
-          cylinders = follow_cylinders(*this, all);
-          manifolds = cell_manifolds(all);
-        }
-      parts = std::make_unique<MeshParts>(std::move(lists), std::move(manifolds), n_processes);
+        cylinders = follow_cylinders(*this, all);
+      GridTools::partition_triangulation(n_processes, all);
     });
     ids_of_surfaces = Utilities::MPI::broadcast(communicator(), ids_of_surfaces);
+    const auto part = [&](const unsigned int process) {
+      return TriangulationDescription::Utilities::create_description_from_triangulation(all, communicator(),
+                                                                                        TriangulationDescription::default_setting, process);
+    };
     Description own;
     if (is_root)
       {
         for (unsigned int process = 1; process < n_processes; ++process)
-          send(process, parts->part(process, communicator()), communicator());
-        own = parts->part(0, communicator());
-        parts.reset();
+          send(process, part(process), communicator());
+        own = part(0);
+        all.clear();
       }
     else
       own = receive(communicator());
@@ -296,46 +275,6 @@ namespace Squeal
       node_table[i].number = static_cast<std::int64_t>(numbers(first_dofs[i]));
   }
 
-  const Triangulation<3> &Model::triangulation() const
-  {
-    return tria;
-  }
-
-  const DoFHandler<3> &Model::dof_handler() const
-  {
-    return dofs;
-  }
-
-  const Mapping<3> &Model::mapping() const
-  {
-    return geometry_mapping;
-  }
-
-  Element Model::element() const
-  {
-    return element_type;
-  }
-
-  unsigned int Model::degree() const
-  {
-    return fe.degree;
-  }
-
-  MPI_Comm Model::communicator() const
-  {
-    return tria.get_communicator();
-  }
-
-  const std::vector<std::string> &Model::component_names() const
-  {
-    return components;
-  }
-
-  const std::vector<Node> &Model::nodes() const
-  {
-    return node_table;
-  }
-
   std::vector<Node> Model::gathered_nodes() const
   {
     std::vector<Node> own, all;
@@ -365,18 +304,9 @@ namespace Squeal
     return std::find(surfaces.begin(), surfaces.end(), name) != surfaces.end();
   }
 
-  const RowMap &Model::free_map() const
-  {
-    return map;
-  }
-
   int Model::free_dof(const types::global_dof_index dof) const
   {
     return free_numbers[relevant.index_within_set(dof)];
   }
 
-  unsigned int Model::n_dofs() const
-  {
-    return dofs.n_dofs();
-  }
 } // namespace Squeal

@@ -112,7 +112,7 @@ namespace Squeal
     int n_frictionless_modes(const CoupledSystem &system, const Contour &contour)
     {
       const auto below = [&](const double omega) {
-        return count_modes(*system.stiffness, *system.mass, omega * omega, "real modes of the coupled system");
+        return count_below(*system.stiffness, *system.mass, omega * omega, "real modes of the coupled system").n_modes;
       };
       return below(contour.high) - below(contour.low);
     }

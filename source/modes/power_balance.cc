@@ -10,85 +10,35 @@ namespace Squeal
   {
     using Complex = std::complex<double>;
 
-    /// Re(uᴴ A u) of the dofs of each component.
-    class QuadraticForms
+    /// Re(uᴴ A u) of the dofs of each component; zeros without a matrix.
+    std::vector<double> forms(const Model                               &model,
+                              const std::shared_ptr<const SparseMatrix> &A,
+                              const MultiVector                         &re,
+                              const MultiVector                         &im)
     {
-    public:
-      QuadraticForms(const Model &model, const MultiVector &real_part, const MultiVector &imaginary_part)
-        : component(model.free_map().n_local())
-        , n_components(model.component_names().size())
-        , re(real_part)
-        , im(imaginary_part)
-      {
-        for (const Node &node : model.nodes())
-          for (const int dof : node.dofs)
-            if (const int i = model.free_map().place(dof); i >= 0)
-              component[i] = node.component;
-      }
-
-      std::vector<double> of(const std::shared_ptr<const SparseMatrix> &A) const
-      {
-        std::vector<double> result(n_components, 0.);
-        if (!A)
-          return result;
-        const MultiVector A_re = *A * re, A_im = *A * im;
-        for (int i = 0; i < re.n_local_rows(); ++i)
-          result[component[i]] += re(i, 0) * A_re(i, 0) + im(i, 0) * A_im(i, 0);
-        sum_over_processes(re.communicator(), result.data(), result.size());
+      std::vector<double> result(model.component_names().size(), 0.);
+      if (!A)
         return result;
-      }
+      const MultiVector A_re = *A * re, A_im = *A * im;
+      for (const Node &node : model.nodes())
+        for (const int dof : node.dofs)
+          if (const int i = model.free_map().place(dof); i >= 0)
+            result[node.component] += re(i, 0) * A_re(i, 0) + im(i, 0) * A_im(i, 0);
+      sum_over_processes(re.communicator(), result.data(), result.size());
+      return result;
+    }
 
-    private:
-      std::vector<unsigned int> component; ///< of the rows of this process
-      const std::size_t         n_components;
-      const MultiVector        &re, &im;
-    };
-
-    /// Displacements of both nodes of every contact pair, on every process.
-    class ContactDisplacements
+    /// Displacements of nodes, 3 × as many, on every process.
+    Eigen::Matrix3Xcd displacements(const std::vector<const Node *> &nodes, const MultiVector &re, const MultiVector &im)
     {
-    public:
-      ContactDisplacements(const Model            &model,
-                           const ContactInterface &interface,
-                           const MultiVector      &real_part,
-                           const MultiVector      &imaginary_part)
-        : values(12, DenseMatrix::Index(interface.size()))
-      {
-        values.setZero();
-        const auto add = [&](const Node &node, const int first_row, const std::size_t pair) {
-          for (int d = 0; d < 3; ++d)
-            if (const int i = real_part.map().place(node.dofs[d]); i >= 0)
-              {
-                values(first_row + d, pair)     = real_part(i, 0);
-                values(first_row + 3 + d, pair) = imaginary_part(i, 0);
-              }
-        };
-        for (std::size_t pair = 0; pair < interface.size(); ++pair)
-          {
-            add(interface[pair].disc_node, 0, pair);
-            add(interface[pair].pin_node, 6, pair);
-          }
-        sum_over_processes(model.communicator(), values.data(), values.size());
-      }
-
-      Complex of_disc(const Eigen::Vector3d &direction, const std::size_t pair) const
-      {
-        return along(direction, 0, pair);
-      }
-
-      Complex of_pin(const Eigen::Vector3d &direction, const std::size_t pair) const
-      {
-        return along(direction, 6, pair);
-      }
-
-    private:
-      Complex along(const Eigen::Vector3d &direction, const int first_row, const std::size_t pair) const
-      {
-        return {direction.dot(values.col(pair).segment<3>(first_row)), direction.dot(values.col(pair).segment<3>(first_row + 3))};
-      }
-
-      DenseMatrix values; ///< real and imaginary parts of the disc's node, then those of the pin's, pair by pair
-    };
+      Eigen::Matrix3Xcd result = Eigen::Matrix3Xcd::Zero(3, nodes.size());
+      for (std::size_t n = 0; n < nodes.size(); ++n)
+        for (int d = 0; d < 3; ++d)
+          if (const int i = re.map().place(nodes[n]->dofs[d]); i >= 0)
+            result(d, n) = {re(i, 0), im(i, 0)};
+      sum_over_processes(re.communicator(), reinterpret_cast<double *>(result.data()), 2 * result.size());
+      return result;
+    }
 
     double total(const std::vector<double> &values)
     {
@@ -133,26 +83,30 @@ namespace Squeal
                              const MultiVector          &real_part,
                              const MultiVector          &imaginary_part)
   {
-    const MultiVector          re = *coupled.kernel * real_part, im = *coupled.kernel * imaginary_part;
-    const QuadraticForms       forms(model, re, im);
-    const ContactDisplacements displacements(model, interface, re, im);
-    const auto                 reactions = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
-    const double               speed     = std::norm(lambda); // |λ|²
-    const double               energy    = (speed * total(forms.of(bodies.mass)) + total(forms.of(bodies.stiffness))) / 4.;
-    const double               to_rate   = 1. / (2. * lambda.imag() * energy); // from a power
+    std::vector<const Node *> disc_nodes, pin_nodes;
+    for (const ContactNode &pair : interface)
+      {
+        disc_nodes.push_back(&pair.disc_node);
+        pin_nodes.push_back(&pair.pin_node);
+      }
+    const MultiVector       re = *coupled.kernel * real_part, im = *coupled.kernel * imaginary_part;
+    const Eigen::Matrix3Xcd of_disc = displacements(disc_nodes, re, im), of_pin = displacements(pin_nodes, re, im);
+    const auto              reactions = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
+    const double            speed     = std::norm(lambda); // |λ|²
+    const double energy  = (speed * total(forms(model, bodies.mass, re, im)) + total(forms(model, bodies.stiffness, re, im))) / 4.;
+    const double to_rate = 1. / (2. * lambda.imag() * energy); // from a power
 
     PowerBalance result;
-    result.bodies = forms.of(bodies.damping);
+    result.bodies = forms(model, bodies.damping, re, im);
     for (double &body : result.bodies)
       body *= -0.5 * speed * to_rate;
     result.modal_damping = -0.5 * speed * modal_damping(coupled, real_part, imaginary_part) * to_rate;
     for (std::size_t node = 0; node < interface.size(); ++node)
       {
-        const ContactNode &pair            = interface[node];
-        const Complex      along_t_of_disc = displacements.of_disc(pair.sliding, node),
-                      along_t_of_pin       = displacements.of_pin(pair.sliding, node);
-        const Complex along_b              = displacements.of_disc(pair.radial, node) - displacements.of_pin(pair.radial, node);
-        const auto    friction             = [&](const Complex &displacement) {
+        const Eigen::Vector3d &t = interface[node].sliding, &b = interface[node].radial;
+        const Complex          along_t_of_disc = t.dot(of_disc.col(node)), along_t_of_pin = t.dot(of_pin.col(node)),
+                      along_b = b.dot(of_disc.col(node) - of_pin.col(node));
+        const auto friction   = [&](const Complex &displacement) {
           return 0.5 * friction_coefficient * (std::conj(lambda * displacement) * reactions(node, 0)).real() * to_rate;
         };
         result.into_disc.push_back(friction(along_t_of_disc));

@@ -63,7 +63,7 @@ namespace Squeal
     constexpr double squat_pin = 0.62;
 
     /// Part of the band by which that on the coarser mesh is longer, over the accuracy asked for, and at least [-].
-    constexpr double band_margin = 2., least_band_margin = 0.02;
+    constexpr double margin_of_coarser_band = 2., least_band_margin = 0.02;
 
     /// The shorter one of thin-plate bending waves, 2π (D / ρhω²)^¼, and Rayleigh's waves on the faces at the end of the band [m].
     double shortest_wave(const Parameters &parameters)
@@ -126,7 +126,7 @@ namespace Squeal
   {
     const Level &asked  = level(given.goal);
     Parameters   result = with(given, asked.coarser, asked.tolerance);
-    result.discretization.maximum_frequency *= 1. + std::max(band_margin * asked.limits.frequency, least_band_margin);
+    result.discretization.maximum_frequency *= 1. + std::max(margin_of_coarser_band * asked.limits.frequency, least_band_margin);
     return result;
   }
 } // namespace Squeal

@@ -275,7 +275,7 @@ namespace Squeal
 
   bool Parameters::has_friction() const
   {
-    return study->has_friction == nullptr || study->has_friction(*this);
+    return reduction.problem == ReductionProblem::friction || !study->has("Reduction/Problem");
   }
 
   bool Parameters::solves_by(const ComplexSolver solver) const

@@ -20,14 +20,10 @@ namespace Squeal
       return {result.begin(), result.end()};
     }
 
-    bool is_stiffness(const Term &term)
+    /// Of the stiffness (power 0) or the mass (2).
+    bool is_symmetric(const Term &term, const int power)
     {
-      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == 0;
-    }
-
-    bool is_mass(const Term &term)
-    {
-      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == 2;
+      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == power;
     }
   } // namespace
 
@@ -62,11 +58,11 @@ namespace Squeal
     this->shift = shift;
     // What S has of a term whose coefficient is a number leaves nothing
     sparse.erase(std::remove_if(sparse.begin(), sparse.end(),
-                                [](const Sparse &part) { return is_stiffness(*part.term) && part.term->coefficient.is_constant(); }),
+                                [](const Sparse &part) { return is_symmetric(*part.term, 0) && part.term->coefficient.is_constant(); }),
                  sparse.end());
     for (Sparse &part : sparse)
-      if (is_stiffness(*part.term) || is_mass(*part.term))
-        part.sigma = part.term->coefficient.at(system.values) * (is_mass(*part.term) ? shift * shift : 1.);
+      if (is_symmetric(*part.term, 0) || is_symmetric(*part.term, 2))
+        part.sigma = part.term->coefficient.at(system.values) * (is_symmetric(*part.term, 2) ? shift * shift : 1.);
     factor_gram = DenseMatrix(n_factor_columns, n_factor_columns);
     for (const Factor &f : factors)
       inverse.for_responses(*f.factor, [&](const int first, const MultiVector &X) {
@@ -87,8 +83,7 @@ namespace Squeal
   {
     r = 0;
     motions.clear();
-    left_columns = right_block = {};
-    is_assembled               = false;
+    is_prepared = false;
     for (Sparse &part : sparse)
       {
         part.projected = part.factor_products = {};
@@ -109,18 +104,14 @@ namespace Squeal
     const MultiVector       &T     = model.basis();
     const MultiVector        fresh = view(T, old, r - old);
     const std::size_t        n     = sparse.size();
-    std::vector<DenseMatrix> columns(n * n);
+    std::vector<DenseMatrix> columns(n * n, DenseMatrix(r, r - old));
     for (std::size_t k = 0; k < n; ++k)
-      {
+      for_column_blocks(r - old, [&](const int first, const int width) {
+        const MultiVector U       = inverse.solve_frictionless(*sparse[k].term->matrix * view(fresh, first, width));
+        sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
         for (std::size_t l = 0; l < n; ++l)
-          columns[l + n * k] = DenseMatrix(r, r - old);
-        for_column_blocks(r - old, [&](const int first, const int width) {
-          const MultiVector U       = inverse.solve_frictionless(*sparse[k].term->matrix * view(fresh, first, width));
-          sparse[k].factor_products = append_columns(sparse[k].factor_products, factor_products(U));
-          for (std::size_t l = 0; l < n; ++l)
-            columns[l + n * k].middleCols(first, width) = sparse[l].sign * gram(T, *sparse[l].term->matrix * U);
-        });
-      }
+          columns[l + n * k].middleCols(first, width) = sparse[l].sign * gram(T, *sparse[l].term->matrix * U);
+      });
     for (std::size_t k = 0; k < n; ++k)
       for (std::size_t l = 0; l < n; ++l)
         {
@@ -131,9 +122,8 @@ namespace Squeal
         }
     for (Sparse &part : sparse)
       part.projected = model.projected(part.number);
-    pencil       = model.stiffness() + shift * shift * model.mass();
-    left_columns = right_block = {};
-    is_assembled               = false;
+    pencil      = model.stiffness() + shift * shift * model.mass();
+    is_prepared = false;
   }
 
   ProjectedResiduals ProjectedResiduals::restricted(const SystemMember &member, const DenseMatrix &Z) const
@@ -155,7 +145,7 @@ namespace Squeal
             for (const auto &[number, factor] : member.shares[part.number])
               if (sparse[i].number == number)
                 c[i] += factor;
-            if (is_stiffness(*part.term))
+            if (is_symmetric(*part.term, 0))
               c[i] -= sparse[i].sigma;
           }
         if (std::all_of(c.begin(), c.end(), [](const double x) { return x == 0.; }))
@@ -166,18 +156,15 @@ namespace Squeal
     result.sparse = std::move(parts);
 
     // Rows of the member's factors from those of the family's
-    const auto rows_of = [&](const LowRankFactor *factor) {
-      return std::find_if(factors.begin(), factors.end(), [factor](const Factor &f) { return f.factor == factor; });
-    };
     const auto part_of = [&](const Factor &factor, const auto &rows) -> DenseMatrix {
-      if (const auto same = rows_of(factor.factor); same != factors.end())
-        return rows(*same);
+      if (const std::size_t same = number_of(*factor.factor); same < factors.size())
+        return rows(factors[same]);
       DenseMatrix sum;
       for (std::size_t k = 0; k < member.system.terms.size(); ++k)
         if (member.system.terms[k].right.get() == factor.factor)
           for (const auto &[number, weight] : member.shares[k])
             {
-              const DenseMatrix part = weight * rows(*rows_of(system.terms[number].right.get()));
+              const DenseMatrix part = weight * rows(factors[number_of(*system.terms[number].right)]);
               sum                    = sum.size() == 0 ? part : DenseMatrix(sum + part);
             }
       return sum;
@@ -205,7 +192,6 @@ namespace Squeal
         Sparse &part         = result.sparse[t];
         part.projected       = Z.transpose() * weighted(shares[t], [&](const std::size_t i) { return sparse[i].projected; }) * Z;
         part.factor_products = combined(weighted(shares[t], [&](const std::size_t i) { return sparse[i].factor_products; })) * Z;
-        part.products.clear();
         for (std::size_t l = 0; l < result.sparse.size(); ++l)
           part.products.push_back(
             Z.transpose() *
@@ -230,14 +216,20 @@ namespace Squeal
   void ProjectedResiduals::find_blocks() const
   {
     blocks.clear();
+    n_columns      = 0;
+    const auto add = [&](const Block &block) {
+      blocks.push_back(block);
+      blocks.back().first = n_columns;
+      n_columns += block.n;
+    };
     for (int s = 0; s < static_cast<int>(sparse.size()); ++s)
-      blocks.push_back({s, -1, nullptr, true, true, r});
+      add({s, -1, nullptr, true, true, r});
     for (const Term *term : low_rank)
       if (const bool is_symmetric = term->left == term->right; is_column_term(*term))
         {
-          blocks.push_back({-1, number_of(*term->left), term, is_symmetric, true, r});
+          add({-1, number_of(*term->left), term, is_symmetric, true, r});
           if (!is_symmetric)
-            blocks.push_back({-1, number_of(*term->right), term, true, false, r});
+            add({-1, number_of(*term->right), term, true, false, r});
         }
     for (int f = 0; f < static_cast<int>(factors.size()); ++f)
       {
@@ -249,22 +241,14 @@ namespace Squeal
               block.in_right = block.in_right || &term->target(false) == factors[f].factor;
             }
         if (block.in_left || block.in_right)
-          blocks.push_back(block);
-      }
-    std::stable_sort(blocks.begin(), blocks.end(),
-                     [](const Block &a, const Block &b) { return a.in_right - a.in_left < b.in_right - b.in_left; });
-    n_columns = n_in_left = n_left_only = 0;
-    for (Block &block : blocks)
-      {
-        block.first = n_columns;
-        n_columns += block.n;
-        n_in_left += block.in_left ? block.n : 0;
-        n_left_only += block.in_right ? 0 : block.n;
+          add(block);
       }
   }
 
-  void ProjectedResiduals::assemble() const
+  void ProjectedResiduals::prepare() const
   {
+    if (is_prepared)
+      return;
     find_blocks();
     // Columns of W that belong to a factor F are F C
     const auto gram_of = [&](const Factor &f, const Factor &g) {
@@ -308,8 +292,8 @@ namespace Squeal
     const RealLU          lu    = regular_lu(scale.asDiagonal() * pencil * scale.asDiagonal(), "stiffness of a reduced model");
     H                           = scale.asDiagonal() * H;
     G -= H.transpose() * lu.solve(H);
-    left_columns = G.leftCols(n_in_left);
-    right_block  = G.bottomRightCorner(n_columns - n_left_only, n_columns - n_left_only);
+    bracket     = std::move(G);
+    is_prepared = true;
   }
 
   DenseMatrix ProjectedResiduals::coefficients(const ParameterValues      &values,
@@ -317,24 +301,24 @@ namespace Squeal
                                                const ComplexDenseMatrix   &vectors,
                                                const bool                  transposed) const
   {
-    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(transposed ? left_columns.cols() : right_block.cols(), vectors.cols());
+    ComplexDenseMatrix result = ComplexDenseMatrix::Zero(n_columns, vectors.cols());
     // θ λ^p of each mode
     const auto theta = [&](const Term &term) {
       return as_column(lambda).unaryExpr([&](const Complex &l) { return term.factor(l, values); }).eval();
     };
     std::map<const LowRankFactor *, ComplexDenseMatrix> moved;
     const auto                                          motions_of_modes = [&](const LowRankFactor &factor) -> const ComplexDenseMatrix                                          &{
-      const auto [place, is_new] = moved.emplace(&factor, ComplexDenseMatrix());
-      if (is_new)
-        place->second = multiply(motions.at(&factor), vectors);
-      return place->second;
+      ComplexDenseMatrix &product = moved[&factor];
+      if (product.size() == 0)
+        product = multiply(motions.at(&factor), vectors);
+      return product;
     };
 
     for (const Block &block : blocks)
       {
         if (!(transposed ? block.in_left : block.in_right))
           continue;
-        auto rows = result.middleRows(block.first - (transposed ? 0 : n_left_only), block.n);
+        auto rows = result.middleRows(block.first, block.n);
         if (block.sparse >= 0)
           {
             const Sparse          &part   = sparse[block.sparse];
@@ -351,13 +335,6 @@ namespace Squeal
     return halves(result);
   }
 
-  void ProjectedResiduals::prepare() const
-  {
-    if (!is_assembled)
-      assemble();
-    is_assembled = true;
-  }
-
   ResidualProducts ProjectedResiduals::products(const ParameterValues      &values,
                                                 const std::vector<Complex> &lambda,
                                                 const ComplexDenseMatrix   &right,
@@ -365,9 +342,8 @@ namespace Squeal
   {
     prepare();
     const DenseMatrix y = coefficients(values, lambda, right, false), z = coefficients(values, lambda, left, true);
-    const DenseMatrix Gy = multiply_sparing_zeros(right_block, y), Gz = multiply_sparing_zeros(left_columns, z);
-    return {product_of_halves(Gz.bottomRows(y.rows()).transpose() * y), hermitian_products(y, Gy),
-            hermitian_products(z, Gz.topRows(z.rows()))};
+    const DenseMatrix Gy = multiply_sparing_zeros(bracket, y), Gz = multiply_sparing_zeros(bracket, z);
+    return {product_of_halves(Gz.transpose() * y), hermitian_products(y, Gy), hermitian_products(z, Gz)};
   }
 
   DenseMatrix ProjectedResiduals::coordinates(const ModesAt &modes) const
@@ -378,42 +354,14 @@ namespace Squeal
         (X.colwise().norm().transpose().array() * as_column(modes.lambda).array().abs()).inverse().matrix().cast<Complex>();
       return X * factors.asDiagonal();
     };
-    const DenseMatrix y                         = coefficients(modes.values, modes.lambda, scaled(modes.right), false),
-                      z                         = coefficients(modes.values, modes.lambda, scaled(modes.left), true);
-    DenseMatrix result                          = DenseMatrix::Zero(n_columns, y.cols() + z.cols());
-    result.bottomLeftCorner(y.rows(), y.cols()) = y;
-    result.topRightCorner(z.rows(), z.cols())   = z;
+    DenseMatrix result(n_columns, 4 * modes.right.cols());
+    result << coefficients(modes.values, modes.lambda, scaled(modes.right), false),
+      coefficients(modes.values, modes.lambda, scaled(modes.left), true);
     std::vector<int> others;
     for (int j = 0; j < result.cols(); ++j)
       if (!(result.col(j).array() == 0.).all())
         others.push_back(j);
     return result(Eigen::all, others);
-  }
-
-  DenseMatrix ProjectedResiduals::bracket_times(const DenseMatrix &Y) const
-  {
-    // Rows of left residuals only, of both, of right ones only
-    const int   n_right_only = n_columns - n_in_left;
-    DenseMatrix result       = left_columns * Y.topRows(n_in_left);
-    result.topRows(n_left_only) += left_columns.bottomRows(n_right_only).leftCols(n_left_only).transpose() * Y.bottomRows(n_right_only);
-    result.bottomRows(n_columns - n_left_only) += right_block.rightCols(n_right_only) * Y.bottomRows(n_right_only);
-    return result;
-  }
-
-  MultiVector ProjectedResiduals::columns_times(const ReducedModel &model, const DenseMatrix &C) const
-  {
-    MultiVector result(inverse.map(), static_cast<int>(C.cols()));
-    for (const Block &block : blocks)
-      {
-        const DenseMatrix rows = C.middleRows(block.first, block.n);
-        if (block.sparse >= 0)
-          result += *sparse[block.sparse].term->matrix * model.times_basis(rows);
-        else if (block.term != nullptr)
-          result += *factors[block.factor].factor * (motions.at(&block.term->source(!block.in_right)) * rows);
-        else
-          result += *factors[block.factor].factor * rows;
-      }
-    return result;
   }
 
   std::optional<MultiVector> ProjectedResiduals::principal_responses(const ReducedModel         &model,
@@ -427,7 +375,7 @@ namespace Squeal
         Y = append_columns(Y, coordinates(some));
     if (Y.cols() == 0)
       return {};
-    const DenseMatrix energies = Y.transpose() * bracket_times(Y);
+    const DenseMatrix energies = Y.transpose() * bracket * Y;
     const auto [squares, axes] =
       agreed(inverse.map().communicator(), symmetric_eigenpairs(0.5 * (energies + energies.transpose()))); // ascending
     if (!(squares.back() > 0.))
@@ -435,6 +383,17 @@ namespace Squeal
     const auto        first = std::upper_bound(squares.begin(), squares.end(), tolerance * tolerance * squares.back()) - squares.begin();
     const auto        kept  = static_cast<Eigen::Index>(squares.size()) - first;
     const DenseMatrix C     = Y * axes.rightCols(kept) * as_column(squares).tail(kept).cwiseSqrt().cwiseInverse().asDiagonal();
-    return inverse.solve_frictionless(columns_times(model, C));
+    MultiVector       WC(inverse.map(), static_cast<int>(kept));
+    for (const Block &block : blocks)
+      {
+        const DenseMatrix rows = C.middleRows(block.first, block.n);
+        if (block.sparse >= 0)
+          WC += *sparse[block.sparse].term->matrix * model.times_basis(rows);
+        else if (block.term != nullptr)
+          WC += *factors[block.factor].factor * (motions.at(&block.term->source(!block.in_right)) * rows);
+        else
+          WC += *factors[block.factor].factor * rows;
+      }
+    return inverse.solve_frictionless(WC);
   }
 } // namespace Squeal

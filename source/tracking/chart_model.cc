@@ -75,14 +75,12 @@ namespace Squeal
                          const UpdatedInverse &inverse,
                          const double          shift,
                          const MultiVector    &real_modes,
-                         const double          largest_circular_frequency,
-                         const double          margin)
+                         const double          largest_circular_frequency)
     : system(system)
     , inverse(inverse)
     , real_modes(&real_modes)
     , shift(shift)
     , largest_circular_frequency(largest_circular_frequency)
-    , margin(margin)
     , model(starting_model(system, inverse, real_modes, true))
     , residuals(system, inverse, shift, system.values)
   {
@@ -94,26 +92,14 @@ namespace Squeal
                          const double          shift,
                          ReducedModel          model,
                          ProjectedResiduals    residuals,
-                         const double          largest_circular_frequency,
-                         const double          margin)
+                         const double          largest_circular_frequency)
     : system(member)
     , inverse(inverse)
     , shift(shift)
     , largest_circular_frequency(largest_circular_frequency)
-    , margin(margin)
     , model(std::move(model))
     , residuals(std::move(residuals))
   {}
-
-  int ChartModel::size() const
-  {
-    return model.size();
-  }
-
-  const ReducedModel &ChartModel::reduced() const
-  {
-    return model;
-  }
 
   void ChartModel::prepare() const
   {
@@ -126,7 +112,7 @@ namespace Squeal
   {
     const ParameterValues values = system.at(point.friction_coefficient, point.values);
     // What follows from products of vectors is the same in modal coordinates, where most of them are diagonal
-    const double       end   = (1. + margin) * largest_circular_frequency;
+    const double       end   = (1. + band_margin) * largest_circular_frequency;
     auto               modal = modal_modes_of_band(model, values, end);
     ReducedModes       modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
     ComplexDenseMatrix right = modes.right, left = modes.left;
@@ -177,7 +163,7 @@ namespace Squeal
             between.push_back((1. - t) * numbers[i] + t * second.values.at(name)[i]);
         }
       std::vector<std::complex<double>> lambda =
-        local_reduced_modes(small, system.at(mu, others), (1. + margin) * largest_circular_frequency).lambda;
+        local_reduced_modes(small, system.at(mu, others), (1. + band_margin) * largest_circular_frequency).lambda;
       if (lambda.size() < search.first.modes.size())
         return std::numeric_limits<double>::quiet_NaN();
       before.towards(after, t).bring_to_front(lambda);

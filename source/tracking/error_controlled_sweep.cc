@@ -7,9 +7,6 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
-#include <atomic>
-#include <deque>
-#include <mutex>
 
 namespace Squeal
 {
@@ -25,24 +22,11 @@ namespace Squeal
     /// modes that miss the tolerance with their residuals, and divides their errors by ten and more where residuals are right.
     constexpr int max_growths_in_vain = 4;
 
-    /// Whether growths still achieve something.
-    class Achievement
+    /// How many growths in a row have not halved the error of their point, with one that took it from @p before to @p after.
+    int in_vain(const int n_so_far, const double before, const double after)
     {
-    public:
-      /// The error of a point before and after the basis was grown for it.
-      void observe(const double before, const double after)
-      {
-        n_in_vain = after < 0.5 * before ? 0 : n_in_vain + 1;
-      }
-
-      bool is_none() const
-      {
-        return n_in_vain >= max_growths_in_vain;
-      }
-
-    private:
-      int n_in_vain = 0;
-    };
+      return after < 0.5 * before ? 0 : n_so_far + 1;
+    }
 
     /// Grows the basis by the modes of a point that miss the tolerance; returns why it cannot, or nothing.
     std::string grow(ChartModel           &model,
@@ -63,13 +47,6 @@ namespace Squeal
       return "";
     }
 
-    /// Points that threads and processes evaluate at once; processes may have different numbers of threads.
-    int n_at_once(const MPI_Comm communicator)
-    {
-      return static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator) *
-                              dealii::Utilities::MPI::min(n_task_threads(), communicator));
-    }
-
     using Report = std::function<void(double error)>;
 
     /// Grows the basis for some operating points, one after the other, and compresses it; returns how often it grew.
@@ -81,48 +58,28 @@ namespace Squeal
               const MPI_Comm                     communicator,
               const Report                      &report)
     {
-      const double            tolerance  = training_factor * options.tolerance;
-      const std::size_t       n_together = n_at_once(communicator);
+      const double            tolerance = training_factor * options.tolerance;
       std::vector<ChartPoint> charts;
-      std::deque<ChartPoint>  evaluated; ///< the next training points with the basis as it is
-      Achievement             achievement;
-      double                  before    = 0.; ///< the error of this point before the last growth for it
       bool                    may_grow  = true;
-      int                     n_growths = 0;
-      for (std::size_t t = 0; t < training.size();)
-        {
-          // Threads without work evaluate what comes next, which holds unless the basis grows first
-          if (evaluated.empty())
-            {
-              std::vector<OperatingPoint> next;
-              for (std::size_t i = t; i < std::min(training.size(), t + n_together); ++i)
-                next.push_back(points[training[i]]);
-              for (ChartPoint &found : evaluate(model, next, communicator))
-                evaluated.push_back(std::move(found));
-            }
-          const OperatingPoint &point = points[training[t]];
-          const ChartPoint      chart = std::move(evaluated.front());
-          const double          error = model.largest_error(chart);
-          evaluated.pop_front();
-          report(error);
-          if (before > 0.)
-            achievement.observe(before, error);
-          may_grow = may_grow && !achievement.is_none();
-          before   = 0.;
-          // Where the basis may not grow further, the points may still do
-          if (error <= tolerance || !may_grow)
-            {
-              charts.push_back(chart);
-              ++t;
-            }
-          else
-            {
-              before   = error;
-              may_grow = grow(model, point, chart, tolerance, options.maximum_basis, nullptr).empty();
-              ++n_growths;
-              evaluated.clear();
-            }
-        }
+      int                     n_growths = 0, n_in_vain = 0;
+      for (const int t : training)
+        for (double before = 0.;; ++n_growths) // the error of this point before the last growth for it
+          {
+            ChartPoint   chart = evaluate(model, {points[t]}, communicator).front();
+            const double error = model.largest_error(chart);
+            report(error);
+            if (before > 0.)
+              n_in_vain = in_vain(n_in_vain, before, error);
+            may_grow = may_grow && n_in_vain < max_growths_in_vain;
+            // Where the basis may not grow further, the points may still do
+            if (error <= tolerance || !may_grow)
+              {
+                charts.push_back(std::move(chart));
+                break;
+              }
+            before   = error;
+            may_grow = grow(model, points[t], chart, tolerance, options.maximum_basis, nullptr).empty();
+          }
       for (ChartPoint &chart : charts)
         for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
           *vectors = with_rows(*vectors, model.size());
@@ -132,67 +89,6 @@ namespace Squeal
       model.restart(std::move(smaller));
       return n_growths;
     }
-    using Each = std::function<void(int, const ChartPoint &)>;
-
-    /// Threads take the next point each; one of them hands over what is found, in its order, while the others go on.
-    std::vector<ChartPoint> evaluate_here(const ChartModel &model, const std::vector<OperatingPoint> &points, const Each &each)
-    {
-      const int               n_points = static_cast<int>(points.size());
-      std::vector<ChartPoint> result(n_points);
-      std::vector<bool>       is_found(n_points, false);
-      std::mutex              handing_over;
-      std::atomic<int>        next          = 0;
-      std::atomic<bool>       has_failed    = false;
-      int                     n_handed_over = 0;
-      run_tasks(n_points, [&](int) {
-        if (has_failed)
-          return;
-        try
-          {
-            const int i = next++;
-            result[i]   = model.evaluate(points[i]);
-            const std::lock_guard<std::mutex> lock(handing_over);
-            is_found[i] = true;
-            for (; n_handed_over < n_points && is_found[n_handed_over]; ++n_handed_over)
-              if (each)
-                each(n_handed_over, result[n_handed_over]);
-          }
-        catch (...)
-          {
-            has_failed = true;
-            throw;
-          }
-      });
-      return result;
-    }
-
-    /// Threads of all processes evaluate some points each, which are handed over, in their order, before the next ones.
-    std::vector<ChartPoint> evaluate_in_rounds(const ChartModel                  &model,
-                                               const std::vector<OperatingPoint> &points,
-                                               const MPI_Comm                     communicator,
-                                               const Each                        &each)
-    {
-      const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
-      const int n_points = static_cast<int>(points.size());
-      // Some for each thread, so that none waits long for the last of them
-      constexpr int           points_of_thread = 4;
-      const int               n_rounds         = points_of_thread * n_at_once(communicator) / n;
-      std::vector<ChartPoint> result;
-      for (int first = 0; first < n_points; first += n * n_rounds)
-        {
-          const int               n_here = std::min(n * n_rounds, n_points - first);
-          std::vector<ChartPoint> mine(n_here > me ? (n_here - me + n - 1) / n : 0);
-          run_tasks(static_cast<int>(mine.size()), [&](const int i) { mine[i] = model.evaluate(points[first + i * n + me]); });
-          for (int i = 0; i < n_here; ++i)
-            {
-              const int owner = i % n;
-              result.push_back(dealii::Utilities::MPI::broadcast(communicator, owner == me ? mine[i / n] : ChartPoint(), owner));
-              if (each)
-                each(first + i, result.back());
-            }
-        }
-      return result;
-    }
   } // namespace
 
   std::vector<ChartPoint> evaluate(const ChartModel                                   &model,
@@ -200,9 +96,28 @@ namespace Squeal
                                    const MPI_Comm                                      communicator,
                                    const std::function<void(int, const ChartPoint &)> &each)
   {
-    const int n = dealii::Utilities::MPI::n_mpi_processes(communicator);
+    const int n = dealii::Utilities::MPI::n_mpi_processes(communicator), me = dealii::Utilities::MPI::this_mpi_process(communicator);
+    const int n_points = static_cast<int>(points.size());
+    // Some for each thread, so that none waits long for the last of them
+    constexpr int points_of_thread = 4;
+    const int     n_at_once        = n * points_of_thread * static_cast<int>(dealii::Utilities::MPI::min(n_task_threads(), communicator));
+    std::vector<ChartPoint> result;
     model.prepare();
-    return n == 1 ? evaluate_here(model, points, each) : evaluate_in_rounds(model, points, communicator, each);
+    for (int first = 0; first < n_points; first += n_at_once)
+      {
+        const int               n_here = std::min(n_at_once, n_points - first);
+        std::vector<ChartPoint> mine(n_here > me ? (n_here - me + n - 1) / n : 0);
+        run_tasks(static_cast<int>(mine.size()), [&](const int i) { mine[i] = model.evaluate(points[first + i * n + me]); });
+        for (int i = 0; i < n_here; ++i)
+          {
+            const int owner = i % n;
+            result.push_back(n == 1 ? std::move(mine[i]) :
+                                      dealii::Utilities::MPI::broadcast(communicator, owner == me ? mine[i / n] : ChartPoint(), owner));
+            if (each)
+              each(first + i, result.back());
+          }
+      }
+    return result;
   }
 
   PredictZero zero_predictor(const ChartModel &model, const std::function<OperatingPoint(double)> &at, const MPI_Comm communicator)
@@ -246,9 +161,9 @@ namespace Squeal
       for (std::size_t i = 0; i < points.size(); ++i)
         result.points[i] = store->find(points[i]);
 
-    Achievement achievement;
-    int         grown        = -1; // the point that the basis was grown for
-    double      error_before = 0.;
+    int    grown        = -1; // the point that the basis was grown for
+    int    n_in_vain    = 0;
+    double error_before = 0.;
     for (;; ++result.n_growths)
       {
         std::vector<int>            left;
@@ -266,7 +181,7 @@ namespace Squeal
         evaluate(model, points_left, communicator, [&](const int k, const ChartPoint &point) {
           const double error = model.largest_error(point);
           if (left[k] == grown)
-            achievement.observe(error_before, error);
+            n_in_vain = in_vain(n_in_vain, error_before, error);
           if (error <= options.tolerance)
             {
               result.points[left[k]] = point;
@@ -285,7 +200,7 @@ namespace Squeal
           break;
         grown              = worst;
         error_before       = worst_error;
-        result.why_stopped = achievement.is_none() ?
+        result.why_stopped = n_in_vain >= max_growths_in_vain ?
                                text("larger bases do not halve the estimated error ", worst_error, ", which rounding makes up") :
                                grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis, store);
         if (!result.why_stopped.empty())

@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/tracking/growth_onset.h>
+#include <squeal/tracking/branches.h>
 
 #include <boost/math/tools/roots.hpp>
 
@@ -25,27 +25,26 @@ namespace Squeal
     {
       return i > 0 ? chart.points[i - 1].friction_coefficient : before;
     }
-
-    /// The branch that a mode of a point between those of a chart resembles most, of those that grow at point k.
-    int branch_of(const StabilityChart &chart, const int k, const ChartPoint &point, const int mode)
-    {
-      int    result  = -1;
-      double largest = -1.;
-      for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
-        if (const int j = chart.branches[b].modes[k]; j >= 0 && chart.points[k].lambda[j].real() > 0.)
-          {
-            const ComplexDenseMatrix &X = point.right, &Y = chart.points[k].right;
-            const auto                r       = std::min(X.rows(), Y.rows());
-            const double              overlap = std::abs(X.col(mode).head(r).dot(Y.col(j).head(r)));
-            if (overlap > largest)
-              {
-                largest = overlap;
-                result  = b;
-              }
-          }
-      return result;
-    }
   } // namespace
+
+  int similar_branch(const StabilityChart &chart, const int k, const ChartPoint &point, const int mode, const bool is_growing)
+  {
+    int    result  = -1;
+    double largest = 0.;
+    for (int b = 0; b < static_cast<int>(chart.branches.size()); ++b)
+      if (const int j = chart.branches[b].modes[k]; j >= 0 && (!is_growing || chart.points[k].lambda[j].real() > 0.))
+        {
+          const ComplexDenseMatrix &X = point.right, &Y = chart.points[k].right;
+          const auto                r       = std::min(X.rows(), Y.rows());
+          const double              overlap = std::abs(X.col(mode).head(r).dot(Y.col(j).head(r)));
+          if (overlap > largest)
+            {
+              largest = overlap;
+              result  = b;
+            }
+        }
+    return result;
+  }
 
   int leading_mode(const ChartPoint &point, const double largest_circular_frequency)
   {
@@ -68,7 +67,7 @@ namespace Squeal
           ++i;
         if (i == static_cast<int>(modes.size()))
           continue;
-        const int    first = std::find_if(modes.begin(), modes.end(), [](const int j) { return j >= 0; }) - modes.begin();
+        const int    first = chart.branches[b].begin();
         const double mu = chart.points[i].friction_coefficient, begin = chart.points[first].friction_coefficient;
         GrowthOnset  found{begin, begin - previous(chart, first, before), b, chart.points[first].lambda[modes[first]]};
         for (const Threshold &threshold : chart.thresholds)
@@ -109,7 +108,7 @@ namespace Squeal
     if (k == 0)
       {
         const int leading = leading_mode(above, omega_max);
-        return GrowthOnset{right, right - left, branch_of(chart, 0, above, leading), above.lambda[leading]};
+        return GrowthOnset{right, right - left, similar_branch(chart, 0, above, leading, true), above.lambda[leading]};
       }
 
     const auto     at       = [&](const double mu) { return evaluate({mu}).front(); };
@@ -126,6 +125,6 @@ namespace Squeal
     const double far       = bracket.second + step <= right ? bracket.second + step : bracket.second - step;
     const double slope     = (value(far) - excess(there)) / (far - bracket.second);
     const double by_lambda = slope > 0. ? error_safety * there.errors[mode] / slope : right - left;
-    return GrowthOnset{bracket.second, width + by_lambda, branch_of(chart, k, there, mode), there.lambda[mode]};
+    return GrowthOnset{bracket.second, width + by_lambda, similar_branch(chart, k, there, mode, true), there.lambda[mode]};
   }
 } // namespace Squeal

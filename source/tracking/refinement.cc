@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace Squeal
 {
@@ -268,24 +267,9 @@ namespace Squeal
         }
       return one_of_each_cluster(std::move(result), one_look * modes.width(k));
     }
-
-    Surroundings surroundings(const TrackedModes &modes, const int k)
-    {
-      Surroundings result;
-      for (int i = 0; i < 4; ++i)
-        {
-          const int  point                = k - 1 + i;
-          const bool is_there             = point >= 0 && point < modes.n_points();
-          result.friction_coefficients[i] = is_there ? modes.mu(point) : std::numeric_limits<double>::infinity();
-        }
-      for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
-        if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
-          result.modes.push_back({{modes.mode(b, k - 1), modes.mode(b, k), modes.mode(b, k + 1), modes.mode(b, k + 2)}});
-      return result;
-    }
   } // namespace
 
-  std::vector<double> refinement_requests(TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict)
+  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict)
   {
     const std::size_t left = std::max(0, modes.options.maximum_refinements - modes.n_refinements);
     if (left == 0)
@@ -302,18 +286,13 @@ namespace Squeal
     // Steps are looked at several at a time, and what they ask for is put together in their order
     std::vector<std::vector<double>> suspicions(std::max(0, modes.n_points() - 1));
     run_tasks(static_cast<int>(suspicions.size()), [&](const int k) {
-      ChartInterval &step = modes.intervals[k];
       if (modes.width(k) <= modes.options.smallest_step)
         return;
-      if (!step.links->resolved)
+      if (!modes.intervals[k].links->resolved)
         suspicions[k] = {0.5 * (modes.mu(k) + modes.mu(k + 1))};
-      else if (Surroundings here = surroundings(modes, k); !(step.quiet == here))
-        {
-          for (const auto &found : {interactions(modes, k), approaches(modes, k)})
-            suspicions[k].insert(suspicions[k].end(), found.begin(), found.end());
-          if (suspicions[k].empty())
-            step.quiet = std::move(here);
-        }
+      else
+        for (const auto &found : {interactions(modes, k), approaches(modes, k)})
+          suspicions[k].insert(suspicions[k].end(), found.begin(), found.end());
     });
     for (const std::vector<double> &values : suspicions)
       wanted.insert(wanted.end(), values.begin(), values.end());

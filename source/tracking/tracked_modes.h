@@ -3,31 +3,17 @@
 #include <squeal/tracking/branches.h>
 #include <squeal/tracking/mode_links.h>
 
-#include <array>
 #include <complex>
 #include <optional>
 #include <vector>
 
 namespace Squeal
 {
-  /// What a look at a step depends on: its ends, their neighbours, and the modes of each branch there.
-  struct Surroundings
-  {
-    std::array<double, 4>           friction_coefficients;
-    std::vector<std::array<int, 4>> modes;
-
-    bool operator==(const Surroundings &other) const
-    {
-      return friction_coefficients == other.friction_coefficients && modes == other.modes;
-    }
-  };
-
   /// A step between neighbouring points.
   struct ChartInterval
   {
-    std::optional<ModeLinks>    links;
-    int                         stalls = 0;  ///< how often in a row it shrank by less than half
-    std::optional<Surroundings> quiet  = {}; ///< those in which nothing seemed to happen in it
+    std::optional<ModeLinks> links;
+    int                      stalls = 0; ///< how often in a row it shrank by less than half
   };
 
   /// Modes of a multiple λ, with orthonormal bases of the spans of their right and left vectors.
@@ -122,8 +108,8 @@ namespace Squeal
    */
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
-  /// Friction coefficients that would tell more; @p predict may be empty. Notes steps in which nothing seems to happen.
-  std::vector<double> refinement_requests(TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict);
+  /// Friction coefficients that would tell more; @p predict may be empty.
+  std::vector<double> refinement_requests(const TrackedModes &modes, const std::vector<EventSearch> &searches, const PredictZero &predict);
 
   /// The chart, with what the searches have found.
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches);

@@ -1,3 +1,4 @@
+#include <squeal/base/mpi_environment.h>
 #include <squeal/base/tasks.h>
 #include <squeal/base/worker_process.h>
 
@@ -6,7 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
-#include <set>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -16,33 +17,29 @@ using namespace Squeal;
 
 namespace
 {
-  /// Sets OMP_NUM_THREADS, or removes it, as long as it exists.
-  class ThreadsOfEnvironment
+  /// Sets a variable of the environment, or removes it, as long as it exists.
+  class Variable
   {
   public:
-    explicit ThreadsOfEnvironment(const char *value)
+    explicit Variable(const char *name, const char *value = nullptr)
+      : name(name)
     {
-      if (const char *before = std::getenv(name); before != nullptr)
+      if (const char *before = std::getenv(name))
         old = before;
       set(value);
     }
-
-    ~ThreadsOfEnvironment()
+    ~Variable()
     {
-      set(old.empty() ? nullptr : old.c_str());
+      set(old ? old->c_str() : nullptr);
+    }
+    void set(const char *value) const
+    {
+      value != nullptr ? ::setenv(name, value, 1) : ::unsetenv(name);
     }
 
   private:
-    static void set(const char *value)
-    {
-      if (value != nullptr)
-        ::setenv(name, value, 1);
-      else
-        ::unsetenv(name);
-    }
-
-    static constexpr const char *name = "OMP_NUM_THREADS";
-    std::string                  old;
+    const char *const          name;
+    std::optional<std::string> old;
   };
 } // namespace
 
@@ -100,21 +97,42 @@ TEST(Tasks, TheFirstFailureIsTold)
 
 TEST(Tasks, ThreadsThatMayBeUsed)
 {
-  {
-    const ThreadsOfEnvironment three("3");
-    EXPECT_EQ(usable_threads(0), 3u);
-    EXPECT_EQ(usable_threads(5), 5u);
-  }
-  {
-    const ThreadsOfEnvironment nested("2,4");
-    EXPECT_EQ(usable_threads(0), 2u);
-  }
-  for (const char *nothing : {"", "all", "-1", "0"})
+  const Variable threads("OMP_NUM_THREADS", "3");
+  EXPECT_EQ(usable_threads(0), 3u);
+  EXPECT_EQ(usable_threads(5), 5u);
+  threads.set("2,4"); // nested
+  EXPECT_EQ(usable_threads(0), 2u);
+  for (const char *nothing : {"", "all", "-1", "0", static_cast<const char *>(nullptr)})
     {
-      const ThreadsOfEnvironment useless(nothing);
-      EXPECT_EQ(usable_threads(0), n_usable_cores()) << nothing;
+      threads.set(nothing);
+      EXPECT_EQ(usable_threads(0), n_usable_cores());
     }
-  const ThreadsOfEnvironment none(nullptr);
-  EXPECT_EQ(usable_threads(0), n_usable_cores());
   EXPECT_EQ(usable_threads(0, 1000000), 1u);
+}
+
+TEST(MpiEnvironment, DependsOnMpirunAndCores)
+{
+  const Variable n_processes("OMPI_COMM_WORLD_LOCAL_SIZE"), yields("OMPI_MCA_mpi_yield_when_idle"),
+    is_isolated("OMPI_MCA_ess_singleton_isolated"), has_folder("OMPI_MCA_orte_create_session_dirs");
+  const auto value = [](const char *name) { return std::string(std::getenv(name) == nullptr ? "none" : std::getenv(name)); };
+  n_processes.set("1");
+  prepare_mpi_environment();
+  EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "none");
+  n_processes.set("1000000");
+  prepare_mpi_environment();
+  EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "1");
+  // The user's choice stays
+  yields.set("0");
+  prepare_mpi_environment();
+  EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "0");
+  EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "none");
+  EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "none");
+
+  // Without mpirun
+  n_processes.set(nullptr);
+  yields.set(nullptr);
+  prepare_mpi_environment();
+  EXPECT_EQ(value("OMPI_MCA_ess_singleton_isolated"), "1");
+  EXPECT_EQ(value("OMPI_MCA_orte_create_session_dirs"), "0");
+  EXPECT_EQ(value("OMPI_MCA_mpi_yield_when_idle"), "none");
 }

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -43,6 +45,20 @@ namespace
     return Scene(extrude(polar_plan(0.15, 0.31, 6, 36, two_pins), layers(1, 3)), materials, operating());
   }
 
+  /// A round pin, its axis at (0.2, 0).
+  Scene pin_scene()
+  {
+    return Scene(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  }
+
+  /// Displacement of the disc in the direction of a family, from radius and angle.
+  MultiVector along(const Scene &s, const ModeFamily family, const std::function<double(double, double)> &value)
+  {
+    return displacements(s.model, 0, [&](const Point3 &p) {
+      const double r = std::hypot(p[0], p[1]), u = value(r, std::atan2(p[1], p[0])), x = u * p[0] / r, y = u * p[1] / r;
+      return family == A ? Point3{{0., 0., u}} : family == R ? Point3{{x, y, 0.}} : Point3{{-y, x, 0.}};
+    });
+  }
 } // namespace
 
 TEST(NodalMasses, AddUpToTheMass)
@@ -66,25 +82,14 @@ TEST(DiscLabels, AnalyticFields)
   const auto               masses = nodal_masses(s.model, *s.system.mass);
   std::vector<MultiVector> fields;
   std::vector<std::string> expected;
-  for (const char family : {'A', 'R', 'C'})
+  for (const ModeFamily family : {A, R, C})
     for (int m = 0; m <= 2; ++m)
       for (int n = 0; n <= 9; ++n)
         {
-          const double turn = 0.4 * n;
-          fields.push_back(displacements(s.model, 0, [&](const Point3 &p) {
-            const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]);
-            const double value = std::cos(M_PI * m * (r - 0.15) / 0.16) * std::cos(n * theta + (n > 0 ? turn : 0.));
-            switch (family)
-              {
-                case 'A':
-                  return Point3{{0., 0., value}};
-                case 'R':
-                  return Point3{{value * p[0] / r, value * p[1] / r, 0.}};
-                default:
-                  return Point3{{-value * p[1] / r, value * p[0] / r, 0.}};
-              }
+          fields.push_back(along(s, family, [=](const double r, const double theta) {
+            return std::cos(M_PI * m * (r - 0.15) / 0.16) * std::cos(n * theta + 0.4 * n);
           }));
-          expected.push_back(std::string(1, family) + std::to_string(m) + "-" + std::to_string(n));
+          expected.push_back(to_string(family) + std::to_string(m) + "-" + std::to_string(n));
         }
   EXPECT_EQ(texts(disc_labels(s.model, masses, join_all(fields))), expected);
 }
@@ -95,11 +100,10 @@ TEST(DiscLabels, TheLargerPartDecides)
   const Scene s      = disc_scene();
   const auto  masses = nodal_masses(s.model, *s.system.mass);
   const auto  mixed  = [&](const double radial, const double around) {
-    return displacements(s.model, 0, [=](const Point3 &p) {
-      const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]);
-      const double u = radial * std::cos(3. * theta), v = around * std::sin(3. * theta);
-      return Point3{{(u * p[0] - v * p[1]) / r, (u * p[1] + v * p[0]) / r, 0.1 * std::cos(5. * theta)}};
-    });
+    MultiVector u = along(s, R, [radial](double, const double theta) { return radial * std::cos(3. * theta); });
+    u += along(s, C, [around](double, const double theta) { return around * std::sin(3. * theta); });
+    u += along(s, A, [](double, const double theta) { return 0.1 * std::cos(5. * theta); });
+    return u;
   };
   EXPECT_EQ(texts(disc_labels(s.model, masses, join_all({mixed(1., 0.9), mixed(0.9, 1.)}))), (std::vector<std::string>{"R0-3", "C0-3"}));
 }
@@ -116,22 +120,13 @@ TEST(WaveShares, AnalyticFields)
     for (int n = 1; n <= 9; ++n)
       for (const auto &[f, g] : {std::make_pair(1., 0.), std::make_pair(0., 1.), std::make_pair(0.8, 0.8), std::make_pair(-0.3, 0.4)})
         {
-          const auto field = [&](const bool imaginary) {
-            return displacements(s.model, 0, [&, f = f, g = g](const Point3 &p) {
-              const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]), profile = 1. + 5. * r;
-              const double value = profile * (imaginary ? (g - f) * std::sin(n * theta) : (f + g) * std::cos(n * theta));
-              // What another direction does, and another harmonic, does not count
-              const double other = 0.3 * std::cos((n + 1) * theta);
-              switch (family)
-                {
-                  case A:
-                    return Point3{{0.2 * p[0], 0.2 * p[1], value + other}};
-                  case R:
-                    return Point3{{(value + other) * p[0] / r, (value + other) * p[1] / r, 0.2}};
-                  default:
-                    return Point3{{-(value + other) * p[1] / r, (value + other) * p[0] / r, 0.2}};
-                }
+          const auto field = [&, f = f, g = g](const bool imaginary) {
+            MultiVector u = along(s, family, [&](const double r, const double theta) {
+              const double value = imaginary ? (g - f) * std::sin(n * theta) : (f + g) * std::cos(n * theta);
+              return (1. + 5. * r) * value + 0.3 * std::cos((n + 1) * theta); // another harmonic does not count
             });
+            u += along(s, family == A ? R : A, [](double, double) { return 0.2; }); // nor does another direction
+            return u;
           };
           re.push_back(field(false));
           im.push_back(field(true));
@@ -157,7 +152,7 @@ TEST(WaveShares, AnalyticFields)
 TEST(WaveShares, OfDiscModesWithNodalDiametersOnly)
 {
   const Scene       s     = disc_scene();
-  const MultiVector field = join_all({displacements(s.model, 0, [](const Point3 &p) { return Point3{{0., 0., p[0]}}; })});
+  const MultiVector field = displacements(s.model, 0, [](const Point3 &p) { return Point3{{0., 0., p[0]}}; });
   const auto        of    = [&](const ModeLabel &label) {
     return wave_shares(s.model, nodal_masses(s.model, *s.system.mass), {label}, field, MultiVector(field.map(), 1))[0];
   };
@@ -170,7 +165,7 @@ TEST(WaveShares, OfDiscModesWithNodalDiametersOnly)
 TEST(PinLabels, AnalyticFields)
 {
   // Round pin, its axis at (0.2, 0); fields vanish at the clamp
-  const Scene              s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const Scene              s      = pin_scene();
   const auto               masses = nodal_masses(s.model, *s.system.mass);
   const GeometryParameters geometry;
   const auto               depth   = [&](const Point3 &p) { return geometry.disc_thickness / 2. + geometry.pin_height - p[2]; };
@@ -196,7 +191,7 @@ TEST(PinLabels, AnalyticFields)
 
 TEST(PinLabels, APinThatHardlyTouchesBendsAboutItsOwnAxis)
 {
-  const Scene            s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const Scene            s = pin_scene();
   const ContactInterface closed(s.interface.begin(), s.interface.begin() + 1);
   const double           limit = 2. * M_PI * 9000.;
   const auto modes = component_modes(s.model, s.interface, closed, s.system, Component::pins, ContactBoundary::sliding, limit * limit, {});
@@ -207,7 +202,7 @@ TEST(PinLabels, APinThatHardlyTouchesBendsAboutItsOwnAxis)
 TEST(PinLabels, ModesOfRoundPinsInOrder)
 {
   // Slender beams have flexural modes first; the numbers of every family ascend with frequency and count all pins.
-  const Scene         s(extrude(round_plan(0.2, 0.026, 2), layers(1, 4)), mounted({}), operating());
+  const Scene         s = pin_scene();
   std::vector<double> torsion;
   for (const ContactBoundary boundary : {ContactBoundary::free, ContactBoundary::sliding})
     {
@@ -257,11 +252,9 @@ TEST(MarkDoublets, PairsOnly)
   std::vector<ModeLabel> labels = {{A, 0, 2}, pin_mode(F, 1), {A, 0, 2}, {A, 0, 0}, pin_mode(F, 1), pin_mode(F, 1)};
   mark_doublets(labels);
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-2 -", "F1", "A0-2 +", "A0-0", "F1", "F1"}));
-}
 
-TEST(MarkDoublets, TheOneThatGrowsMoreIsPlus)
-{
-  std::vector<ModeLabel> labels = {{A, 0, 4}, {A, 0, 4}, {A, 0, 5}, {A, 0, 5}, {R, 0, 1}, {R, 0, 1}, pin_mode(T, 1), pin_mode(T, 1)};
+  // With rates, the one that grows more is plus
+  labels = {{A, 0, 4}, {A, 0, 4}, {A, 0, 5}, {A, 0, 5}, {R, 0, 1}, {R, 0, 1}, pin_mode(T, 1), pin_mode(T, 1)};
   mark_doublets(labels, {100., 0., 0., 50., 0., 0., 3., 2.});
   EXPECT_EQ(texts(labels), (std::vector<std::string>{"A0-4 +", "A0-4 -", "A0-5 -", "A0-5 +", "R0-1 -", "R0-1 +", "T1 +", "T1 -"}));
 }
@@ -300,11 +293,27 @@ namespace
       return identify({&disc, &pins}, shape_shares({&disc, &pins}, *s.system.mass, re, im));
     }
   };
+
+  class Identify : public ::testing::Test
+  {
+  protected:
+    static void SetUpTestSuite()
+    {
+      references = std::make_unique<References>();
+    }
+    /// Nothing distributed may outlive MPI.
+    static void TearDownTestSuite()
+    {
+      references.reset();
+    }
+
+    static inline std::unique_ptr<References> references;
+    const References                         &r = *references;
+  };
 } // namespace
 
-TEST(Identify, ComponentModesAreThemselves)
+TEST_F(Identify, ComponentModesAreThemselves)
 {
-  const References r;
   ASSERT_GE(r.disc.labels.size(), 5u);
   ASSERT_GE(r.pins.labels.size(), 2u);
   std::vector<ModeLabel> labels = r.disc.labels;
@@ -318,10 +327,9 @@ TEST(Identify, ComponentModesAreThemselves)
     }
 }
 
-TEST(Identify, SharesOfMixturesAndPhases)
+TEST_F(Identify, SharesOfMixturesAndPhases)
 {
-  const References r;
-  const auto      &labels   = r.disc.labels;
+  const auto &labels        = r.disc.labels;
   const auto [pair, single] = r.doublet_and_other();
   const MultiVector a = view(*r.disc.vectors, pair, 1), b = view(*r.disc.vectors, pair + 1, 1), c = view(*r.disc.vectors, single, 1);
 
@@ -338,9 +346,8 @@ TEST(Identify, SharesOfMixturesAndPhases)
   EXPECT_NEAR(found[1].participation, 0.64, 1e-10);
 }
 
-TEST(Identify, CoordinatesInABasisGiveTheSameShares)
+TEST_F(Identify, CoordinatesInABasisGiveTheSameShares)
 {
-  const References                          r;
   const std::vector<const ComponentModes *> references = {&r.disc, &r.pins};
   const MultiVector                         X = join({r.disc.vectors.get(), r.pins.vectors.get()}), random = random_vectors(X.map(), 3);
   const MultiVector                         basis = join({&X, &random}); // neither orthonormal nor in the span of the references
@@ -357,11 +364,10 @@ TEST(Identify, CoordinatesInABasisGiveTheSameShares)
       EXPECT_NEAR(found[j].at(shape), share, 1e-12);
 }
 
-TEST(Identify, ModesUnlikeAllAreUnnamed)
+TEST_F(Identify, ModesUnlikeAllAreUnnamed)
 {
   // Noise has next to nothing of the lowest modes; two such modes are no doublet.
-  const References r;
-  auto             found = r.identities(random_vectors(r.s.model.free_map(), 2));
+  auto found = r.identities(random_vectors(r.s.model.free_map(), 2));
   for (const ModeLabel &label : found)
     EXPECT_LT(label.participation, 0.1);
   EXPECT_EQ(found, std::vector<ModeLabel>(2));
@@ -369,11 +375,10 @@ TEST(Identify, ModesUnlikeAllAreUnnamed)
   EXPECT_EQ(texts(found), std::vector<std::string>(2, "unnamed"));
 }
 
-TEST(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
+TEST_F(Identify, ALabelIsGivenNoMoreOftenThanItsModesAre)
 {
   // Three vectors that all resemble a doublet most: the third gets its second label.
-  const References r;
-  const auto      &labels   = r.disc.labels;
+  const auto &labels        = r.disc.labels;
   const auto [pair, single] = r.doublet_and_other();
   MultiVector re(r.disc.vectors->map(), 3);
   for (int j = 0; j < 3; ++j)

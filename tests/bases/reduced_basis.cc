@@ -1,5 +1,5 @@
 #include "matrices.h"
-#include "scenes.h"
+#include "bases/cases.h"
 
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
@@ -31,21 +31,7 @@ namespace
   constexpr double mu        = 0.6;
   const double     omega_max = circular_frequency(6000.);
 
-  /// Contact faces, element, mounts.
-  struct Case
-  {
-    const char        *name;
-    double             slope; ///< of the contact faces
-    Element            element;
-    std::vector<Mount> mounts;
-  };
-  void PrintTo(const Case &c, std::ostream *stream)
-  {
-    *stream << c.name;
-  }
-
-  const std::vector<Mount> held = {{"disc_bore", 1e9, 7.80e10, 1.88e10}};
-  const Case               flat = {"flat", 0., Element::trilinear, held};
+  const Case flat = {"flat", 0., Element::trilinear, held};
 
   const std::vector<std::string> component_kinds = {"free",          "fixed",          "mixed",         "free with r.a.m.",
                                                     "free + t.a.m.", "fixed + t.a.m.", "mixed + t.a.m."};
@@ -63,12 +49,9 @@ namespace
   HexMesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
-    return mapped(extrude(polar_plan(0.1505, 0.3155, 1 + n, 9 * n,
-                                     {{Plan::Side::top, -1, n, 1, 1}, {Plan::Side::top, 3, n, 0, 1}, {Plan::Side::bottom, 0, n, 1, 1}}),
-                          layers(1, 2)),
-                  [c](const Point3 &p) {
-                    return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
-                  });
+    return c.sloped(extrude(polar_plan(0.1505, 0.3155, 1 + n, 9 * n,
+                                       {{Plan::Side::top, -1, n, 1, 1}, {Plan::Side::top, 3, n, 0, 1}, {Plan::Side::bottom, 0, n, 1, 1}}),
+                            layers(1, 2)));
   }
 
   /// A scene with everything that bases are made from.
@@ -222,6 +205,10 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
 {
   const Bodies &b   = bodies();
   const int     n_c = b.s.interface.size();
+  BasisCounts   counts; // as they are, by the formulas of the tables
+  counts.contact = n_c;
+  for (const auto &[source, set] : b.ingredients().sets)
+    counts.sets[source] = set->n_columns();
   for (const std::string &kind : all_kinds())
     {
       const ReducedBasis basis = reduced_basis(*find_recipe(kind), b.ingredients());
@@ -229,6 +216,7 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
       const SparseMatrix &M = *b.s.coupled.mass;
       EXPECT_EQ(basis.n_nominal, basis.size() + basis.n_dropped);
       EXPECT_GE(basis.n_dropped, 0);
+      EXPECT_EQ(basis.n_nominal, nominal_size(*find_recipe(kind), counts).n_r);
       EXPECT_LT(orthonormality_defect(M, *basis.vectors), 1e-12);
       EXPECT_LE(basis.orthonormality, 1e-12);
       EXPECT_GE(basis.condition, 1.);
@@ -238,45 +226,13 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
         {
           EXPECT_EQ(basis.connection.rank, n_c);
           EXPECT_EQ(basis.n_nominal, basis.n_r0 - n_c);
+          EXPECT_EQ(basis.n_dropped, 0); // component bases hold no vector twice
           EXPECT_GT(basis.connection.smallest_kept, 1e-9);
           EXPECT_EQ(basis.connection.largest_dropped, 0.);
           EXPECT_LT(basis.connection.constraint_error, 1e-10);
         }
       else
         EXPECT_EQ(basis.n_nominal, basis.n_r0);
-    }
-}
-
-TEST_P(ReducedBases, HaveTheSizesCounted)
-{
-  // Numbers of modes, contact nodes and free motions as they are, by the formulas of the tables
-  const Bodies     &b             = bodies();
-  const MultiVector disc          = view(*b.disc_free, 0, b.disc_free->n_columns() - 2);
-  BasisIngredients  in            = b.ingredients();
-  in.sets[BasisSource::disc_free] = &disc;
-  const int n_c = b.s.interface.size(), n_R = b.real.vectors->n_columns(), f_D = disc.n_columns(), f_P = b.pins_free->n_columns(),
-            s_D = b.disc_sliding->n_columns(), s_P = b.pins_sliding->n_columns();
-  const std::map<std::string, int> expected = {{"free", f_D + f_P},
-                                               {"fixed", s_D + s_P + n_c},
-                                               {"mixed", f_D + s_P + n_c},
-                                               {"free + t.a.m.", f_D + f_P + n_c},
-                                               {"free with r.a.m.", f_D + f_P},
-                                               {"fixed + t.a.m.", s_D + s_P + 2 * n_c},
-                                               {"mixed + t.a.m.", f_D + s_P + 2 * n_c},
-                                               {"real", n_R},
-                                               {"real + t.a.m.", n_R + n_c},
-                                               {"real + 1st-ord.", 2 * n_R},
-                                               {"real + 1st-ord. two-sided", 3 * n_R},
-                                               {"real + 1st-ord. two-sided + damping", 4 * n_R}};
-  for (const auto &[kind, size] : expected)
-    {
-      const ReducedBasis basis = reduced_basis(*find_recipe(kind), in);
-      EXPECT_EQ(basis.n_nominal, size) << kind;
-      // Component bases hold no vector twice; real modes that friction does not see make no response.
-      if (find_recipe(kind)->is_connected())
-        {
-          EXPECT_EQ(basis.n_dropped, 0) << kind;
-        }
     }
 }
 
@@ -378,34 +334,22 @@ TEST_P(ReducedBases, SpanWhatTheyAreMadeOf)
   // A connected basis lies in the span of its components.
   for (const std::string &kind : component_kinds)
     {
-      const MultiVector                u = *b.s.contact.kernel * *reduced_basis(*find_recipe(kind), b.ingredients()).vectors;
-      std::vector<MultiVector>         parts;
-      std::vector<const MultiVector *> pointers;
-      const bool                       fixed = kind == "fixed" || kind == "fixed + t.a.m.";
-      parts.push_back(fixed ? *b.disc_sliding : *b.disc_free);
-      parts.push_back(*b.pins_free);
-      parts.push_back(*b.pins_sliding);
-      for (const Component component : {Component::disc, Component::pins})
-        parts.push_back(b.static_modes.normal_attachment(component));
-      for (const Component component : {Component::disc, Component::pins})
-        parts.push_back(b.static_modes.constraint(component));
-      parts.push_back(b.static_modes.tangential_attachment());
-      for (const MultiVector &part : parts)
-        pointers.push_back(&part);
-      EXPECT_LT(outside(*b.s.system.mass, orthonormalize(*b.s.system.mass, nullptr, join(pointers), 1e-12), u), 1e-6) << kind;
+      const MultiVector u     = *b.s.contact.kernel * *reduced_basis(*find_recipe(kind), b.ingredients()).vectors;
+      const bool        fixed = kind == "fixed" || kind == "fixed + t.a.m.";
+      const MultiVector parts =
+        join_all({fixed ? *b.disc_sliding : *b.disc_free, *b.pins_free, *b.pins_sliding, b.static_modes.normal_attachment(Component::disc),
+                  b.static_modes.normal_attachment(Component::pins), b.static_modes.constraint(Component::disc),
+                  b.static_modes.constraint(Component::pins), b.static_modes.tangential_attachment()});
+      EXPECT_LT(outside(*b.s.system.mass, orthonormalize(*b.s.system.mass, nullptr, parts, 1e-12), u), 1e-6) << kind;
     }
 }
 
 TEST_P(ReducedBases, CompleteComponentsGiveTheFullModel)
 {
   // All vectors of the sliding components and the constraint modes span everything that keeps the contact closed.
-  const Case  c = GetParam();
-  const Scene s(
-    mapped(extrude(polar_plan(0.1505, 0.3155, 1, 7, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), layers(1, 2)),
-           [c](const Point3 &p) {
-             return Point3{{p[0], p[1], p[2] + c.slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * c.slope * p[1]}};
-           }),
-    mounted(held), operating(RadialDissipation::consistent));
+  const Scene         s(GetParam().sloped(extrude(
+                          polar_plan(0.1505, 0.3155, 1, 7, {{Plan::Side::top, 0, 1, 0, 1}, {Plan::Side::bottom, 2, 1, 0, 1}}), layers(1, 2))),
+                        mounted(held), operating(RadialDissipation::consistent));
   const InertiaRelief response = static_response(s.model, s.system, omega_max, FactorizationLibrary::automatic);
   const StaticModes   static_modes(s.model, s.interface, s.contact, s.system, response, omega_max, FactorizationLibrary::automatic);
   const auto          complete = [&](const Component component) {
@@ -515,14 +459,17 @@ TEST(ReducedBasis, SaysWhatIsMissing)
       }
     return std::string();
   };
-  const auto names = [&](const std::string &text, const std::string &what) { EXPECT_NE(text.find(what), std::string::npos) << text; };
-  names(message("free", [](auto &in) { in.sets[BasisSource::disc_free] = nullptr; }), "Phi_f^D, which is missing or empty");
-  names(message("mixed", [](auto &in) { in.sets[BasisSource::pins_sliding] = nullptr; }), "Phi_s^P, which is missing or empty");
-  names(message("mixed", [](auto &in) { in.sets[BasisSource::pins_sliding] = nullptr; }), "reduced basis `mixed`");
+  const auto names   = [&](const std::string &text, const std::string &what) { EXPECT_NE(text.find(what), std::string::npos) << text; };
+  const auto without = [&](const std::string &kind, const BasisSource source) {
+    return message(kind, [source](BasisIngredients &in) { in.sets[source] = nullptr; });
+  };
+  names(without("free", BasisSource::disc_free), "Phi_f^D");
+  names(without("mixed", BasisSource::pins_sliding), "Phi_s^P");
+  names(without("mixed", BasisSource::pins_sliding), "`mixed`");
+  names(without("real", BasisSource::real), "Phi_R");
   names(message("real + t.a.m.", [](auto &in) { in.inverse = nullptr; }), "UpdatedInverse");
-  names(message("real", [](auto &in) { in.sets[BasisSource::real] = nullptr; }), "Phi_R");
   names(message("free", [](auto &in) { in.static_modes = nullptr; }), "StaticModes");
   names(message("POD", [](auto &) {}), "complex modes");
-  names(message("residual-grown", [](auto &) {}), "grow them first");
-  EXPECT_EQ(message("free", [](auto &in) { in.sets[BasisSource::real] = nullptr; }), "");
+  names(message("residual-grown", [](auto &) {}), "residuals");
+  EXPECT_EQ(without("free", BasisSource::real), "");
 }

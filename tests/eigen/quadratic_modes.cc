@@ -1,3 +1,5 @@
+#include "matrices.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
@@ -12,7 +14,7 @@
 namespace
 {
   using namespace Squeal;
-  using Complex = std::complex<double>;
+  using namespace Squeal::Testing;
 
   /// A dense matrix as an operator on vectors distributed by rows.
   class DenseOperator : public LinearOperator
@@ -70,7 +72,7 @@ namespace
     QuadraticModesOptions options;
   };
 
-  DenseMatrix diagonal(const std::vector<double> &values)
+  DenseMatrix diagonal_matrix(const std::vector<double> &values)
   {
     return as_column(values).asDiagonal();
   }
@@ -96,17 +98,9 @@ namespace
     return values;
   }
 
-  /// Each of @p expected has its own neighbour among @p values, and there are no others.
-  void expect_same(std::vector<Complex> values, const std::vector<Complex> &expected, const double relative)
+  void expect_same(const std::vector<Complex> &values, const std::vector<Complex> &expected, const double relative)
   {
-    ASSERT_EQ(values.size(), expected.size());
-    for (const Complex &x : expected)
-      {
-        const auto nearest = std::min_element(values.begin(), values.end(),
-                                              [&x](const Complex &a, const Complex &b) { return std::abs(a - x) < std::abs(b - x); });
-        EXPECT_LT(std::abs(*nearest - x), relative * std::abs(x)) << "eigenvalue " << x;
-        values.erase(nearest);
-      }
+    EXPECT_LT(largest(distances(expected, values)), relative);
   }
 
   /// A chain of masses and springs: a stiffness with spread eigenvalues.
@@ -122,27 +116,6 @@ namespace
     return K;
   }
 } // namespace
-
-TEST(QuadraticModes, TwoDegreesOfFreedomFlutter)
-{
-  // x'' + k11 x + (k12 - μ k_c) y = 0, y'' + k12 x + k22 y = 0: λ² = -(tr ± sqrt(tr² - 4 det)) / 2.
-  const double k11 = 2., k22 = 2.2, k12 = -0.5, mu = 1.5;
-  DenseMatrix  M = DenseMatrix::Identity(2, 2), K = DenseMatrix::Zero(2, 2);
-  K(0, 0)              = k11;
-  K(1, 1)              = k22;
-  K(0, 1)              = k12 + mu;
-  K(1, 0)              = k12;
-  const Complex root   = std::sqrt(Complex((k11 + k22) * (k11 + k22) - 4. * (k11 * k22 - K(0, 1) * K(1, 0))));
-  Complex       square = 0.5 * (-(k11 + k22) + root);
-  Complex       lambda = std::sqrt(square);
-  if (lambda.imag() < 0.)
-    lambda = -lambda;
-  DensePencil pencil(M, nullptr, K, 0.);
-  const auto  modes = pencil.modes(10.);
-  expect_same(modes.values, {lambda, -std::conj(lambda)}, 1e-12);
-  EXPECT_GT(std::abs(lambda.real()), 0.1);
-  EXPECT_DOUBLE_EQ(modes.values[0].real(), -modes.values[1].real());
-}
 
 TEST(QuadraticModes, DampedOscillators)
 {
@@ -163,10 +136,10 @@ TEST(QuadraticModes, DampedOscillators)
           expected_real.push_back(-zeta * omega + sign * omega * std::sqrt(zeta * zeta - 1.));
     }
   std::sort(expected_real.begin(), expected_real.end());
-  const DenseMatrix C = diagonal(damping);
+  const DenseMatrix C = diagonal_matrix(damping);
   for (const double shift : {0., 3.})
     {
-      DensePencil pencil(DenseMatrix::Identity(n, n), &C, diagonal(stiffness), shift);
+      DensePencil pencil(DenseMatrix::Identity(n, n), &C, diagonal_matrix(stiffness), shift);
       pencil.options.expected = 18;
       const auto modes        = pencil.modes(20.5);
       expect_same(modes.values, expected, 1e-10);
@@ -181,16 +154,11 @@ TEST(QuadraticModes, DampedOscillators)
 TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
 {
   // Twelve equal chains: every eigenvalue has twelve members, the block has four vectors.
-  const int         n = 20, n_copies = 12;
-  const DenseMatrix part = chain(n);
-  DenseMatrix       K = DenseMatrix::Zero(n * n_copies, n * n_copies), C = DenseMatrix::Zero(n * n_copies, n * n_copies);
+  const int   n = 20, n_copies = 12;
+  DenseMatrix K = DenseMatrix::Zero(n * n_copies, n * n_copies);
   for (int copy = 0; copy < n_copies; ++copy)
-    for (int i = 0; i < n; ++i)
-      for (int j = 0; j < n; ++j)
-        {
-          K(copy * n + i, copy * n + j) = part(i, j);
-          C(copy * n + i, copy * n + j) = 0.02 * part(i, j);
-        }
+    K.block(copy * n, copy * n, n, n) = chain(n);
+  const DenseMatrix    C = 0.02 * K;
   std::vector<Complex> undamped, damped;
   const double         largest = 1.05;
   for (int i = 1; i <= n; ++i)
@@ -217,7 +185,7 @@ TEST(QuadraticModes, NonsymmetricAgreesWithTheCompanionForm)
   const int         n = 120;
   const DenseMatrix R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
   const DenseMatrix M = DenseMatrix::Identity(n, n) + 0.01 * R, C = 1e-3 * S.transpose() * S + 1e-3 * T;
-  DenseMatrix       K = diagonal([n] {
+  DenseMatrix       K = diagonal_matrix([n] {
                     std::vector<double> values(n);
                     for (int i = 0; i < n; ++i)
                       values[i] = std::pow(1. + 0.3 * i, 2);
@@ -283,9 +251,12 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
   const auto one = linear.modes(0.4), two = quadratic.modes(0.4);
   ASSERT_GT(one.values.size(), 15u);
   expect_same(two.values, one.values, 1e-9);
-  for (const Complex &value : two.values)
-    EXPECT_TRUE(std::any_of(two.values.begin(), two.values.end(),
-                            [&value](const Complex &other) { return std::abs(other + std::conj(value)) < 1e-9 * std::abs(value); }));
+  // Without a damping matrix, exactly
+  for (const auto &[values, relative] : {std::make_pair(one.values, 1e-15), {two.values, 1e-9}})
+    for (const Complex &value : values)
+      EXPECT_TRUE(std::any_of(values.begin(), values.end(), [&value = value, relative = relative](const Complex &other) {
+        return std::abs(other + std::conj(value)) <= relative * std::abs(value);
+      }));
 }
 
 TEST(QuadraticModes, FreeBodyNeedsAShift)
@@ -302,7 +273,7 @@ TEST(QuadraticModes, FreeBodyNeedsAShift)
         K(a, b) -= 1.;
         K(b, a) -= 1.;
       }
-  const DenseMatrix    C       = 1e-3 * K * DenseMatrix::Identity(2 * n, 2 * n);
+  const DenseMatrix    C       = 1e-3 * K;
   const double         largest = 0.8;
   std::vector<Complex> undamped, damped;
   for (int i = 1; i < n; ++i)
@@ -328,7 +299,7 @@ TEST(QuadraticModes, DivergenceIsReportedAsRealValues)
   std::vector<double> stiffness;
   for (int i = 0; i < 30; ++i)
     stiffness.push_back(i == 2 ? -4. : std::pow(1. + i, 2));
-  DensePencil pencil(DenseMatrix::Identity(30, 30), nullptr, diagonal(stiffness), 0.);
+  DensePencil pencil(DenseMatrix::Identity(30, 30), nullptr, diagonal_matrix(stiffness), 0.);
   const auto  modes = pencil.modes(8.5);
   EXPECT_EQ(modes.values.size(), 7u);
   ASSERT_EQ(modes.real_values.size(), 2u);
@@ -373,17 +344,13 @@ TEST(QuadraticModes, NonConvergenceSaysHowFarItCame)
     }
 }
 
-TEST(QuadraticModes, RefusesAnImpossibleTolerance)
+TEST(QuadraticModes, RefusesAnImpossibleToleranceAndANegativeShift)
 {
   const int   n = 100;
   DensePencil pencil(DenseMatrix::Identity(n, n), nullptr, chain(n), 0.);
   pencil.options.tolerance = 1e-17;
   EXPECT_THROW(pencil.modes(0.3), SolverError);
-}
-
-TEST(QuadraticModes, RefusesANegativeShift)
-{
-  DensePencil pencil(DenseMatrix::Identity(3, 3), nullptr, chain(3), 0.);
+  pencil.options       = {};
   pencil.options.shift = -1.;
   EXPECT_THROW(pencil.modes(1.), SolverError);
 }

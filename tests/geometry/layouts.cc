@@ -1,8 +1,7 @@
 #include "scenes.h"
 
 #include <squeal/geometry/mesh_check.h>
-#include <squeal/geometry/plan_untangling.h>
-#include <squeal/geometry/scene_size.h>
+#include <squeal/geometry/plan_smoothing.h>
 
 using namespace Scenes;
 
@@ -21,16 +20,6 @@ namespace
     return parameters;
   }
 
-  /// Nodes of the contact faces above on the outline of the pin at this place.
-  unsigned int n_on_outline(const HexMesh &mesh, const double radius, const double angle, const double pin_radius)
-  {
-    unsigned int n = 0;
-    for (const unsigned int node : nodes_on(mesh, "pin_contact"))
-      n += mesh.points[node][2] > 0. && std::abs(std::hypot(mesh.points[node][0] - radius * std::cos(angle * pi / 180.),
-                                                            mesh.points[node][1] - radius * std::sin(angle * pi / 180.)) -
-                                                 pin_radius) < 1e-9;
-    return n;
-  }
 } // namespace
 
 TEST(Layouts, PinsThatOverlapAskewAreMeshed)
@@ -48,7 +37,7 @@ TEST(Layouts, PinsThatOverlapAskewAreMeshed)
           const double radius = parameters.pin_diameter / 2.;
           EXPECT_NEAR(volume(mesh, "pin_"), 12. * 3. * k * radius * radius * std::sin(pi / (3. * k)) * parameters.pin_height, 1e-10);
           for (std::size_t pin = 0; pin < 6; ++pin)
-            EXPECT_EQ(n_on_outline(mesh, parameters.top.radii[pin], parameters.top.angles[pin], radius), 6 * k);
+            EXPECT_EQ(n_on_outline(mesh, 1., parameters.top.radii[pin], parameters.top.angles[pin], radius), 6 * k);
         }
 }
 
@@ -146,30 +135,4 @@ TEST(Layouts, ElementsGrowBetweenThinPins)
   GeometryParameters parameters;
   parameters.pin_diameter = 0.001;
   EXPECT_LT(generate_mesh(parameters).hexahedra.size(), 30000u);
-}
-
-TEST(ProblemSizes, AreKnownBeforeTheMesh)
-{
-  for (const double size : {0.0115, 0.02})
-    {
-      GeometryParameters parameters;
-      parameters.element_size    = size;
-      const HexMesh     mesh     = generate_mesh(parameters);
-      const ProblemSize expected = expected_size(parameters), found = expected_size(mesh, 1);
-      EXPECT_NEAR(expected.hexahedra / found.hexahedra, 1., 0.4);
-      EXPECT_NEAR(expected.dofs / found.dofs, 1., 0.4);
-      EXPECT_EQ(expected.contact_nodes, found.contact_nodes);
-      EXPECT_EQ(found.dofs, 3. * mesh.points.size());
-    }
-}
-
-TEST(ProblemSizes, WhatDoesNotFitIsRefusedBeforehand)
-{
-  GeometryParameters parameters;
-  parameters.disc_layers = 1000000;
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }),
-                  {"hexahedra", "dofs", "GB are available", "Geometry/Disc layers"});
-  parameters.file = "disc_pad.geo";
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available"});
-  EXPECT_NO_THROW(check_memory({1e4, 3e4, 200.}, 1, 100., "here"));
 }

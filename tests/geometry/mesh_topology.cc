@@ -56,21 +56,49 @@ namespace
     return mesh;
   }
 
-  /// Adds a grid with nodes of its own.
-  void add_grid(HexMesh           &mesh,
-                const unsigned int volume,
-                const Values      &a,
-                const Values      &b,
-                const Values      &c,
-                const Place       &place = cylindrical)
+  bool is_any(const Point &)
   {
-    const unsigned int first = mesh.points.size();
+    return true;
+  }
+
+  bool is_none(const Point &)
+  {
+    return false;
+  }
+
+  /// Adds a grid of cells. Where @p is_shared, it shares nodes at the same place with itself and with what its volume has already.
+  void add_grid(HexMesh                                  &mesh,
+                const unsigned int                        volume,
+                const Values                             &a,
+                const Values                             &b,
+                const Values                             &c,
+                const Place                              &place     = cylindrical,
+                const std::function<bool(const Point &)> &is_shared = is_none)
+  {
+    const auto key = [](const Point &p) {
+      return std::array<long, 3>{{std::lround(1e8 * p[0]), std::lround(1e8 * p[1]), std::lround(1e8 * p[2])}};
+    };
+    std::map<std::array<long, 3>, unsigned int> known;
+    for (const auto &[cell, body] : mesh.hexahedra)
+      if (body == volume)
+        for (const unsigned int node : cell)
+          known[key(mesh.points[node])] = node;
+    std::vector<unsigned int> nodes;
     for (const double x : a)
       for (const double y : b)
         for (const double z : c)
-          mesh.points.push_back(place({x, y, z}));
-    const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) -> unsigned int {
-      return first + (i * b.size() + j) * c.size() + k;
+          {
+            const Point p = place({x, y, z});
+            if (const auto [found, is_new] = known.emplace(key(p), mesh.points.size()); !is_new && is_shared(p))
+              nodes.push_back(found->second);
+            else
+              {
+                nodes.push_back(mesh.points.size());
+                mesh.points.push_back(p);
+              }
+          }
+    const auto node = [&](const unsigned int i, const unsigned int j, const unsigned int k) {
+      return nodes[(i * b.size() + j) * c.size() + k];
     };
     for (unsigned int i = 0; i + 1 < a.size(); ++i)
       for (unsigned int j = 0; j + 1 < b.size(); ++j)
@@ -78,45 +106,6 @@ namespace
           mesh.hexahedra.push_back({{{node(i, j, k), node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k), node(i, j, k + 1),
                                       node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1), node(i, j + 1, k + 1)}},
                                     volume});
-  }
-
-  /// Makes one node of those of a volume that are closer than a distance, if they are wanted.
-  void merge(
-    HexMesh                                  &mesh,
-    const double                              distance  = 1e-9,
-    const std::function<bool(const Point &)> &is_wanted = [](const Point &) { return true; })
-  {
-    const std::vector<unsigned int>             volumes = volume_of_nodes(mesh);
-    std::map<std::array<long, 4>, unsigned int> nodes;
-    std::vector<unsigned int>                   merged(mesh.points.size());
-    for (unsigned int n = 0; n < mesh.points.size(); ++n)
-      {
-        const Point &p = mesh.points[n];
-        const auto   l = [&](const unsigned int d) { return std::lround(p[d] / (10. * distance)); };
-        merged[n]      = is_wanted(p) ? nodes.emplace(std::array<long, 4>{{volumes[n], l(0), l(1), l(2)}}, n).first->second : n;
-      }
-    for (auto &[cell, volume] : mesh.hexahedra)
-      for (unsigned int &node : cell)
-        node = merged[node];
-    for (auto &[face, surface] : mesh.quadrilaterals)
-      for (unsigned int &node : face)
-        node = merged[node];
-    std::vector<unsigned int> index(mesh.points.size(), -1);
-    std::vector<Point>        points;
-    for (auto &[cell, volume] : mesh.hexahedra)
-      for (unsigned int &node : cell)
-        {
-          if (index[node] == static_cast<unsigned int>(-1))
-            {
-              index[node] = points.size();
-              points.push_back(mesh.points[node]);
-            }
-          node = index[node];
-        }
-    for (auto &[face, surface] : mesh.quadrilaterals)
-      for (unsigned int &node : face)
-        node = index[node];
-    mesh.points = points;
   }
 
   /// Names faces whose nodes all are wanted: faces of the disc first, of other volumes as pin_contact.
@@ -144,8 +133,7 @@ namespace
   HexMesh disc_with_pad(const Values &pad_z = {0.02, 0.03, 0.04}, const Values &ring = angles(24, 0, 24))
   {
     HexMesh mesh = mesh_of({"disc", "pin_top"});
-    add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02});
-    merge(mesh);
+    add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02}, cylindrical, is_any);
     add_grid(mesh, 1, {0.2, 0.25, 0.3}, angles(24, 0, 3), pad_z);
     name_contact(mesh, is_under_pad);
     return mesh;
@@ -241,8 +229,8 @@ TEST(MeshTopology, CrackInsideIsFound)
   // Two halves that share only the nodes around six inner ones
   HexMesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {0., 1.}, cartesian);
-  add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian);
-  merge(mesh, 1e-6, [](const Point &p) { return p[0] < 0.5 || p[0] > 3.5 || p[1] < 0.5 || p[1] > 2.5; });
+  add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian,
+           [](const Point &p) { return p[0] < 0.5 || p[0] > 3.5 || p[1] < 0.5 || p[1] > 2.5; });
   expect_refused(mesh, {"6 nodes of volume 'disc' coincide"});
   EXPECT_NE(refusal(mesh).find("(1, 1, 1)"), std::string::npos);
 }
@@ -251,18 +239,16 @@ TEST(MeshTopology, HangingNodesAreFound)
 {
   // A layer twice as fine along two directions: on interior faces, 2 x 2 elements to one
   HexMesh layers = mesh_of({"disc"});
-  add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian);
-  add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian);
-  merge(layers, 1e-6);
+  add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian, is_any);
+  add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian, is_any);
   expect_refused(layers, {"16 nodes of volume 'disc'", "hanging"});
 
   // In a corner only
   HexMesh corner = mesh_of({"disc"});
-  add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian);
-  add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian);
-  add_grid(corner, 0, interval(0., 2., 2), {2., 3.}, {1., 2.}, cartesian);
-  add_grid(corner, 0, {2., 2.5, 3.}, {2., 3.}, {1., 2.}, cartesian);
-  merge(corner, 1e-6);
+  add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian, is_any);
+  add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian, is_any);
+  add_grid(corner, 0, interval(0., 2., 2), {2., 3.}, {1., 2.}, cartesian, is_any);
+  add_grid(corner, 0, {2., 2.5, 3.}, {2., 3.}, {1., 2.}, cartesian, is_any);
   expect_refused(corner, {"3 nodes of volume 'disc'", "hanging"});
   EXPECT_NE(refusal(corner).find("(2.5, 2, 1)"), std::string::npos);
 
@@ -270,9 +256,8 @@ TEST(MeshTopology, HangingNodesAreFound)
   for (const bool fine_inside : {false, true})
     {
       HexMesh rings = mesh_of({"disc"});
-      add_grid(rings, 0, {0.1, 0.2}, angles(fine_inside ? 32 : 16, 0, fine_inside ? 32 : 16), {0., 0.05});
-      add_grid(rings, 0, {0.2, 0.3}, angles(fine_inside ? 16 : 32, 0, fine_inside ? 16 : 32), {0., 0.05});
-      merge(rings);
+      add_grid(rings, 0, {0.1, 0.2}, angles(fine_inside ? 32 : 16, 0, fine_inside ? 32 : 16), {0., 0.05}, cylindrical, is_any);
+      add_grid(rings, 0, {0.2, 0.3}, angles(fine_inside ? 16 : 32, 0, fine_inside ? 16 : 32), {0., 0.05}, cylindrical, is_any);
       expect_refused(rings, {"32 nodes of volume 'disc'", "hanging"});
     }
 }
@@ -280,17 +265,15 @@ TEST(MeshTopology, HangingNodesAreFound)
 TEST(MeshTopology, ElementsThatMeetAtAnEdgePass)
 {
   HexMesh mesh = mesh_of({"disc"});
-  add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian);
-  add_grid(mesh, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian);
-  merge(mesh, 1e-6);
+  add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian, is_any);
+  add_grid(mesh, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian, is_any);
   expect_passes(mesh);
 }
 
 TEST(MeshTopology, BodyOnTheWrongSideIsFound)
 {
   HexMesh mesh = mesh_of({"disc", "pin_top"});
-  add_grid(mesh, 0, radii, angles(24, 0, 24), {0., 0.01, 0.02});
-  merge(mesh);
+  add_grid(mesh, 0, radii, angles(24, 0, 24), {0., 0.01, 0.02}, cylindrical, is_any);
   add_grid(mesh, 1, {0.2, 0.25, 0.3}, angles(24, 0, 3), {0., 0.015, 0.02});
   name_contact(mesh, is_under_pad);
   ASSERT_EQ(mesh.quadrilaterals.size(), 12u);
@@ -319,8 +302,7 @@ TEST(MeshTopology, ChordsOfCurvedFacesMayCross)
 {
   // A shoe on the rim whose elements are twice as long
   HexMesh mesh = mesh_of({"disc", "pin_rim"});
-  add_grid(mesh, 0, radii, angles(96, 0, 96), {0., 0.02});
-  merge(mesh);
+  add_grid(mesh, 0, radii, angles(96, 0, 96), {0., 0.02}, cylindrical, is_any);
   add_grid(mesh, 1, {0.3, 0.33}, angles(48, 1, 7), {0., 0.02});
   expect_passes(mesh);
 }

@@ -1,9 +1,9 @@
+#include "../scenes.h"
 #include "scenes.h"
 
-#include <squeal/geometry/outlines.h>
 #include <squeal/geometry/pin_grid.h>
+#include <squeal/geometry/polygon.h>
 
-using namespace Squeal;
 using namespace Scenes;
 
 namespace
@@ -27,21 +27,25 @@ namespace
     return {area, moment - first * first / area};
   }
 
-  Plan polygon_pin(const unsigned int k, const Plan::Point &centre, const double radius)
+  /// Without curves, and with two pins above the same faces.
+  Plan polygon_pins(const unsigned int k, const double radius)
   {
-    Plan                      plan;
-    std::vector<unsigned int> loop;
-    for (unsigned int i = 0; i < 6 * k; ++i)
-      {
-        loop.push_back(i);
-        plan.points.emplace_back(centre[0] + radius * std::cos(pi * i / (3. * k)), centre[1] + radius * std::sin(pi * i / (3. * k)));
-      }
-    plan.faces = fill_with_o_grid(loop, plan.points);
-    plan.pins.resize(2);
-    for (unsigned int face = 0; face < plan.faces.size(); ++face)
-      for (Plan::Pin &pin : plan.pins)
-        pin.faces.push_back(face);
+    Plan plan   = Testing::round_plan(0.2, radius, k);
+    plan.curves = {};
+    plan.pins.push_back(plan.pins[0]);
     return plan;
+  }
+
+  using Points = std::vector<dealii::Point<2>>;
+  using Nodes  = std::vector<unsigned int>;
+
+  /// Points of an ellipse about (3, -2) radii, seen under the given angles.
+  Points on_ellipse(const double radius, const double ratio, const std::vector<double> &angles)
+  {
+    Points points;
+    for (const double angle : angles)
+      points.emplace_back(radius * (3. + std::cos(angle)), radius * (-2. + ratio * std::sin(angle)));
+    return points;
   }
 } // namespace
 
@@ -50,7 +54,7 @@ TEST(Outlines, RoundPinsGetAreaAndMomentOfTheirCircle)
   const double r = 0.026, area = pi * r * r, moment = area * r * r / 2.;
   for (const unsigned int k : {1u, 2u, 3u, 4u})
     {
-      const Plan inscribed = polygon_pin(k, Plan::Point(0.2, -0.07), r);
+      const Plan inscribed = polygon_pins(k, r);
       Plan       enlarged  = inscribed;
       enlarge_to_true_area(enlarged);
       const double theta    = pi / (3. * k);
@@ -64,9 +68,9 @@ TEST(Outlines, RoundPinsGetAreaAndMomentOfTheirCircle)
       // Inner nodes keep their place relative to the outline, the centre where it is
       const double factor = std::sqrt(area / A_i);
       for (std::size_t node = 0; node < inscribed.points.size(); ++node)
-        EXPECT_LT(enlarged.points[node].distance(
-                    Plan::Point(Plan::Point(0.2, -0.07) + factor * (inscribed.points[node] - Plan::Point(0.2, -0.07)))),
-                  1e-14);
+        EXPECT_LT(
+          enlarged.points[node].distance(Plan::Point(Plan::Point(0.2, 0.) + factor * (inscribed.points[node] - Plan::Point(0.2, 0.)))),
+          1e-14);
     }
 }
 
@@ -75,23 +79,10 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
   GeometryParameters parameters = one_pin();
   parameters.outlines           = Outlines::true_area;
   const HexMesh mesh            = generate_mesh(parameters);
-  const auto    volume_of       = [&](const unsigned int body) {
-    double sum = 0.;
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      if (hexahedron.volume == body)
-        {
-          // Of a prism: area of the lower face times height
-          const auto  &n  = hexahedron.nodes;
-          const auto   at = [&](const int i) { return mesh.points[n[i]]; };
-          const double area = 0.5 * std::abs((at(2)[0] - at(0)[0]) * (at(3)[1] - at(1)[1]) - (at(2)[1] - at(0)[1]) * (at(3)[0] - at(1)[0]));
-          sum += area * std::abs(at(4)[2] - at(0)[2]);
-        }
-    return sum;
-  };
-  const double r = parameters.pin_diameter / 2.;
-  EXPECT_NEAR(volume_of(1) / (pi * r * r * parameters.pin_height), 1., 1e-12);
+  const double  r               = parameters.pin_diameter / 2.;
+  EXPECT_NEAR(volume(mesh, "pin_") / (pi * r * r * parameters.pin_height), 1., 1e-12);
   const double annulus = pi * (std::pow(parameters.disc_outer_radius, 2) - std::pow(parameters.disc_inner_radius, 2));
-  EXPECT_NEAR(volume_of(0) / (annulus * parameters.disc_thickness), 1., 1e-12);
+  EXPECT_NEAR(volume(mesh, "disc") / (annulus * parameters.disc_thickness), 1., 1e-12);
   parameters.outlines = Outlines::inscribed;
   EXPECT_NE(generate_mesh(parameters).points, mesh.points);
 }
@@ -99,7 +90,7 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
 TEST(Outlines, OtherShapesStayAsTheyAre)
 {
   // A square, an ellipse, and an open curve
-  Plan plan = polygon_pin(2, Plan::Point(0.2, 0.), 0.026);
+  Plan plan = polygon_pins(2, 0.026);
   for (Plan::Point &point : plan.points)
     point[1] *= 1.01;
   plan.curves = {{"disc_rim", {{{0, 1}}, {{1, 2}}}}};
@@ -109,4 +100,50 @@ TEST(Outlines, OtherShapesStayAsTheyAre)
   const std::vector<Plan::Point> before = plan.points;
   enlarge_to_true_area(plan);
   EXPECT_EQ(plan.points, before);
+}
+
+TEST(Polygon, EdgesOfAClosedCurveAreTracedInAnyOrderAndSense)
+{
+  EXPECT_EQ(closed_polygon({{{7, 4}}, {{2, 9}}, {{4, 2}}, {{9, 7}}}), (Nodes{2, 9, 7, 4}));
+  EXPECT_EQ(closed_polygon({{{5, 6}}, {{6, 8}}, {{8, 5}}}), (Nodes{5, 6, 8}));
+}
+
+TEST(Polygon, OpenCurvesBranchesAndTwoCurvesAreNone)
+{
+  EXPECT_TRUE(closed_polygon({}).empty());
+  EXPECT_TRUE(closed_polygon({{{0, 1}}, {{1, 2}}}).empty());
+  EXPECT_TRUE(closed_polygon({{{0, 1}}, {{1, 2}}, {{2, 0}}, {{2, 3}}}).empty());
+  EXPECT_TRUE(closed_polygon({{{0, 1}}, {{1, 2}}, {{2, 0}}, {{3, 4}}, {{4, 5}}, {{5, 3}}}).empty());
+}
+
+TEST(Polygon, AreaHasTheSignOfTheSense)
+{
+  const Points points = {{0., 0.}, {2., 0.}, {2., 3.}, {1., 1.}};
+  EXPECT_DOUBLE_EQ(signed_area(Nodes{0, 1, 2, 3}, points), 2.5);
+  EXPECT_DOUBLE_EQ(signed_area(std::array<unsigned int, 4>{{3, 2, 1, 0}}, points), -2.5);
+}
+
+TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
+{
+  for (const double radius : {2.6e-8, 0.026, 1.5e5})
+    for (const double step : {1., 0.1})
+      {
+        const auto circle = circle_through(on_ellipse(radius, 1., {0., step, 2. * step, 3. * step, 4. * step, 5. * step}));
+        ASSERT_TRUE(circle) << radius << ", " << step;
+        EXPECT_NEAR(circle->radius / radius, 1., 1e-10);
+        EXPECT_NEAR(circle->centre[0] / radius, 3., 1e-10);
+        EXPECT_NEAR(circle->centre[1] / radius, -2., 1e-10);
+      }
+}
+
+TEST(Polygon, WhatIsNotRoundOrHasTooFewPointsGivesNoCircle)
+{
+  const std::vector<double> angles = {0., 1., 2., 3., 4., 5.};
+  EXPECT_TRUE(circle_through(on_ellipse(0.026, 1. + 1e-7, angles)));
+  EXPECT_FALSE(circle_through(on_ellipse(0.026, 1. + 1e-5, angles)));
+  EXPECT_FALSE(circle_through({}));
+  // Corners of a square, each twice; one point; a straight line
+  EXPECT_FALSE(circle_through({{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}, {0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}}));
+  EXPECT_FALSE(circle_through(Points(6, {1., 2.})));
+  EXPECT_FALSE(circle_through({{0., 0.}, {1., 1.}, {2., 2.}, {3., 3.}, {4., 4.}, {5., 5.}, {6., 6.}}));
 }

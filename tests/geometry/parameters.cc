@@ -14,19 +14,6 @@ namespace
   }
 } // namespace
 
-TEST(GeometryParameters, DefaultsAreAcceptedAndReadBack)
-{
-  GeometryParameters parameters;
-  Declarations       declarations;
-  parameters.declare(declarations);
-  for (const DeclaredParameter &parameter : declarations.parameters())
-    parameter.parse(parameter.print());
-  parameters.check();
-  EXPECT_EQ(parameters.disc_inner_radius, GeometryParameters().disc_inner_radius);
-  EXPECT_EQ(parameters.top.angles, GeometryParameters().top.angles);
-  EXPECT_EQ(parameters.pairing_tolerance, GeometryParameters().pairing_tolerance);
-}
-
 TEST(GeometryParameters, ListsAreReadAndMayBeEmpty)
 {
   GeometryParameters parameters;

@@ -1,11 +1,9 @@
 #include "scenes.h"
 
-#include <squeal/geometry/grading.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/polygon.h>
 
-using namespace Squeal;
 using namespace Scenes;
 
 namespace
@@ -90,14 +88,28 @@ TEST(PinGrid, RingsShrinkOutwardsByTheRatio)
       EXPECT_NEAR(points[6 * ring + i].distance(Plan::Point(3., 4.)), expected[ring], 1e-14);
 }
 
-TEST(PinGrid, PinsOfASceneHaveRings)
+TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
 {
   GeometryParameters parameters;
   parameters.pin_rings   = 3;
-  parameters.pin_grading = 1.5;
+  parameters.pin_layers  = 3;
+  parameters.pin_grading = 2.;
   parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // displaced from pins above
   const HexMesh mesh     = generate_mesh(parameters);
   EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.1);
+  const double z_face = parameters.disc_thickness / 2.;
+  for (const double side : {1., -1.})
+    {
+      // Heights above the face: 4 : 2 : 1 of 7
+      std::set<double> heights;
+      for (const HexMesh::Point &p : mesh.points)
+        if (side * p[2] >= z_face)
+          heights.insert(std::round(1e9 * (side * p[2] - z_face) / parameters.pin_height) / 1e9);
+      ASSERT_EQ(heights.size(), 4u);
+      EXPECT_NEAR(*std::next(heights.begin()), 4. / 7., 1e-8);
+      EXPECT_NEAR(*std::next(heights.begin(), 2), 6. / 7., 1e-8);
+      EXPECT_EQ(*heights.rbegin(), 1.);
+    }
   // Distances from the axes: of every pin the same, on both sides
   for (std::size_t pin = 0; pin < 2; ++pin)
     {
@@ -105,10 +117,19 @@ TEST(PinGrid, PinsOfASceneHaveRings)
       const Plan::Point axis(parameters.bottom.radii[pin] * std::cos(angle), parameters.bottom.radii[pin] * std::sin(angle));
       unsigned int      n_found = 0;
       for (const HexMesh::Point &p : mesh.points)
-        if (p[2] < -parameters.disc_thickness / 2. - parameters.pin_height / 2.)
-          for (const double end : graded_intervals(2, 1.5))
+        if (p[2] < -z_face - parameters.pin_height / 2.)
+          for (const double end : graded_intervals(2, 2.))
             n_found += std::abs(std::hypot(p[0] - axis[0], p[1] - axis[1]) / radius - 0.8 - 0.2 * end) < 1e-9;
-      // Layers of nodes above half of the height: three of five
+      // Layers of nodes above half of the height: three of four
       EXPECT_EQ(n_found, 3u * 3u * 12u) << pin;
     }
+}
+
+TEST(PinGrid, IntervalsShrinkByTheRatio)
+{
+  EXPECT_EQ(graded_intervals(4, 1.), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
+  const std::vector<double> ends = graded_intervals(4, 2.); // 8 : 4 : 2 : 1 of 15
+  for (int i = 0; i <= 4; ++i)
+    EXPECT_NEAR(ends[i], std::vector<double>({0., 8. / 15., 12. / 15., 14. / 15., 1.})[i], 1e-15);
+  EXPECT_EQ(ends.back(), 1.);
 }

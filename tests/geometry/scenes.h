@@ -75,53 +75,39 @@ namespace Scenes
     return nodes;
   }
 
-  /// Area of a surface whose faces are plane and convex [m²].
+  /// Area of a surface whose faces are plane [m²].
   inline double area(const HexMesh &mesh, const std::string &name)
   {
     const unsigned int s   = surface(mesh, name);
     double             sum = 0.;
     for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
       if (quadrilateral.surface == s)
+        sum += face_geometry(mesh, quadrilateral.nodes).area_normal.norm();
+    return sum;
+  }
+
+  /// Volume of all cells of the volumes whose name begins so, of each by Gauss' theorem over its faces, which are plane [m³].
+  inline double volume(const HexMesh &mesh, const std::string &prefix)
+  {
+    double sum = 0.;
+    for (const HexFace &face : all_faces(mesh))
+      if (mesh.volume_names[face.volume].rfind(prefix, 0) == 0)
         {
-          const auto &p = quadrilateral.nodes;
-          double      a[3], b[3];
-          for (unsigned int d = 0; d < 3; ++d)
-            {
-              a[d] = mesh.points[p[2]][d] - mesh.points[p[0]][d];
-              b[d] = mesh.points[p[3]][d] - mesh.points[p[1]][d];
-            }
-          sum += 0.5 * std::sqrt(std::pow(a[1] * b[2] - a[2] * b[1], 2) + std::pow(a[2] * b[0] - a[0] * b[2], 2) +
-                                 std::pow(a[0] * b[1] - a[1] * b[0], 2));
+          const auto [centre, normal] = face_geometry(mesh, face.nodes);
+          sum += centre * normal / 3.;
         }
     return sum;
   }
 
-  /// Volume of all hexahedra of the volumes whose name begins so, by 2 x 2 x 2 Gauss points [m³].
-  inline double volume(const HexMesh &mesh, const std::string &prefix)
+  /// Nodes of the contact faces on one side of the disc that lie on the outline of the pin at this place.
+  inline unsigned int n_on_outline(const HexMesh &mesh, const double side, const double radius, const double angle, const double pin_radius)
   {
-    constexpr double corner[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
-    double           sum          = 0.;
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      if (mesh.volume_names[hexahedron.volume].rfind(prefix, 0) == 0)
-        for (const auto &gauss : corner)
-          {
-            double x[3], J[3][3] = {};
-            for (unsigned int d = 0; d < 3; ++d)
-              x[d] = gauss[d] / std::sqrt(3.);
-            for (unsigned int v = 0; v < 8; ++v)
-              for (unsigned int d = 0; d < 3; ++d)
-                {
-                  double gradient = corner[v][d] / 8.;
-                  for (unsigned int e = 0; e < 3; ++e)
-                    if (e != d)
-                      gradient *= 1. + corner[v][e] * x[e];
-                  for (unsigned int i = 0; i < 3; ++i)
-                    J[i][d] += mesh.points[hexahedron.nodes[v]][i] * gradient;
-                }
-            sum += J[0][0] * (J[1][1] * J[2][2] - J[1][2] * J[2][1]) - J[0][1] * (J[1][0] * J[2][2] - J[1][2] * J[2][0]) +
-                   J[0][2] * (J[1][0] * J[2][1] - J[1][1] * J[2][0]);
-          }
-    return sum;
+    const double x = radius * std::cos(angle * M_PI / 180.), y = radius * std::sin(angle * M_PI / 180.);
+    unsigned int n = 0;
+    for (const unsigned int node : nodes_on(mesh, "pin_contact"))
+      if (const HexMesh::Point &p = mesh.points[node]; side * p[2] > 0.)
+        n += std::abs(std::hypot(p[0] - x, p[1] - y) - pin_radius) < 1e-9;
+    return n;
   }
 
   /// The text of the Exception that the action throws; fails if it throws none.

@@ -1,6 +1,7 @@
 #include "matrices.h"
 
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/factorization.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
@@ -70,6 +71,30 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
       MultiVector x(B.map(), 1);
       factors->apply(view(B, 69, 1), x);
       EXPECT_LT(residual(*A, x, view(B, 69, 1), false), 1e-13) << to_string(library);
+    }
+}
+
+TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
+{
+  // Factors of one task; of several, with a top; of trees without a top
+  for (const auto &A : {laplacian(7, 1, GetParam()), laplacian(22, 1, GetParam()), laplacian(9, 30, GetParam())})
+    {
+      const auto        factor = factorize_positive_definite(*A, FactorizationLibrary::automatic, "test matrix");
+      const MultiVector B      = random_vectors(A->rows(), 33, 4);
+      for (const unsigned int n_threads : {1, 2})
+        {
+          set_task_threads(n_threads);
+          for (const int k : {1, 2, 8, 9, 16, 17, 33})
+            {
+              MultiVector X(B.map(), k), alone(B.map(), 1);
+              factor->apply(view(B, 0, k), X);
+              EXPECT_LT(residual(*A, X, view(B, 0, k), false), 1e-12) << A->n_rows() << " rows, " << k << " columns";
+              // which hardly depend on the others
+              factor->apply(view(B, k - 1, 1), alone);
+              EXPECT_LT(column_norms(view(X, k - 1, 1) - alone)[0], 1e-13 * column_norms(alone)[0]) << k << " columns";
+            }
+          set_task_threads(1);
+        }
     }
 }
 

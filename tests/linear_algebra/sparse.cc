@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
+#include <array>
 #include <sstream>
 
 using namespace Squeal;
@@ -91,20 +91,24 @@ TEST_P(Sparse, ModuliAreThoseOfTheEntries)
   EXPECT_EQ(max_norm(to_dense(*moduli(*A)) - to_dense(*A).cwiseAbs()), 0.);
 }
 
-TEST_P(Sparse, FewEntriesMeetLongVectors)
+TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
 {
-  // Fewer entries than rows of the vectors, and more of them
-  const RowMap few = rows(5, GetParam()), many = rows(400, GetParam());
-  for (const int n_entries : {1, 100})
+  // Rows without entries, and of more than are summed side by side; few rows meet long vectors, with fewer entries than these and with more
+  for (const auto &[n_rows, n_columns, most_entries] : {std::array<int, 3>{{90, 70, 30}}, {{5, 400, 2}}, {{5, 400, 150}}})
     {
-      const auto        A = sparse(few, many, [n_entries](const int i) {
+      const int  m = n_columns, period = most_entries;
+      const auto A = sparse(rows(n_rows, GetParam()), rows(n_columns, GetParam()), [=](const int i) {
         Row row;
-        for (int k = 0; k < n_entries; ++k)
-          row[(37 * k + 5 * i) % 400] += 1. + k - i;
+        for (int k = 0; k < (period - i % period) % period; ++k)
+          row[(7 * k + 3 * i) % m] = 1. / (1. + k + i);
         return row;
       });
-      const MultiVector X = random_vectors(many, 19);
-      EXPECT_LT(max_norm(replicate(*A * X) - to_dense(*A) * replicate(X)), 1e-12) << n_entries;
+      for (const int k : {1, 2, 7, 8, 9, 15, 16, 17, 33})
+        {
+          const MultiVector X        = random_vectors(A->columns(), k, 3);
+          const DenseMatrix expected = to_dense(*A) * replicate(X);
+          EXPECT_LT(max_norm(replicate(*A * X) - expected), 1e-14 * max_norm(expected)) << n_rows << " x " << m << ", " << k;
+        }
     }
 }
 

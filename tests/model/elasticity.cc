@@ -24,7 +24,12 @@ namespace
   }
 
   class Elasticity : public ::testing::TestWithParam<Element>
-  {};
+  {
+  protected:
+    const HexMesh      mesh = distorted_mesh();
+    const Model        model{mesh, GetParam(), MPI_COMM_WORLD};
+    MaterialParameters materials = mounted({});
+  };
   INSTANTIATE_TEST_SUITE_P(Elements, Elasticity, ::testing::Values(Element::trilinear, Element::incompatible_modes, Element::quadratic));
 
   double max_entry(const MultiVector &X)
@@ -35,10 +40,7 @@ namespace
 
 TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
 {
-  const HexMesh            mesh      = distorted_mesh();
-  const MaterialParameters materials = mounted({});
-  const Model              model(mesh, GetParam(), MPI_COMM_WORLD);
-  const auto               system = assemble(model, materials);
+  const auto system = assemble(model, materials);
 
   // u = H x with every kind of strain
   const double H[3][3] = {{1.1, 0.3, -0.4}, {-0.2, 0.7, 0.9}, {0.5, -0.8, -1.3}};
@@ -94,9 +96,8 @@ TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
 
 TEST_P(Elasticity, RigidBodyMotionsNeedNoForce)
 {
-  const Model model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
-  const auto  system = assemble(model, mounted({}));
-  const auto  motion = [](const int j) {
+  const auto system = assemble(model, materials);
+  const auto motion = [](const int j) {
     return [j](const Point3 &p) {
       const double values[6][3] = {{1., 0., 0.}, {0., 1., 0.}, {0., 0., 1.}, {0., -p[2], p[1]}, {p[2], 0., -p[0]}, {-p[1], p[0], 0.}};
       return Point3{{values[j][0], values[j][1], values[j][2]}};
@@ -115,10 +116,7 @@ TEST_P(Elasticity, RigidBodyMotionsNeedNoForce)
 
 TEST_P(Elasticity, MassOfEachBody)
 {
-  const HexMesh            mesh      = distorted_mesh();
-  const MaterialParameters materials = mounted({});
-  const Model              model(mesh, GetParam(), MPI_COMM_WORLD);
-  const auto               system = assemble(model, materials);
+  const auto system = assemble(model, materials);
   for (int k = 0; k < 3; ++k)
     {
       const MultiVector e = displacements(model, 0, [k](const Point3 &) {
@@ -162,11 +160,9 @@ TEST_P(Elasticity, PinsHaveTheirOwnMaterial)
 
 TEST_P(Elasticity, EveryBodyHasTermsAndParametersOfItsOwn)
 {
-  const Model        model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
-  MaterialParameters materials = mounted({});
-  const auto         bodies    = body_terms(model, materials);
-  const auto         total     = sparse_matrices(bodies.terms, bodies.values);
-  int                n_entries = 0;
+  const auto bodies    = body_terms(model, materials);
+  const auto total     = sparse_matrices(bodies.terms, bodies.values);
+  int        n_entries = 0;
   for (const Term &term : bodies.terms)
     n_entries += term.power == 0 ? term.matrix->n_entries() : 0;
   EXPECT_EQ(n_entries, total.stiffness->n_entries());
@@ -184,8 +180,7 @@ TEST_P(Elasticity, EveryBodyHasTermsAndParametersOfItsOwn)
 
 TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
 {
-  const Model model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
-  const auto  system = assemble(model, mounted({{"inner", 1e10, 2e10, 3e10}}));
+  const auto system = assemble(model, mounted({{"inner", 1e10, 2e10, 3e10}}));
   EXPECT_EQ(system.damping, nullptr);
   EXPECT_LT(symmetry_defect(*system.mass), 1e-15);
   EXPECT_LT(symmetry_defect(*system.stiffness), 1e-14);
@@ -196,9 +191,8 @@ TEST_P(Elasticity, MatricesAreSymmetricAndMassIsPositive)
 TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
 {
   // On displacements of one component: α M + β K, without what the mount adds to K
-  const Model        model(distorted_mesh(), GetParam(), MPI_COMM_WORLD);
-  MaterialParameters materials = mounted({{"inner", 1e10, 2e10, 3e10}});
-  const auto         undamped = assemble(model, materials), unmounted = assemble(model, mounted({}));
+  materials           = mounted({{"inner", 1e10, 2e10, 3e10}});
+  const auto undamped = assemble(model, materials), unmounted = assemble(model, mounted({}));
   materials.disc.rayleigh_alpha = 3.;
   materials.disc.rayleigh_beta  = 2e-7;
   materials.pin.rayleigh_beta   = 5e-6;

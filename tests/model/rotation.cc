@@ -1,7 +1,7 @@
 #include "matrices.h"
 #include "scenes.h"
 
-#include <squeal/model/rotation.h>
+#include <squeal/model/elasticity.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/eigen/symmetric_modes.h>

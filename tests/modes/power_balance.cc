@@ -63,10 +63,12 @@ namespace
   }
 } // namespace
 
-TEST(PowerBalances, AddUpToTheDivergenceRate)
+TEST(PowerBalances, AddUpToTheDivergenceRateAndAgreeWithTheSparseMatrices)
 {
   const DampedBrake  brake;
-  const ComplexModes modes = krylov(brake.system, friction);
+  const ComplexModes modes  = krylov(brake.system, friction);
+  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // with friction, without damping of contact and modes
+  const auto         with = with_friction(bodies, friction), without = with_friction(bodies, 0.);
   ASSERT_GT(n_unstable(modes), 0);
   ASSERT_LT(n_unstable(modes), static_cast<int>(modes.lambda.size()));
   for (std::size_t j = 0; j < modes.lambda.size(); ++j)
@@ -83,18 +85,8 @@ TEST(PowerBalances, AddUpToTheDivergenceRate)
       EXPECT_GT(summed(b.sliding_damping), 0.);
       EXPECT_LT(b.bodies.front(), 0.);
       EXPECT_NEAR(b.modal_damping, -1e-4, 5e-5);
-    }
-}
 
-TEST(PowerBalances, AgreeWithTheSparseMatrices)
-{
-  const DampedBrake  brake;
-  const ComplexModes modes  = krylov(brake.system, friction);
-  CoupledSystem      bodies = couple(brake.s.system, brake.s.contact); // with friction, without damping of contact and modes
-  const auto         with = with_friction(bodies, friction), without = with_friction(bodies, 0.);
-  for (std::size_t j = 0; j < modes.lambda.size(); ++j)
-    {
-      const PowerBalance         b  = brake.balance(modes, j);
+      // The same from the sparse matrices
       const MultiVector          re = view(*modes.real_part, j, 1), im = view(*modes.imaginary_part, j, 1);
       const std::complex<double> lambda  = modes.lambda[j];
       const auto                 form    = [&](const std::shared_ptr<const SparseMatrix> &A) { return quadratic_form(*A, re, im); };

@@ -295,7 +295,7 @@ TEST_F(ChartCheckpoints, LetASweepContinueAsIfNotInterrupted)
     points.push_back({0.2 * i, damping.values(), 0});
   const auto sweep = [&](ChartStore *store) {
     Progress   progress;
-    ChartModel model(system, inverse, 0., *real.vectors, omega_max, 0.05);
+    ChartModel model(system, inverse, 0., *real.vectors, omega_max);
     return error_controlled_sweep(model, points, {4, 0}, {}, store, MPI_COMM_WORLD, progress);
   };
   const ErrorControlledSweep whole = sweep(nullptr);

@@ -2,16 +2,14 @@
 
 import json
 import os
-import pathlib
 import resource
 import shutil
 import signal
 import subprocess
-import tempfile
 import time
 import unittest
 
-from program import EXECUTABLE, MPIRUN, ProgramTest, contents
+from program import EXECUTABLE, ProgramTest, contents
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
@@ -43,10 +41,9 @@ class LostResults(ProgramTest):
         shutil.copytree(self.results, self.folder / name)
         return self.folder / name
 
-    def start(self, output, *overrides, n_processes=1, **options):
+    def start(self, output, *overrides, **options):
         settings = [word for override in overrides for word in ("--set", override)]
-        launcher = [MPIRUN, "-np", str(n_processes)] if n_processes > 1 else []
-        process = subprocess.Popen([*launcher, EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, text=True,
+        process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
         self.addCleanup(self.stop, process)
         return process
@@ -104,18 +101,6 @@ class TwoRuns(LostResults):
         self.assert_complete(self.folder / "shared")
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["link", "results", "scene.prm", "shared"])
 
-    def test_results_removed_meanwhile(self):
-        copy = self.copy()
-        before = contents(copy)
-        process = self.start("copy", *LONG)
-        table = copy / ".unfinished" / "real_modes.csv"
-        self.wait_for(table.is_file, process)
-        table.unlink()
-        _, message = process.communicate()
-        self.assertEqual(process.returncode, 1)
-        self.assertIn("copy/real_modes.csv", message)
-        self.assertEqual(contents(copy), before)
-
     def test_a_killed_run_keeps_nobody_out(self):
         copy = self.copy()
         before = contents(copy)
@@ -139,15 +124,6 @@ class TwoRuns(LostResults):
             self.assertEqual(process.returncode, -ending)
             self.assert_complete(copy)
 
-    def test_hang_ups_are_ignored_where_they_were(self):
-        """nohup and shells that start a run in the background want it to go on."""
-        process = self.start("new", preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
-        self.wait_for((self.folder / "new" / ".unfinished").is_dir, process)
-        process.send_signal(signal.SIGHUP)
-        process.communicate()
-        self.assertEqual(process.returncode, 0)
-        self.assert_complete(self.folder / "new")
-
 
 class FilesOfTheUser(LostResults):
     def test_they_stay(self):
@@ -166,33 +142,7 @@ class FilesOfTheUser(LostResults):
         self.assertEqual([path.name for path in (shapes / "modes").iterdir()], ["mode.png"])
         self.assertFalse((shapes / "animations").exists())
 
-    def test_names_that_the_results_need(self):
-        other = self.copy("other")
-        (other / "matrices").mkdir()
-        (other / "matrices" / "nodes.csv").write_text("mine", encoding="utf-8")
-        process = self.call("scene.prm", "--output", "other", "--set", "Output/Write matrices=true")
-        self.assertEqual(process.returncode, 0)
-        self.assertIn("matrices/nodes.csv.kept", process.stdout)
-        self.assertEqual((other / "matrices" / "nodes.csv.kept").read_text(encoding="utf-8"), "mine")
-        self.assertIn("row x", (other / "matrices" / "nodes.csv").read_text(encoding="utf-8"))
-
-
 class Places(LostResults):
-    def test_links(self):
-        (self.folder / "target").mkdir()
-        (self.folder / "link").symlink_to("target")
-        for link, target in {"link": "target"}.items():
-            for _ in range(2):
-                self.run_scene(link)
-                self.assertTrue((self.folder / link).is_symlink())
-                self.assertFalse((self.folder / target).is_symlink())
-                self.assert_complete(self.folder / target)
-
-    def test_detours(self):
-        (self.folder / "new").mkdir()
-        self.run_scene("new/../other//")
-        self.assert_complete(self.folder / "other")
-
     def test_refusals(self):
         (self.folder / "circle").symlink_to("circle")
         (self.folder / "file").touch()
@@ -215,26 +165,6 @@ class Places(LostResults):
             copy.chmod(mode)
             self.addCleanup(copy.chmod, 0o700)
             self.refused("copy", "Permission denied")
-
-    def test_permissions_of_the_folder_stay(self):
-        copy = self.copy()
-        copy.chmod(0o2750)
-        self.run_scene("copy")
-        self.assertEqual(copy.stat().st_mode & 0o7777, 0o2750)
-
-
-class TimedRuns(LostResults):
-    """How long a run takes [s], and how much it writes [byte]."""
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        start = time.monotonic()
-        cls.run_scene("timed", *LONG)
-        cls.duration = time.monotonic() - start
-        cls.needed = sum(path.stat().st_size for path in (cls.folder / "timed").rglob("*") if path.is_file())
-        shutil.rmtree(cls.folder / "timed")
-
 
 class FullDisks(LostResults):
     EVERYTHING = ["Output/Mode shapes=unstable", "Output/Write matrices=true"]
@@ -264,28 +194,6 @@ class FullDisks(LostResults):
         process = self.start("new", preexec_fn=limit_files(1000))
         self.assert_not_written(process, "--output new", "File too large", "new")
         self.assertEqual(list(self.folder.glob("new*")), [])
-
-    def mount(self, size):
-        """A small disk of its own."""
-        place = tempfile.mkdtemp(dir=self.folder)
-        if os.geteuid() != 0 or subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size}", "tmpfs", place], capture_output=True).returncode:
-            self.skipTest("only root may mount a small disk")
-        self.addCleanup(subprocess.run, ["umount", place], check=True)
-        return pathlib.Path(place)
-
-    def test_small_disk(self):
-        disk = self.mount("700k")
-        shutil.copytree(self.results, disk / "results")
-        before = contents(disk)
-        process = self.start(str(disk / "results"), LONG[0])
-        self.assert_not_written(process, str(disk / "results") + "/", "No space left on device", "copy")
-        self.assertEqual(contents(disk), before)
-
-    def test_mounted_folder(self):
-        disk = self.mount("10m")
-        for _ in range(2):
-            self.run_scene(str(disk))
-            self.assert_complete(disk)
 
     def test_screen(self):
         with open("/dev/full", "w", encoding="utf-8") as full:

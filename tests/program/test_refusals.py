@@ -65,18 +65,8 @@ class Refusals(ProgramTest):
         mesh.write(self.folder / "changed.msh")
         self.scene_refused(mentions, "Geometry/File=changed.msh")
 
-    # ------------------------------------------------------------ command line
-
-    def test_command_line(self):
-        self.refused(["no parameter file"])
-        self.refused(["unknown option", "--friction"], "scene.prm", "--friction")
-        self.refused(["lacks its value", "--output"], "scene.prm", "--output")
-        self.refused(["more than one", "other.prm"], "scene.prm", "other.prm")
-        self.refused(["cannot be read", "missing.prm"], "missing.prm")
-
     def test_override(self):
         self.scene_refused(["no `=`"], "Operation/Friction coefficient")
-        self.scene_refused(["must be a number in 0 ... 10, not `abc`"], "Operation/Friction coefficient=abc")
 
     def test_limit_of_threads(self):
         """With a stack larger than the address space no thread can be started: one does the work."""
@@ -107,9 +97,7 @@ class Refusals(ProgramTest):
 
     def test_values(self):
         """tests/parameters has every kind."""
-        self.scene_refused(["Operation/Friction coefficient", "-0.1"], "Operation/Friction coefficient=-0.1")
         self.scene_refused(["trilinear, incompatible modes, quadratic"], "Discretization/Element=cubic")
-        self.scene_refused(["sideways"], "Operation/Rotation=sideways")
         self.write("value.prm", "subsection Operation\n  set Friction coefficient = much\nend\n")
         self.refused(["`much`", "value.prm, line 2"], "value.prm")
         self.write("open.prm", "subsection Operation\n  set Friction coefficient = 0.3\n")
@@ -220,36 +208,3 @@ class Refusals(ProgramTest):
         _, (x, y, z) = mesh.nodes[nodes[4]]
         mesh.move(nodes[4], [x, y, z - 0.1])
         self.mesh_refused(["inverted", "scaled Jacobian -", "'pin_top_1'"], mesh)
-
-    # ----------------------------------------------------------- result folder
-
-    def test_foreign_files(self):
-        foreign = self.folder / "foreign"
-        foreign.mkdir()
-        self.addCleanup(shutil.rmtree, foreign)
-        (foreign / "thesis.tex").write_text("years of work", encoding="utf-8")
-        self.refused(["foreign", "not the results of a run"], "scene.prm", "--output", "foreign")
-
-    def test_no_folder(self):
-        self.write("file", "")
-        self.refused(["`file` is a file"], "scene.prm", "--output", "file")
-        self.refused(["file/results"], "scene.prm", "--output", "file/results")
-        self.refused(["empty"], "scene.prm", "--output", "")
-
-    def test_folder_without_permission(self):
-        if os.geteuid() == 0:
-            self.skipTest("root may write everywhere")
-        locked = self.folder / "locked"
-        locked.mkdir(mode=0o500)
-        self.addCleanup(locked.rmdir)
-        self.refused(["Permission denied", "locked/results"], "scene.prm", "--output", "locked/results")
-
-    # ----------------------------------------------------------------- success
-
-    def test_earlier_results_are_replaced_by_success_only(self):
-        copy = self.folder / "copy"
-        shutil.copytree(self.results, copy)
-        self.addCleanup(shutil.rmtree, copy)
-        self.run_scene("copy")
-        self.assertEqual(sorted(path.name for path in copy.iterdir()), sorted(path.name for path in self.results.iterdir()))
-        self.assertEqual([path for path in self.folder.iterdir() if pathlib.Path(path).suffix], [self.folder / "scene.prm"])

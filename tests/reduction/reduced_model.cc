@@ -11,7 +11,6 @@
 
 using namespace Squeal;
 using namespace Squeal::Testing;
-using Complex = std::complex<double>;
 
 namespace
 {
@@ -28,21 +27,6 @@ namespace
     const auto real = symmetric_modes(*system.stiffness, *system.mass, std::pow(2. * M_PI * 15000., 2));
     add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.03));
     return system;
-  }
-
-  double largest_difference(const std::vector<Complex> &values, std::vector<Complex> others)
-  {
-    if (values.size() != others.size())
-      return std::numeric_limits<double>::infinity();
-    double largest = 0.;
-    for (const Complex &value : values)
-      {
-        const auto nearest = std::min_element(
-          others.begin(), others.end(), [&](const Complex &a, const Complex &b) { return std::abs(a - value) < std::abs(b - value); });
-        largest = std::max(largest, std::abs(*nearest - value) / std::abs(value));
-        others.erase(nearest);
-      }
-    return largest;
   }
 } // namespace
 
@@ -79,7 +63,7 @@ TEST(ReducedModel, FullBasisGivesTheFullSpectrum)
           EXPECT_EQ(pencil.has_damping, matrices.damping != nullptr);
           const auto small = dense_quadratic_modes(pencil.mass, pencil.has_damping ? &pencil.damping : nullptr, pencil.stiffness, limit);
           EXPECT_GT(full.values.size(), 20u);
-          EXPECT_LT(largest_difference(full.values, small.values), 1e-9);
+          EXPECT_LT(largest(distances(full.values, small.values)), 1e-9);
         }
     }
 }
@@ -133,7 +117,7 @@ TEST(ReducedModel, ModalDamping)
       const ReducedPencil pencil = full.at(system.at(mu));
       ASSERT_TRUE(pencil.has_damping);
       EXPECT_GT(all.values.size(), 20u);
-      EXPECT_LT(largest_difference(all.values, dense_quadratic_modes(pencil.mass, &pencil.damping, pencil.stiffness, limit).values), 1e-9);
+      EXPECT_LT(largest(distances(all.values, dense_quadratic_modes(pencil.mass, &pencil.damping, pencil.stiffness, limit).values)), 1e-9);
 
       grown.extend(view(T, 0, 4));
       grown.extend(view(T, 4, 3));
@@ -153,7 +137,7 @@ TEST(ReducedModel, LessThanAFullBasisIsNotExact)
   full.extend(T);
   less.extend(view(T, 0, n - 1));
   const auto all = full.at(s.coupled.at(mu)), some = less.at(s.coupled.at(mu));
-  EXPECT_GT(largest_difference(dense_quadratic_modes(all.mass, nullptr, all.stiffness, limit).values,
-                               dense_quadratic_modes(some.mass, nullptr, some.stiffness, limit).values),
-            1e-6);
+  const auto values = dense_quadratic_modes(all.mass, nullptr, all.stiffness, limit).values,
+             others = dense_quadratic_modes(some.mass, nullptr, some.stiffness, limit).values;
+  EXPECT_TRUE(values.size() != others.size() || largest(distances(values, others)) > 1e-6);
 }

@@ -1,7 +1,7 @@
 #include "solutions.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/studies/accuracy/accuracy_errors.h>
+#include <squeal/studies/accuracy/accuracy.h>
 
 #include <gtest/gtest.h>
 

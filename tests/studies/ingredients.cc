@@ -1,8 +1,6 @@
 #include "printed.h"
 
 #include <squeal/base/conventions.h>
-#include <squeal/studies/ingredients/ingredient_effects.h>
-#include <squeal/studies/ingredients/ingredient_selection.h>
 #include <squeal/studies/ingredients/ingredients.h>
 
 #include <gtest/gtest.h>

@@ -148,25 +148,36 @@ namespace
     return paths;
   }
 
-  /// Paths that begin with one of the given texts, without some exceptions.
-  std::set<std::string> those_of(const std::vector<std::string> &beginnings, const std::set<std::string> &exceptions = {})
-  {
-    std::set<std::string> paths;
-    for (const auto &[path, value] : other_values())
-      for (const std::string &beginning : beginnings)
-        if (path.rfind(beginning, 0) == 0 && exceptions.count(path) == 0)
-          paths.insert(path);
-    return paths;
-  }
+  using Paths = std::vector<std::string>;
 
-  const std::vector<std::string> sweep_map = {"Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values",
-                                              "Sweep/Map friction"};
-
-  std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string> &b)
+  Paths joined(Paths a, const Paths &b)
   {
     a.insert(a.end(), b.begin(), b.end());
     return a;
   }
+
+  /// A run, the sections of studies of which it uses something, and beginnings of the paths that it does not use beside the other sections.
+  struct Usage
+  {
+    Paths              run, sections;
+    std::vector<Paths> unused;
+
+    std::set<std::string> expected() const
+    {
+      Paths beginnings;
+      for (const char *section : {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Search/", "Sensitivity/", "Sweep/"})
+        if (std::find(sections.begin(), sections.end(), section) == sections.end())
+          beginnings.emplace_back(section);
+      for (const Paths &some : unused)
+        beginnings = joined(beginnings, some);
+      std::set<std::string> paths;
+      for (const auto &[path, value] : other_values())
+        for (const std::string &beginning : beginnings)
+          if (path.rfind(beginning, 0) == 0)
+            paths.insert(path);
+      return paths;
+    }
+  };
 } // namespace
 
 TEST(ParameterUsage, EveryParameterIsAccountedFor)
@@ -193,19 +204,14 @@ TEST(ParameterUsage, EveryParameterIsAccountedFor)
     EXPECT_TRUE(std::any_of(declared.begin(), declared.end(), [&](const std::string &name) { return name.rfind(path, 0) == 0; })) << path;
 }
 
-TEST(ParameterUsage, NothingIsUnusedByDefault)
-{
-  for (const Study *study : studies())
-    EXPECT_EQ(unused(run_of(*study)), std::set<std::string>()) << study->name;
-}
-
-TEST(ParameterUsage, EveryStudyIsFoundByItsName)
+TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
 {
   EXPECT_EQ(studies().front(), Parameters().study);
   std::set<std::string> names;
   for (const Study *study : studies())
     {
       EXPECT_EQ(parameters_of(run_of(*study)).study, study) << study->name;
+      EXPECT_EQ(unused(run_of(*study)), std::set<std::string>()) << study->name; // by default
       EXPECT_NE(study->run, nullptr) << study->name;
       EXPECT_TRUE(names.insert(study->name).second) << study->name;
     }
@@ -213,100 +219,74 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsName)
             (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "search", "sensitivity", "stability", "sweep"}));
 }
 
-TEST(ParameterUsage, OfStability)
+TEST(ParameterUsage, OfEveryStudy)
 {
-  const std::vector<std::string> others = {
-    "Reduction/",           "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/", "Complex modes/Iteration",
-    "Complex modes/Maximum"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  EXPECT_EQ(unused_alone({}), those_of(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"})));
-  EXPECT_EQ(unused_alone({"Operation/Radial dissipation=consistent"}), those_of(joined(others, steady)));
-  EXPECT_EQ(unused_alone({"Steady sliding/Contact state=steady sliding"}), those_of(others));
-  EXPECT_EQ(unused_alone(
-              {"Steady sliding/Contact state=steady sliding", "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}),
-            those_of(joined(others, {"Operation/Load"})));
-  EXPECT_EQ(unused_alone({"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"}),
-            those_of(joined({"Reduction/", "Sweep/", "Ingredients/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/",
-                             "Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"},
-                            steady)));
-  EXPECT_EQ(unused_alone({"Output/Animation frames=0"}),
-            those_of(joined(joined(joined(others, steady), {"Operation/Load", "Operation/Rotation speed"}),
-                            {"Output/Animation periods", "Output/Animation growth"})));
-}
+  const std::string dissipation = "Operation/Radial dissipation=consistent", steady = "Steady sliding/Contact state=steady sliding";
+  const Paths       no_sliding = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
+  const Paths       undamped   = {"Operation/Load", "Operation/Rotation speed"};
+  const Paths       krylov     = {"Complex modes/Iteration", "Complex modes/Maximum"};
+  const Paths       no_shapes  = {"Output/", "Complex modes/Iteration"};
+  const Paths       reduced    = {"Output/", "Complex modes/"};
+  const Paths       no_map     = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
+  const Paths       no_sweep   = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
+  const Paths       no_bases   = {"Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"};
+  const Paths       design     = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
+  const Paths       one_mu     = {"Operation/Friction coefficient"};
 
-TEST(ParameterUsage, OfAccuracy)
-{
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  const std::vector<std::string> others =
-    joined({"Reduction/", "Sweep/", "Ingredients/", "Designs/", "Search/", "Sensitivity/", "Output/", "Complex modes/Iteration"}, steady);
-  EXPECT_EQ(unused_alone({"Study=accuracy"}), those_of(joined(others, {"Operation/Load", "Operation/Rotation speed"})));
-  EXPECT_EQ(unused_alone({"Study=accuracy", "Accuracy study/Bases=real", "Operation/Radial dissipation=consistent"}),
-            those_of(joined(others, {"Complex modes/Maximum", "Accuracy study/Grown"}), {"Accuracy study/Bases"}));
-}
+  const std::vector<Usage> table = {
+    {{}, {}, {no_sliding, undamped, krylov}},
+    {{dissipation}, {}, {no_sliding, krylov}},
+    {{steady}, {}, {krylov}},
+    {{steady, "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-6"}, {}, {krylov, {"Operation/Load"}}},
+    {{"Complex modes/Solver=residual iteration", "Output/Mode shapes=none", "Operation/Friction slope=0.01"},
+     {},
+     {no_sliding, {"Complex modes/Shift", "Complex modes/Tolerance", "Output/Animation"}}},
+    {{"Output/Animation frames=0"}, {}, {no_sliding, undamped, krylov, {"Output/Animation periods", "Output/Animation growth"}}},
 
-TEST(ParameterUsage, OfIngredients)
-{
-  // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
-  EXPECT_EQ(unused_alone({"Study=ingredients"}),
-            those_of({"Reduction/", "Sweep/", "Accuracy study/", "Designs/", "Search/", "Sensitivity/", "Output/"}));
-}
+    {{"Study=accuracy"}, {"Accuracy study/"}, {no_shapes, no_sliding, undamped}},
+    {{"Study=accuracy", "Accuracy study/Bases=real", dissipation},
+     {"Accuracy study/"},
+     {no_shapes, no_sliding, {"Complex modes/Maximum", "Accuracy study/Grown"}}},
 
-TEST(ParameterUsage, OfReduction)
-{
-  const std::vector<std::string> always = {"Sensitivity/",
-                                           "Sweep/",
-                                           "Ingredients/",
-                                           "Accuracy study/",
-                                           "Designs/",
-                                           "Search/",
-                                           "Output/",
-                                           "Steady sliding/Control",
-                                           "Steady sliding/Displacement",
-                                           "Steady sliding/Loads",
-                                           "Steady sliding/Gaps",
-                                           "Complex modes/Iteration"};
-  EXPECT_EQ(unused_alone({"Study=reduction"}), those_of(joined(always, {"Operation/Load", "Operation/Rotation speed"})));
-  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Bases=real, free", "Operation/Radial dissipation=consistent"}),
-            those_of(joined(always, {"Complex modes/Maximum", "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
-  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Bases=residual-grown, POD", "Operation/Radial dissipation=consistent"}),
-            those_of(joined(always, {"Reduction/Component modes", "Reduction/Coupled frequency"})));
-  EXPECT_EQ(unused_alone({"Study=reduction", "Reduction/Problem=frictionless"}),
-            those_of(joined(always, {"Operation/", "Damping/", "Disc material/", "Pin material/", "Complex modes/", "Reduction/Coupled",
-                                     "Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"})));
-}
+    // The study goes through contact states, dissipations, solvers and rotation on its own: what they need is of use
+    {{"Study=ingredients"}, {"Ingredients/"}, {{"Output/"}}},
 
-TEST(ParameterUsage, OfSweeps)
-{
-  const std::vector<std::string> always = {"Reduction/",   "Ingredients/",     "Accuracy study/", "Designs/",
-                                           "Search/",      "Sensitivity/",     "Complex modes/",  "Operation/Friction coefficient",
-                                           "Output/Write", "Output/Component", "Output/Real"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  EXPECT_EQ(unused_alone({"Study=sweep"}),
-            those_of(joined(joined(joined(always, sweep_map), steady), {"Operation/Load", "Operation/Rotation speed", "Output/"})));
-  EXPECT_EQ(
-    unused_alone({"Study=sweep", "Sweep/Mode shapes at=0.1", "Operation/Radial dissipation=consistent", "Sweep/Map parameter=speed"}),
-    those_of(joined(always, steady)));
-}
+    {{"Study=reduction"}, {"Reduction/"}, {no_shapes, no_sliding, undamped}},
+    {{"Study=reduction", "Reduction/Bases=real, free", dissipation},
+     {"Reduction/"},
+     {no_shapes, no_sliding, no_bases, {"Complex modes/Maximum"}}},
+    {{"Study=reduction", "Reduction/Bases=residual-grown, POD", dissipation},
+     {"Reduction/"},
+     {no_shapes, no_sliding, {"Reduction/Component modes", "Reduction/Coupled frequency"}}},
+    {{"Study=reduction", "Reduction/Problem=frictionless"},
+     {"Reduction/"},
+     {reduced, no_sliding, no_bases, {"Operation/", "Damping/", "Disc material/", "Pin material/", "Reduction/Coupled"}}},
 
-TEST(ParameterUsage, OfSensitivities)
-{
-  const std::vector<std::string> always = {"Designs/",       "Search/",         "Reduction/",     "Ingredients/",        "Accuracy study/",
-                                           "Complex modes/", "Sweep/Compare",   "Sweep/Mode",     "Sweep/Complex plane", "Sweep/Count",
-                                           "Sweep/Map",      "Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Output/"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  const std::vector<std::string> undamped = {"Operation/Load", "Operation/Rotation speed"};
-  // Modal damping is refused
-  const std::set<std::string> refused = {"Damping/Modal damping ratio"};
-  EXPECT_EQ(unused_alone({"Study=sensitivity"}), those_of(joined(joined(always, steady), undamped), refused));
-  EXPECT_EQ(unused_alone({"Study=sensitivity", "Operation/Radial dissipation=consistent"}), those_of(joined(always, steady), refused));
-  EXPECT_EQ(unused_alone({"Study=sensitivity", "Sensitivity/Thresholds=false"}),
-            those_of(joined(joined(joined(always, steady), undamped),
-                            {"Sweep/First friction", "Sweep/Last friction", "Sweep/Number of friction", "Sweep/Threshold"}),
-                     refused));
+    {{"Study=sweep"}, {"Sweep/"}, {reduced, no_map, no_sliding, undamped, one_mu}},
+    {{"Study=sweep", "Sweep/Mode shapes at=0.1", dissipation, "Sweep/Map parameter=speed"},
+     {"Sweep/"},
+     {{"Complex modes/", "Output/Write", "Output/Component", "Output/Real"}, no_sliding, one_mu}},
+
+    {{"Study=sensitivity"}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding, undamped}},
+    {{"Study=sensitivity", dissipation}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding}},
+    {{"Study=sensitivity", "Sensitivity/Thresholds=false"},
+     {"Sensitivity/", "Sweep/"},
+     {reduced,
+      no_sweep,
+      no_sliding,
+      undamped,
+      {"Sweep/First friction", "Sweep/Last friction", "Sweep/Number of friction", "Sweep/Threshold"}}},
+
+    {design, {"Designs/", "Sweep/"}, {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Number", "Designs/Seed", "Designs/File"}}},
+    {joined(design, {"Designs/Plan=Sobol sequence", steady}),
+     {"Designs/", "Sweep/"},
+     {reduced, no_sweep, one_mu, {"Designs/File", "Operation/Rotation speed"}}},
+    // A search has ranges in the place of a plan
+    {{"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"},
+     {"Designs/", "Search/", "Sweep/"},
+     {reduced, no_sweep, no_sliding, undamped, one_mu, {"Designs/Plan", "Designs/Number", "Designs/File"}}}};
+  for (const Usage &usage : table)
+    EXPECT_EQ(unused_alone(usage.run), usage.expected()) << ::testing::PrintToString(usage.run);
 }
 
 TEST(ParameterUsage, OfGeometries)
@@ -317,8 +297,8 @@ TEST(ParameterUsage, OfGeometries)
     std::ofstream((folder / name).string()) << text;
     return "Geometry/File=" + (folder / name).string();
   };
-  const std::vector<std::string> sizes = {"Geometry/Disc thickness=0.04", "Geometry/Pin diameter=0.04", "Geometry/Disc outer radius=0.32"};
-  const auto                     with  = [&](const std::string &geometry) { return unused(joined(sizes, {geometry})); };
+  const Paths sizes = {"Geometry/Disc thickness=0.04", "Geometry/Pin diameter=0.04", "Geometry/Disc outer radius=0.32"};
+  const auto  with  = [&](const std::string &geometry) { return unused(joined(sizes, {geometry})); };
 
   EXPECT_EQ(with("Geometry/File=disc_pins.geo"), std::set<std::string>());
   EXPECT_EQ(with(file("plan.geo", "// pin_diameter\nr = disc_outer_radius;\nPhysical Surface(\"disc\") = {1};\n")),
@@ -349,38 +329,4 @@ TEST(ParameterUsage, TheNoteNamesAllWithTheirReasons)
 {
   EXPECT_EQ(unused_parameters_note(parameters_of({"Operation/Load per side=500", "Sweep/Tolerance=1e-5"})),
             "  note: not used here: Operation/Load per side (no contact damping), Sweep/Tolerance (of Study = sweep)");
-}
-
-TEST(ParameterUsage, OfDesigns)
-{
-  const std::vector<std::string> run =
-    run_of(*Parameters::read("/dev/null", {"Study=geometry", "Designs/Variables=Geometry/Pin height=1, 2"}).study);
-  const std::vector<std::string> always = {"Sensitivity/",
-                                           "Search/",
-                                           "Reduction/",
-                                           "Ingredients/",
-                                           "Accuracy study/",
-                                           "Complex modes/",
-                                           "Operation/Friction coefficient",
-                                           "Output/",
-                                           "Sweep/Compare",
-                                           "Sweep/Mode shapes",
-                                           "Sweep/Complex",
-                                           "Sweep/Count",
-                                           "Sweep/Map",
-                                           "Sweep/First map",
-                                           "Sweep/Last map",
-                                           "Sweep/Number of map"};
-  const std::vector<std::string> steady = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads",
-                                           "Steady sliding/Gaps"};
-  const std::vector<std::string> idle   = {"Operation/Load", "Operation/Rotation speed"};
-  EXPECT_EQ(unused_alone(run), those_of(joined(joined(joined(always, steady), idle), {"Designs/Number", "Designs/Seed", "Designs/File"})));
-  EXPECT_EQ(unused_alone(joined(run, {"Designs/Plan=Sobol sequence", "Steady sliding/Contact state=steady sliding"})),
-            those_of(joined(always, {"Designs/File", "Operation/Rotation speed"})));
-
-  // A search has ranges in the place of a plan
-  std::vector<std::string> search = always;
-  search.erase(std::remove(search.begin(), search.end(), "Search/"), search.end());
-  EXPECT_EQ(unused_alone({"Study=search", "Designs/Variables=Geometry/Pin height=0.03 to 0.04"}),
-            those_of(joined(joined(joined(search, steady), idle), {"Designs/Plan", "Designs/Number", "Designs/File"})));
 }

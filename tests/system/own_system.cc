@@ -3,7 +3,6 @@
 #include <squeal/estimates/judged_modes.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
-#include <squeal/sensitivity/term_products.h>
 #include <squeal/tracking/branches.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
@@ -174,7 +173,7 @@ TEST(OwnSystem, ThresholdOfFlutter)
   for (const double beta : undamped_and_damped)
     {
       Solved     solved(beta);
-      ChartModel model(solved.system, *solved.frictionless.inverse, 0., *solved.frictionless.real.vectors, band, 0.05);
+      ChartModel model(solved.system, *solved.frictionless.inverse, 0., *solved.frictionless.real.vectors, band);
       const auto at = [](const double mu) {
         OperatingPoint point;
         point.friction_coefficient = mu;

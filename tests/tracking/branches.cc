@@ -1,9 +1,12 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/dense_quadratic.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/branches.h>
+#include <squeal/tracking/mode_links.h>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -14,6 +17,8 @@ using namespace Squeal;
 namespace
 {
   using Complex = std::complex<double>;
+
+  constexpr ThresholdMechanism coalescence = ThresholdMechanism::coalescence, zero_growth = ThresholdMechanism::zero_growth;
 
   /// A family of small systems with M = 1.
   struct Family
@@ -61,11 +66,22 @@ namespace
 
   DenseMatrix matrix(const std::vector<std::vector<double>> &rows)
   {
-    DenseMatrix A = DenseMatrix::Zero(rows.size(), rows.front().size());
+    DenseMatrix A(rows.size(), rows.front().size());
     for (int i = 0; i < A.rows(); ++i)
-      for (int j = 0; j < A.cols(); ++j)
-        A(i, j) = rows[i][j];
+      A.row(i) = as_column(rows[i]).transpose();
     return A;
+  }
+
+  DenseMatrix diagonal(const std::vector<double> &values)
+  {
+    return as_column(values).asDiagonal();
+  }
+
+  /// Normally distributed numbers.
+  DenseMatrix random(std::mt19937 &generator, const int n_rows, const int n_columns)
+  {
+    std::normal_distribution<double> normal;
+    return DenseMatrix::NullaryExpr(n_rows, n_columns, [&](int, int) { return normal(generator); });
   }
 
   std::vector<double> uniform_grid(const double first, const double last, const int n_steps)
@@ -78,10 +94,7 @@ namespace
 
   ChartOptions precise(const double largest_circular_frequency = 100., const double tolerance = 1e-12)
   {
-    ChartOptions options;
-    options.largest_circular_frequency = largest_circular_frequency;
-    options.threshold_tolerance        = tolerance;
-    return options;
+    return {largest_circular_frequency, tolerance};
   }
 
   /// λ of a branch at point k.
@@ -90,21 +103,43 @@ namespace
     return chart.points[k].lambda.at(chart.branches[branch].modes[k]);
   }
 
-  /// |φᴴφ'| of a branch at two points.
-  double overlap(const StabilityChart &chart, const int branch, const int k, const int l)
+  /// |φᴴφ'| of a branch at the first and the last point.
+  double overlap(const StabilityChart &chart, const int branch)
   {
-    const ComplexDenseMatrix &X = chart.points[k].right, &Y = chart.points[l].right;
-    Complex                   sum = 0.;
-    for (int i = 0; i < X.rows(); ++i)
-      sum += std::conj(X(i, chart.branches[branch].modes[k])) * Y(i, chart.branches[branch].modes[l]);
-    return std::abs(sum);
+    const std::vector<int> &modes = chart.branches[branch].modes;
+    return std::abs(chart.points.front().right.col(modes.front()).dot(chart.points.back().right.col(modes.back())));
   }
 
   void expect_counts(const StabilityChart &chart)
   {
+    EXPECT_EQ(chart.n_doubtful_steps, 0);
     EXPECT_FALSE(chart.counts.empty());
     for (const ChartCount &count : chart.counts)
       EXPECT_EQ(count.n_modes, count.n_expected) << "at " << count.friction_coefficient;
+  }
+
+  /// The chart of a family that has these thresholds, alternately of onset and of restabilisation or else of one branch each.
+  StabilityChart expect_thresholds(Family                     family,
+                                   const std::vector<double> &grid,
+                                   const ThresholdMechanism   mechanism,
+                                   const std::vector<double> &friction_coefficients,
+                                   const bool                 is_window = false)
+  {
+    const StabilityChart          chart = family.chart(grid, precise());
+    const std::vector<Threshold> &found = chart.thresholds;
+    EXPECT_EQ(found.size(), friction_coefficients.size());
+    for (std::size_t t = 0; t < std::min(found.size(), friction_coefficients.size()); ++t)
+      {
+        EXPECT_NEAR(found[t].friction_coefficient, friction_coefficients[t], 1e-10);
+        EXPECT_LT(found[t].uncertainty, 1e-10);
+        EXPECT_EQ(found[t].mechanism, mechanism);
+        EXPECT_EQ(found[t].partner >= 0, mechanism == ThresholdMechanism::coalescence);
+        EXPECT_EQ(found[t].event, is_window && t == 1 ? ThresholdEvent::restabilisation : ThresholdEvent::onset);
+        EXPECT_EQ(found[t].branch == found[0].branch, is_window || t == 0);
+      }
+    EXPECT_EQ(chart.branches.size(), chart.points.front().lambda.size());
+    expect_counts(chart);
+    return chart;
   }
 
   /// Whether two charts of the same family agree at the points of the grid of the first, and on thresholds.
@@ -128,36 +163,28 @@ namespace
 
     // Modes of a multiple λ at the first point may be numbered anyhow: branches are compared as sets of curves
     const auto curves = [&coarse](const StabilityChart &chart) {
-      std::vector<std::vector<Complex>> result;
+      std::vector<Eigen::VectorXcd> result;
       for (const Branch &branch : chart.branches)
         if (branch.modes[0] >= 0)
           {
-            std::vector<Complex> curve;
+            result.push_back(Eigen::VectorXcd::Zero(coarse.points.size()));
             for (std::size_t k = 0, l = 0; k < coarse.points.size(); ++k)
               if (!coarse.is_refinement[k])
                 {
                   while (chart.points[l].friction_coefficient < coarse.points[k].friction_coefficient - 1e-12)
                     ++l;
-                  curve.push_back(branch.modes[l] >= 0 ? chart.points[l].lambda[branch.modes[l]] : Complex());
+                  if (branch.modes[l] >= 0)
+                    result.back()[k] = chart.points[l].lambda[branch.modes[l]];
                 }
-            result.push_back(curve);
           }
       return result;
     };
     const auto first = curves(coarse), second = curves(fine);
     ASSERT_EQ(first.size(), second.size());
     for (std::size_t b = 0; b < first.size(); ++b)
-      {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const auto &other : second)
-          {
-            double farthest = 0.;
-            for (std::size_t k = 0; k < other.size(); ++k)
-              farthest = std::max(farthest, std::abs(first[b][k] - other[k]));
-            nearest = std::min(nearest, farthest);
-          }
-        EXPECT_LT(nearest, 1e-6) << "branch " << b;
-      }
+      EXPECT_TRUE(
+        std::any_of(second.begin(), second.end(), [&](const auto &other) { return (other - first[b]).cwiseAbs().maxCoeff() < 1e-6; }))
+        << "branch " << b;
   }
 
   /// N. Hoffmann et al. (2002): (k11 − k22)² + 4 k12 (k12 − μ k_c) = 0 at the coalescence.
@@ -189,85 +216,93 @@ namespace
   };
 } // namespace
 
-TEST(Branches, CoalescenceInClosedForm)
+TEST(Branches, ThresholdsInClosedForm)
 {
   for (const double k22 : {2., 2.3, 2.7, 3.2, 4.})
     {
       Flutter flutter;
-      flutter.k22                 = k22;
-      Family               family = flutter.family();
-      const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
+      flutter.k22      = k22;
+      const auto chart = expect_thresholds(flutter.family(), uniform_grid(0., 2., 10), coalescence, {flutter.coalescence()});
       ASSERT_EQ(chart.thresholds.size(), 1u);
       const Threshold &threshold = chart.thresholds.front();
-      EXPECT_NEAR(threshold.friction_coefficient, flutter.coalescence(), 1e-10);
-      EXPECT_LT(threshold.uncertainty, 1e-10);
-      EXPECT_EQ(threshold.event, ThresholdEvent::onset);
-      EXPECT_EQ(threshold.mechanism, ThresholdMechanism::coalescence);
       EXPECT_LT(std::abs(threshold.lambda - Complex(0., std::sqrt(0.5 * (flutter.k11 + k22)))), 1e-6);
       // The lower branch goes on as the growing one
       EXPECT_LT(value(chart, threshold.branch, 0).imag(), value(chart, threshold.partner, 0).imag());
       EXPECT_GT(value(chart, threshold.branch, chart.points.size() - 1).real(), 0.);
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
-      expect_counts(chart);
     }
-}
-
-TEST(Branches, RestabilisationInClosedForm)
-{
+  for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}, {0.001, 0.003}, {0.2, 0.1}, {1e-5, 1e-5}})
+    {
+      Flutter flutter;
+      flutter.d1 = d1;
+      flutter.d2 = d2;
+      expect_thresholds(flutter.family(), uniform_grid(0., 2., 10), zero_growth, {flutter.threshold()});
+    }
   // δ(κ)² = (k11 − k22)² − 4 a b with a b = μ (p − μ): negative between two values of μ
   for (const double gap : {0.5, 1., 1.5})
     for (const double p : {2.5, 3., 4.})
       {
-        Family family;
-        family.stiffness           = [=](const double mu) { return matrix({{10. + gap, mu}, {mu - p, 10.}}); };
-        const double         root  = std::sqrt(p * p - gap * gap);
-        const StabilityChart chart = family.chart(uniform_grid(-0.1, 4.1, 15), precise());
-        ASSERT_EQ(chart.thresholds.size(), 2u);
-        EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.5 * (p - root), 1e-10);
-        EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.5 * (p + root), 1e-10);
-        EXPECT_EQ(chart.thresholds[0].event, ThresholdEvent::onset);
-        EXPECT_EQ(chart.thresholds[1].event, ThresholdEvent::restabilisation);
-        EXPECT_EQ(chart.thresholds[0].branch, chart.thresholds[1].branch);
-        EXPECT_EQ(chart.branches.size(), 2u);
-        EXPECT_EQ(chart.n_doubtful_steps, 0);
+        const double root = std::sqrt(p * p - gap * gap);
+        expect_thresholds({[=](const double mu) {
+                            return matrix({{10. + gap, mu}, {mu - p, 10.}});
+                          }},
+                          uniform_grid(-0.1, 4.1, 15), coalescence, {0.5 * (p - root), 0.5 * (p + root)}, true);
       }
 }
 
-TEST(Branches, DampedThresholdInClosedForm)
+TEST(Branches, WindowsOfInstabilityAreFound)
 {
-  for (const auto &[d1, d2] : {std::make_pair(0.02, 0.02), {0.04, 0.}, {0., 0.04}, {0.01, 0.03}, {0.001, 0.003}, {0.2, 0.1}, {1e-5, 1e-5}})
+  // 4 + μ and 6 − μ meet at μ = 1; coupling c and −c makes them grow while |μ − 1| < c
+  for (const double c : {1e-1, 1e-3, 1e-5})
+    expect_thresholds({[=](const double mu) {
+                        return matrix({{4. + mu, c}, {-c, 6. - mu}});
+                      }},
+                      uniform_grid(0., 2., 7), coalescence, {1. - c, 1. + c}, true);
+  // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
+  for (const int n_steps : {5, 10, 20})
+    for (const double d : {0., 0.001, 0.01})
+      {
+        Family family{[](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); }};
+        if (d > 0.)
+          family.damping = [d](double) { return diagonal({d, d}); };
+        const double half = std::sqrt(0.07 * 0.07 - 5. * d * d);
+        expect_thresholds(family, uniform_grid(0., 1., n_steps), d > 0. ? zero_growth : coalescence, {0.5 - half, 0.5 + half}, true);
+      }
+}
+
+TEST(Branches, GrowthAtOnce)
+{
+  // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
+  const auto pairs = [](const double mu) { return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}); };
+  const auto chart = expect_thresholds({pairs}, uniform_grid(0., 1., 10), coalescence, {0., 0.05});
+  EXPECT_EQ(chart.thresholds.at(0).friction_coefficient, 0.);
+  // C = μ diag(c (μ − 0.2), −1, 1) / 100: onset at 0.2, at once, and never
+  for (const int n_steps : {3, 10})
     {
-      Flutter flutter;
-      flutter.d1                  = d1;
-      flutter.d2                  = d2;
-      Family               family = flutter.family();
-      const StabilityChart chart  = family.chart(uniform_grid(0., 2., 10), precise());
-      ASSERT_EQ(chart.thresholds.size(), 1u);
-      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, flutter.threshold(), 1e-10);
-      EXPECT_EQ(chart.thresholds[0].mechanism, ThresholdMechanism::zero_growth);
-      EXPECT_EQ(chart.thresholds[0].partner, -1);
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
-      EXPECT_EQ(chart.branches.size(), 2u);
+      const auto damped = expect_thresholds({[](double) {
+                                               return diagonal({1., 2., 3.});
+                                             },
+                                             [](const double mu) {
+                                               return diagonal({-0.01 * mu * (mu - 0.2), -0.01 * mu, 0.01 * mu});
+                                             }},
+                                            uniform_grid(0., 1., n_steps), zero_growth, {0., 0.2});
+      EXPECT_EQ(damped.thresholds.at(0).friction_coefficient, 0.);
+      EXPECT_EQ(damped.thresholds.at(0).branch, 1);
+      EXPECT_EQ(damped.thresholds.at(1).branch, 0);
     }
 }
 
 TEST(Branches, CrossingsWithoutInteractionGoStraightThrough)
 {
-  Family family;
-  family.stiffness = [](const double mu) { return matrix({{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}); };
+  Family family{[](const double mu) { return matrix({{4. + mu, 0.2, 0.}, {0.2, 5. + mu, 0.}, {0., 0., 6. - mu}}); }};
   // The last grid meets a crossing exactly: vectors are arbitrary there
   const double crossing = (6. - (4.5 - std::sqrt(0.29))) / 2.;
   for (const auto &grid : {uniform_grid(0., 2., 4), uniform_grid(0., 2., 37), std::vector<double>{0., crossing, 2.}})
     {
-      const StabilityChart chart = family.chart(grid, precise());
-      EXPECT_TRUE(chart.thresholds.empty());
+      const StabilityChart chart = expect_thresholds(family, grid, coalescence, {});
       EXPECT_EQ(chart.points.size(), grid.size()); // no reason to refine
-      ASSERT_EQ(chart.branches.size(), 3u);
-      const int last = chart.points.size() - 1;
       for (int branch = 0; branch < 3; ++branch)
-        EXPECT_NEAR(overlap(chart, branch, 0, last), 1., 1e-10);
-      EXPECT_EQ(chart.branches[2].modes[last], 0);
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
+        EXPECT_NEAR(overlap(chart, branch), 1., 1e-10);
+      EXPECT_EQ(chart.branches.at(2).modes.back(), 0);
     }
 }
 
@@ -276,89 +311,46 @@ TEST(Branches, VeeringsAreRefined)
   // Branches keep their order and exchange vectors, within |μ − 1| ~ the coupling
   for (const double coupling : {1e-1, 1e-2, 1e-3, 1e-4})
     {
-      Family family;
-      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {coupling, 6. - mu}}); };
-      const StabilityChart chart = family.chart(uniform_grid(0., 2., 5), precise());
-      EXPECT_TRUE(chart.thresholds.empty());
-      ASSERT_EQ(chart.branches.size(), 2u);
-      const int last = chart.points.size() - 1;
-      EXPECT_LT(overlap(chart, 0, 0, last), 0.2);
-      for (int k = 0; k <= last; ++k)
+      const StabilityChart chart = expect_thresholds({[=](const double mu) {
+                                                       return matrix({{4. + mu, coupling}, {coupling, 6. - mu}});
+                                                     }},
+                                                     uniform_grid(0., 2., 5), coalescence, {});
+      EXPECT_LT(overlap(chart, 0), 0.2);
+      for (std::size_t k = 0; k < chart.points.size(); ++k)
         EXPECT_LT(value(chart, 0, k).imag(), value(chart, 1, k).imag());
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
-    }
-}
-
-TEST(Branches, NarrowWindowsOfInstabilityAreFound)
-{
-  // 4 + μ and 6 − μ meet at μ = 1; coupling c and −c makes them grow while |μ − 1| < c
-  for (const double coupling : {1e-1, 1e-3, 1e-5})
-    {
-      Family family;
-      family.stiffness           = [=](const double mu) { return matrix({{4. + mu, coupling}, {-coupling, 6. - mu}}); };
-      const StabilityChart chart = family.chart(uniform_grid(0., 2., 7), precise());
-      ASSERT_EQ(chart.thresholds.size(), 2u);
-      EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 1. - coupling, 1e-10);
-      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 1. + coupling, 1e-10);
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
     }
 }
 
 TEST(Branches, MultipleModesAreFollowedAcrossOthers)
 {
   // A twelvefold λ² = −5 whose vectors are mixed anew at each point; two others cross it, one of them veering with a third
-  std::mt19937                     generator(7);
-  std::normal_distribution<double> normal;
-  Family                           family;
-  family.stiffness = [](const double mu) {
-    DenseMatrix K = DenseMatrix::Zero(15, 15);
-    for (int i = 0; i < 12; ++i)
-      K(i, i) = 5.;
-    K(12, 12) = 4. + 2. * mu;
-    K(13, 13) = 6. - 2. * mu;
-    K(14, 14) = 5.4;
-    K(13, 14) = K(14, 13) = 0.1;
+  std::mt19937 generator(7);
+  Family       family{[](const double mu) {
+    DenseMatrix K             = 5. * DenseMatrix::Identity(15, 15);
+    K.bottomRightCorner(3, 3) = matrix({{4. + 2. * mu, 0., 0.}, {0., 6. - 2. * mu, 0.1}, {0., 0.1, 5.4}});
     return K;
-  };
+  }};
   family.disturb = [&](ChartPoint &point) {
     std::vector<int> multiple;
     for (std::size_t j = 0; j < point.lambda.size(); ++j)
       if (std::abs(point.lambda[j] - Complex(0., std::sqrt(5.))) < 1e-9)
         multiple.push_back(j);
+    const int n = multiple.size();
     for (auto *vectors : {&point.right, &point.left})
-      for (std::size_t pass = 0; pass < multiple.size(); ++pass)
-        for (const int i : multiple)
-          for (const int j : multiple)
-            if (i < j)
-              {
-                const double angle = normal(generator), c = std::cos(angle), s = std::sin(angle);
-                for (int row = 0; row < vectors->rows(); ++row)
-                  {
-                    const Complex x = (*vectors)(row, i), y = (*vectors)(row, j);
-                    (*vectors)(row, i) = c * x + s * y;
-                    (*vectors)(row, j) = c * y - s * x;
-                  }
-              }
+      (*vectors)(Eigen::all, multiple) = (*vectors)(Eigen::all, multiple) * orthonormal_columns(random(generator, n, n));
   };
   // One of the grids meets the crossing of the twelve by a thirteenth
   for (const int n_steps : {3, 10, 33})
     {
-      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
-      EXPECT_TRUE(chart.thresholds.empty());
-      ASSERT_EQ(chart.branches.size(), 15u);
-      EXPECT_EQ(chart.n_doubtful_steps, 0);
+      const StabilityChart chart = expect_thresholds(family, uniform_grid(0., 1., n_steps), coalescence, {});
       for (std::size_t k = 0; k < chart.points.size(); ++k)
         {
           int n_multiple = 0, n_rising = 0;
           for (int branch = 0; branch < 15; ++branch)
             {
-              const double mu = chart.points[k].friction_coefficient, omega = value(chart, branch, k).imag();
-              const bool   multiple = std::abs(value(chart, branch, 0).imag() - std::sqrt(5.)) < 1e-9;
-              const bool   rising   = std::abs(value(chart, branch, 0).imag() - 2.) < 1e-9;
-              if (multiple)
-                n_multiple += std::abs(omega - std::sqrt(5.)) < 1e-9;
-              if (rising)
-                n_rising += std::abs(omega - std::sqrt(4. + 2. * mu)) < 1e-9;
+              const double first = value(chart, branch, 0).imag(), omega = value(chart, branch, k).imag();
+              n_multiple += std::abs(first - std::sqrt(5.)) < 1e-9 && std::abs(omega - std::sqrt(5.)) < 1e-9;
+              n_rising += std::abs(first - 2.) < 1e-9 && std::abs(omega - std::sqrt(4. + 2. * chart.points[k].friction_coefficient)) < 1e-9;
             }
           EXPECT_EQ(n_multiple, 12);
           EXPECT_EQ(n_rising, 1);
@@ -366,84 +358,32 @@ TEST(Branches, MultipleModesAreFollowedAcrossOthers)
     }
 }
 
-TEST(Branches, DoubleModesMayGrowAtOnce)
-{
-  // κ = 5 ± iμ from the start; a second pair, split by 0.1, follows later
-  Family family;
-  family.stiffness = [](const double mu) { return matrix({{5., mu, 0., 0.}, {-mu, 5., 0., 0.}, {0., 0., 7., mu}, {0., 0., -mu, 7.1}}); };
-  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise());
-  ASSERT_EQ(chart.thresholds.size(), 2u);
-  EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
-  EXPECT_EQ(chart.thresholds[0].mechanism, ThresholdMechanism::coalescence);
-  EXPECT_GE(chart.thresholds[0].partner, 0);
-  EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.05, 1e-10);
-  EXPECT_EQ(chart.n_doubtful_steps, 0);
-}
-
-TEST(Branches, DampingThatGrowsWithFriction)
-{
-  // C = μ diag(c (μ − 0.2), −1, 1) / 100: onset at 0.2, at once, and never
-  Family family;
-  family.stiffness = [](double) { return matrix({{1., 0., 0.}, {0., 2., 0.}, {0., 0., 3.}}); };
-  family.damping   = [](const double mu) {
-    DenseMatrix C = DenseMatrix::Zero(3, 3);
-    C(0, 0)       = -0.01 * mu * (mu - 0.2);
-    C(1, 1)       = -0.01 * mu;
-    C(2, 2)       = 0.01 * mu;
-    return C;
-  };
-  for (const int n_steps : {3, 10})
-    {
-      const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
-      ASSERT_EQ(chart.thresholds.size(), 2u);
-      EXPECT_EQ(chart.thresholds[0].friction_coefficient, 0.);
-      EXPECT_EQ(chart.thresholds[0].branch, 1);
-      EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.2, 1e-10);
-      EXPECT_EQ(chart.thresholds[1].branch, 0);
-    }
-}
-
 TEST(Branches, BandCrossingsInClosedForm)
 {
-  // ω = √(8 + 2μ) leaves and √(10.2 − 2μ) enters the band ω < 3; the list ends 5 % above, where a fourth mode comes and goes
-  Family family;
-  family.last      = 3.15;
-  family.stiffness = [](const double mu) {
-    DenseMatrix K = DenseMatrix::Zero(4, 4);
-    K(0, 0)       = 8. + 2. * mu;
-    K(1, 1)       = 10.2 - 2. * mu;
-    K(2, 2)       = 4.;
-    K(3, 3)       = 9.9 + 4. * (mu - 0.5) * (mu - 0.5);
-    return K;
+  const auto expect_crossings = [](const StabilityChart &chart, const BandEdge edge, const double leaves, const double enters) {
+    ASSERT_EQ(chart.crossings.size(), 2u);
+    EXPECT_NEAR(chart.crossings[0].friction_coefficient, leaves, 1e-10);
+    EXPECT_NEAR(chart.crossings[1].friction_coefficient, enters, 1e-10);
+    EXPECT_FALSE(chart.crossings[0].enters);
+    EXPECT_TRUE(chart.crossings[1].enters);
+    for (const BandCrossing &crossing : chart.crossings)
+      EXPECT_EQ(crossing.edge, edge);
+    EXPECT_EQ(chart.counts.front().n_modes, 2);
+    EXPECT_TRUE(chart.thresholds.empty());
+    expect_counts(chart);
   };
-  const StabilityChart chart = family.chart(uniform_grid(0., 1., 10), precise(3.));
-  ASSERT_EQ(chart.crossings.size(), 2u);
-  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.5, 1e-10);
-  EXPECT_FALSE(chart.crossings[0].enters);
-  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 0.6, 1e-10);
-  EXPECT_TRUE(chart.crossings[1].enters);
-  EXPECT_EQ(chart.counts.front().n_modes, 2);
-  EXPECT_EQ(chart.n_doubtful_steps, 0);
-  expect_counts(chart);
-}
-
-TEST(Branches, OverdampedModesReachTheRealAxis)
-{
+  // ω = √(8 + 2μ) leaves and √(10.2 − 2μ) enters the band ω < 3; the list ends 5 % above, where a fourth mode comes and goes
+  Family family{[](const double mu) { return diagonal({8. + 2. * mu, 10.2 - 2. * mu, 4., 9.9 + 4. * (mu - 0.5) * (mu - 0.5)}); }};
+  family.last = 3.15;
+  expect_crossings(family.chart(uniform_grid(0., 1., 10), precise(3.)), BandEdge::end_of_band, 0.5, 0.6);
   // c² = 4 k at μ = 0.7 and again at 1.3, c = c_max − (μ − 1)²
-  Family family;
-  family.stiffness           = [](double) { return matrix({{1., 0.}, {0., 9.}}); };
-  family.damping             = [](const double mu) { return matrix({{2.09 - (mu - 1.) * (mu - 1.), 0.}, {0., 0.1}}); };
-  const StabilityChart chart = family.chart(uniform_grid(0., 2., 10), precise());
-  ASSERT_EQ(chart.crossings.size(), 2u);
-  EXPECT_NEAR(chart.crossings[0].friction_coefficient, 0.7, 1e-10);
-  EXPECT_NEAR(chart.crossings[1].friction_coefficient, 1.3, 1e-10);
-  for (const BandCrossing &crossing : chart.crossings)
-    EXPECT_EQ(crossing.edge, BandEdge::real_axis);
-  EXPECT_FALSE(chart.crossings[0].enters);
-  EXPECT_TRUE(chart.crossings[1].enters);
-  EXPECT_TRUE(chart.thresholds.empty());
-  EXPECT_EQ(chart.n_doubtful_steps, 0);
-  expect_counts(chart);
+  Family overdamped{[](double) {
+                      return diagonal({1., 9.});
+                    },
+                    [](const double mu) {
+                      return diagonal({2.09 - (mu - 1.) * (mu - 1.), 0.1});
+                    }};
+  expect_crossings(overdamped.chart(uniform_grid(0., 2., 10), precise()), BandEdge::real_axis, 0.7, 1.3);
 }
 
 TEST(Branches, UncertaintyCoversThePerturbation)
@@ -459,22 +399,11 @@ TEST(Branches, UncertaintyCoversThePerturbation)
         perturbed.k22 -= 0.5 * size;
         perturbed.k12 += 0.3 * size;
         Family            family = flutter.family();
-        const DenseMatrix K = perturbed.family().stiffness(0.), K0 = flutter.family().stiffness(0.);
+        const DenseMatrix change = perturbed.family().stiffness(0.) - family.stiffness(0.), C = diagonal({flutter.d1, flutter.d2});
         family.corrections = [&](const ChartPoint &point) {
-          const int          k = point.lambda.size();
-          ComplexDenseMatrix D = ComplexDenseMatrix::Zero(k, k);
-          for (int i = 0; i < k; ++i)
-            for (int j = 0; j < k; ++j)
-              {
-                Complex change = 0., derivative = 0.;
-                for (int r = 0; r < 2; ++r)
-                  {
-                    derivative += point.left(r, i) * (2. * point.lambda[i] + (r == 0 ? flutter.d1 : flutter.d2)) * point.right(r, i);
-                    for (int c = 0; c < 2; ++c)
-                      change += point.left(r, i) * (K(r, c) - K0(r, c)) * point.right(c, j);
-                  }
-                D(i, j) = -change / derivative;
-              }
+          ComplexDenseMatrix D = point.left.transpose() * change * point.right;
+          for (int i = 0; i < D.rows(); ++i)
+            D.row(i) /= -(point.left.col(i).transpose() * (2. * point.lambda[i] * point.right.col(i) + C * point.right.col(i))).value();
           return D;
         };
         family.disturb = [&](ChartPoint &point) {
@@ -620,25 +549,6 @@ TEST(Branches, PinsAndDisc)
     }
 }
 
-TEST(Branches, WindowsBetweenPointsAreFound)
-{
-  // Nothing of the window is seen at 0, 0.2, 0.4, ...: κ = 5 ± i s, s² = (μ − 0.43) (0.57 − μ), grows from s² = 5 d² on
-  for (const int n_steps : {5, 10, 20})
-    for (const double d : {0., 0.001, 0.01})
-      {
-        Family family;
-        family.stiffness = [](const double mu) { return matrix({{5., 1.}, {(mu - 0.43) * (mu - 0.57), 5.}}); };
-        if (d > 0.)
-          family.damping = [d](double) { return matrix({{d, 0.}, {0., d}}); };
-        const double         half  = std::sqrt(0.07 * 0.07 - 5. * d * d);
-        const StabilityChart chart = family.chart(uniform_grid(0., 1., n_steps), precise());
-        ASSERT_EQ(chart.thresholds.size(), 2u) << n_steps << " steps, d = " << d;
-        EXPECT_NEAR(chart.thresholds[0].friction_coefficient, 0.5 - half, 1e-10);
-        EXPECT_NEAR(chart.thresholds[1].friction_coefficient, 0.5 + half, 1e-10);
-        EXPECT_EQ(chart.n_doubtful_steps, 0);
-      }
-}
-
 TEST(Branches, WhatIsLeftOfAnUnfinishedSearch)
 {
   Flutter      flutter;
@@ -677,4 +587,31 @@ TEST(Branches, Refusals)
   EXPECT_THROW(family.chart({0.2, 0.1}, precise()), Error);
   EXPECT_THROW(family.chart({0.2, 0.2}, precise()), Error);
   EXPECT_THROW(family.chart({0.1, 0.2}, ChartOptions()), Error);
+}
+
+TEST(ModeClusters, HoldEigenvaluesThatAreIndistinguishable)
+{
+  const Complex lambda(0., 1000.);
+  const auto    clusters = [&](const Complex &other) { return mode_clusters({lambda, other}); };
+  for (const Complex &direction : {Complex(1., 0.), Complex(0., 1.)})
+    {
+      EXPECT_EQ(clusters(lambda + 0.9 * indistinguishable * 1000. * direction), (std::vector<int>{0, 0}));
+      EXPECT_EQ(clusters(lambda + 1.1 * indistinguishable * 1000. * direction), (std::vector<int>{0, 1}));
+    }
+}
+
+TEST(PairSign, IsThatOfTheSquareWhereItIsReal)
+{
+  // δ² = 1 + i ε to first order
+  const auto sign = [](const double epsilon, const Complex &unit) { return pair_sign(unit * Complex(1., epsilon / 2.), 0.); };
+  for (const double epsilon : {0., 1e-7, -1e-7})
+    {
+      EXPECT_EQ(sign(epsilon, 10.), 1);
+      EXPECT_EQ(sign(epsilon, Complex(0., 10.)), -1);
+    }
+  for (const double epsilon : {1e-5, -1e-5, 1.})
+    {
+      EXPECT_EQ(sign(epsilon, 10.), 0);
+      EXPECT_EQ(sign(epsilon, Complex(0., 10.)), 0);
+    }
 }

@@ -2,6 +2,7 @@
 
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
+#include <squeal/tracking/branches.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
 #include <map>
@@ -14,8 +15,8 @@ namespace
   /// A scene with all that a sweep needs.
   struct Chart
   {
-    explicit Chart(const double c_b, const double c_t = 0.)
-      : s(mesh_of(skewed_pins), mounted(), operating())
+    explicit Chart(const double c_b, const double c_t = 0., const std::vector<PolarPin> &pins = skewed_pins)
+      : s(mesh_of(pins), mounted(), operating())
       , damping{{}, {}}
       , inverse(s.coupled, 0., FactorizationLibrary::automatic)
       , real(real_modes(s.coupled))
@@ -29,7 +30,7 @@ namespace
 
     ChartModel model() const
     {
-      return ChartModel(system, inverse, 0., *real.vectors, omega_max, 0.05);
+      return ChartModel(system, inverse, 0., *real.vectors, omega_max);
     }
 
     /// Damping in proportion to the friction coefficient.
@@ -42,11 +43,12 @@ namespace
       return point;
     }
 
-    std::vector<OperatingPoint> points() const
+    std::vector<OperatingPoint> points(const std::vector<double> &friction_coefficients = {0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7,
+                                                                                           0.8}) const
     {
       std::vector<OperatingPoint> result;
-      for (int i = 0; i <= 8; ++i)
-        result.push_back(at(0.1 * i));
+      for (const double mu : friction_coefficients)
+        result.push_back(at(mu));
       return result;
     }
 
@@ -105,6 +107,36 @@ namespace
     Progress progress;
     return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
   }
+  /// A model that is accurate everywhere, with contact damping 0.8 c_b [N s/m] at most, in proportion to the friction coefficient.
+  struct Predicted : Chart
+  {
+    explicit Predicted(const double c_b)
+      : Chart(0.8 * c_b, 0., symmetric_pins)
+      , accurate(model())
+    {
+      for (int i = 0; i <= 16; ++i)
+        grid.push_back(0.05 * i);
+      EXPECT_TRUE(sweep(accurate, points(grid), {}).why_stopped.empty());
+    }
+
+    std::optional<double> predicted_zero(const ZeroSearch &search) const
+    {
+      return accurate.predicted_zero(search, at(search.first.point->friction_coefficient), at(search.second.point->friction_coefficient));
+    }
+
+    StabilityChart chart(const bool predicts) const
+    {
+      ChartOptions options;
+      options.largest_circular_frequency = omega_max;
+      options.threshold_tolerance        = 1e-7;
+      return stability_chart(
+        grid, [&](const std::vector<double> &values) { return evaluate(accurate, points(values), MPI_COMM_WORLD); }, options,
+        predicts ? PredictZero([&](const ZeroSearch &search) { return predicted_zero(search); }) : PredictZero());
+    }
+
+    ChartModel          accurate;
+    std::vector<double> grid;
+  };
 } // namespace
 
 TEST(ErrorControlledSweep, AgreesWithFullOrder)
@@ -233,4 +265,68 @@ TEST(ErrorControlledSweep, StopsWhereRoundingMakesUpTheError)
   // Larger bases do not halve the error, or the residuals leave no direction: not until the basis takes all of the space
   EXPECT_NE(result.why_stopped.find("rounding"), std::string::npos) << result.why_stopped;
   EXPECT_LT(model.size(), options.maximum_basis);
+}
+
+TEST(PredictedZeros, FindTheSameThresholdsWithFewerPoints)
+{
+  for (const double c_b : {0., 40.})
+    {
+      const Predicted scene(c_b);
+      const auto      plain = scene.chart(false), predicted = scene.chart(true);
+      ASSERT_EQ(plain.thresholds.size(), predicted.thresholds.size());
+      EXPECT_GT(plain.thresholds.size(), 0u);
+      for (std::size_t i = 0; i < plain.thresholds.size(); ++i)
+        {
+          const Threshold &a = plain.thresholds[i], &b = predicted.thresholds[i];
+          EXPECT_NEAR(a.friction_coefficient, b.friction_coefficient, 1e-7);
+          EXPECT_EQ(a.event, b.event);
+          EXPECT_EQ(a.mechanism, b.mechanism);
+          EXPECT_EQ(a.branch, b.branch);
+        }
+      EXPECT_LT(predicted.points.size(), plain.points.size());
+    }
+}
+
+// The span of the modes at both ends knows λ there and its slope: what is left is of fourth order in the step
+TEST(PredictedZeros, ConvergeWithTheStep)
+{
+  const Predicted scene(0.);
+  const auto      chart = scene.chart(true);
+  const auto      onset = std::find_if(chart.thresholds.begin(), chart.thresholds.end(), [](const Threshold &t) {
+    return t.mechanism == ThresholdMechanism::coalescence && t.friction_coefficient > 0.1;
+  });
+  ASSERT_NE(onset, chart.thresholds.end());
+  std::vector<double> errors;
+  for (const double step : {0.08, 0.04})
+    {
+      // Not in the middle, where errors would cancel
+      const double            a = onset->friction_coefficient - 0.4 * step;
+      std::vector<ChartPoint> points;
+      for (const double mu : {a, a + step, a - step, a + 2. * step})
+        points.push_back(scene.accurate.evaluate(scene.at(mu)));
+      const auto pair = [&](const ChartPoint &point) {
+        std::vector<int> order(point.lambda.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [&](const int i, const int j) {
+          return std::abs(point.lambda[i] - onset->lambda) < std::abs(point.lambda[j] - onset->lambda);
+        });
+        return ModesAtPoint{&point, {order[0], order[1]}};
+      };
+      ZeroSearch search{ModeFunction::discriminant, 0., pair(points[0]), pair(points[1]), {}};
+      const auto zero = scene.predicted_zero(search);
+      ASSERT_TRUE(zero.has_value());
+      errors.push_back(std::abs(*zero - onset->friction_coefficient));
+
+      // The modes at the next points bring it closer
+      search.beyond    = {pair(points[2]), pair(points[3])};
+      const auto again = scene.predicted_zero(search);
+      ASSERT_TRUE(again.has_value());
+      EXPECT_LT(std::abs(*again - onset->friction_coefficient), 0.2 * errors.back() + 1e-7);
+    }
+  EXPECT_LT(errors[0], 1e-4);
+  EXPECT_LT(errors[1], errors[0] / 6. + 1e-7);
+
+  // No sign changes where there is no threshold
+  const ChartPoint first = scene.accurate.evaluate(scene.at(0.)), second = scene.accurate.evaluate(scene.at(0.001));
+  EXPECT_FALSE(scene.predicted_zero({ModeFunction::frequency, omega_max, {&first, {0}}, {&second, {0}}, {}}).has_value());
 }

@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/tracking/growth_onset.h>
+#include <squeal/tracking/branches.h>
 
 #include <gtest/gtest.h>
 

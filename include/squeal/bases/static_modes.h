@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/bases/component_modes.h>
-#include <squeal/bases/inertia_relief.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/contact/updated_inverse.h>
 
 #include <array>
@@ -59,9 +59,6 @@ namespace Squeal
     {
       return response.rigid_body_modes();
     }
-
-    /// Number of contact nodes.
-    int n_contact() const;
 
   private:
     MultiVector constraint_modes(Component component) const;

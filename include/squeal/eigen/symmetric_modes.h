@@ -100,9 +100,6 @@ namespace Squeal
    */
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
-  /// The number alone.
-  int count_modes(const SparseMatrix &K, const SparseMatrix &M, double largest_eigenvalue, const std::string &what);
-
   /**
    * An end of the band [rad²/s²] below which the @p n_modes lowest modes lie and no other, found by inertia alone. Others that are
    * closer to the last of them than 10⁻³ of its ω², as members of a multiple eigenvalue are, may lie below it, too.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/bases/mode_label.h>
+#include <squeal/bases/mode_labels.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/model/model.h>
 #include <squeal/modes/complex_modes.h>

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,39 @@ namespace Squeal
 
   /// Index of the volume that each node belongs to.
   std::vector<unsigned int> volume_of_nodes(const HexMesh &mesh);
+
+  /// A face of a hexahedron.
+  struct HexFace
+  {
+    std::array<unsigned int, 4> nodes;  ///< around the face, outwards by the right-hand rule
+    unsigned int                volume; ///< of its hexahedron
+    std::array<unsigned int, 4> key;    ///< the nodes in ascending order
+  };
+
+  /// Those of all hexahedra, ascending by key: the two of a face between hexahedra follow each other.
+  std::vector<HexFace> all_faces(const HexMesh &mesh);
+
+  /// Those that belong to one hexahedron only.
+  std::vector<HexFace> outer_faces(const HexMesh &mesh);
+
+  /// Centre of a face [m] and its normal times its area [m²].
+  struct FaceGeometry
+  {
+    HexMesh::Point       centre;
+    dealii::Tensor<1, 3> area_normal;
+  };
+
+  FaceGeometry face_geometry(const HexMesh &mesh, const std::array<unsigned int, 4> &nodes);
+
+  /// How deep a point is in a cell, below the nearest face; negative outside.
+  struct Depth
+  {
+    double relative; ///< to the extent of the cell across that face [-]
+    double length;   ///< [m]
+  };
+
+  /// By Newton's method for the coordinates in the cell; nothing for points that are more than about three quarters of its extent away.
+  std::optional<Depth> depth_in_cell(const HexMesh &mesh, const HexMesh::Hexahedron &cell, const HexMesh::Point &point);
 
   /// Index of a pin among the names of the volumes, the disc's first; throws ParameterError naming @p parameter and all pins.
   unsigned int pin_number(const std::vector<std::string> &volume_names, const std::string &pin, const char *parameter);

@@ -2,6 +2,8 @@
 
 #include <squeal/geometry/plan.h>
 
+#include <vector>
+
 namespace Squeal
 {
   /**
@@ -27,9 +29,32 @@ namespace Squeal
    */
   std::vector<Plan::Point> points_on_side(const Plan &plan, const Plan::Side side);
 
-  /// Points at the height (1 - t) lower + t upper through the disc: on straight lines unless faces turn over on the way.
-  std::vector<Plan::Point> points_between(const Plan                     &plan,
-                                          const std::vector<Plan::Point> &lower,
-                                          const std::vector<Plan::Point> &upper,
-                                          double                          t);
+  /// Nodes that keep their distances and turn together about a centre: a pin's.
+  struct TurningPart
+  {
+    std::vector<unsigned int> nodes;
+    Plan::Point               centre;
+  };
+
+  /**
+   * Turns faces over that are inverted or nearly flat, where smooth() finds no
+   * way because several nodes must move at once. Nodes around such faces and
+   * whole parts move so that the energy of all corners becomes least,
+   *
+   *   Σ (a² + b²) / χ(a × b),  χ(D) = (D + √(ε² + D²)) / 2
+   *
+   * for the edges a, b of a corner; ε decreases, so that inverted corners, of
+   * finite energy at first, are pressed to the other side, which they cannot
+   * leave again (V. Garanzha, I. Kaporin, L. Kudryavtseva, F. Protais, N. Ray,
+   * D. Sokolov, ACM Trans. Graph. 40 (2021) 154).
+   *
+   * Points stay as they are, to the last bit, where no face is bad, and where
+   * bad faces cannot be avoided.
+   *
+   * @param fixed nodes that move only with a part
+   */
+  void untangle(const std::vector<Plan::Face>  &faces,
+                const std::vector<bool>        &fixed,
+                const std::vector<TurningPart> &parts,
+                std::vector<Plan::Point>       &points);
 } // namespace Squeal

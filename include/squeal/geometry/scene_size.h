@@ -8,14 +8,13 @@
 #include <mpi.h>
 
 #include <string>
-#include <vector>
 
 namespace Squeal
 {
   /// About how large a scene is; real numbers, because what is asked for may exceed every integer.
   struct ProblemSize
   {
-    double hexahedra, dofs, contact_nodes;
+    double cells, dofs, contact_nodes;
 
     /**
      * Memory that the scene takes until its modes are computed [byte]: the program itself, matrices and
@@ -35,28 +34,13 @@ namespace Squeal
   ProblemSize expected_size(const HexMesh &mesh, unsigned int degree);
 
   /**
-   * Throws MeshError with these numbers if the memory, and what a study takes further [byte], exceeds what is available on the machines of
-   * the processes.
+   * Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
    */
   void check_memory(const ProblemSize &size,
                     unsigned int       degree,
                     double             n_modes,
                     const std::string &where,
-                    double             further      = 0.,
                     MPI_Comm           communicator = MPI_COMM_SELF);
-
-  /// What the mesh says of a body.
-  struct BodyShape
-  {
-    std::string name;                       ///< of its volume
-    double      inner_radius, outer_radius; ///< least and greatest distance of a node from the z axis [m]
-    double      height;                     ///< extent along z [m]
-    double      volume;                     ///< [m³]
-    double      contact_area;               ///< [m²]
-  };
-
-  /// Those of all volumes of the mesh, in their order: the disc first.
-  std::vector<BodyShape> body_shapes(const HexMesh &mesh);
 
   /**
    * Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where clearly more of

@@ -58,21 +58,48 @@ namespace Squeal
      */
     Model(const HexMesh &mesh, Element element, MPI_Comm communicator);
 
-    const dealii::Triangulation<3> &triangulation() const;
-    const dealii::DoFHandler<3>    &dof_handler() const;
-    const dealii::Mapping<3>       &mapping() const;
-    Element                         element() const;
+    const dealii::Triangulation<3> &triangulation() const
+    {
+      return tria;
+    }
+
+    const dealii::DoFHandler<3> &dof_handler() const
+    {
+      return dofs;
+    }
+
+    const dealii::Mapping<3> &mapping() const
+    {
+      return geometry_mapping;
+    }
+
+    Element element() const
+    {
+      return element_type;
+    }
 
     /// Polynomial degree of the nodal displacements.
-    unsigned int degree() const;
+    unsigned int degree() const
+    {
+      return fe.degree;
+    }
 
-    MPI_Comm communicator() const;
+    MPI_Comm communicator() const
+    {
+      return tria.get_communicator();
+    }
 
     /// Names of the components, in the order of the cells' material ids.
-    const std::vector<std::string> &component_names() const;
+    const std::vector<std::string> &component_names() const
+    {
+      return components;
+    }
 
     /// Nodes of the cells that this process has, in the order of these.
-    const std::vector<Node> &nodes() const;
+    const std::vector<Node> &nodes() const
+    {
+      return node_table;
+    }
 
     /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
     std::vector<Node> gathered_nodes() const;
@@ -87,13 +114,19 @@ namespace Squeal
     bool has_surface(const std::string &name) const;
 
     /// Distribution of the free dofs.
-    const RowMap &free_map() const;
+    const RowMap &free_map() const
+    {
+      return map;
+    }
 
     /// Number of a deal.II dof, one of the cells that this process has, among the free ones of all processes; -1 where clamped.
     int free_dof(dealii::types::global_dof_index dof) const;
 
     /// Number of all dofs, clamped ones included.
-    unsigned int n_dofs() const;
+    unsigned int n_dofs() const
+    {
+      return dofs.n_dofs();
+    }
 
   private:
     void create_triangulation(const HexMesh &mesh);

@@ -1,20 +1,30 @@
 #pragma once
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 namespace Squeal
 {
   struct Parameters;
-  struct ProblemSize;
   class Run;
   struct Scene;
 
   /// Why a run does not use something, for a message; null if it does.
   using Reason = const char *;
 
+  /// Of a study that leaves it to the general rules whether it uses something.
+  inline constexpr Reason as_in_general = "";
+
   inline Reason unless(const bool is_used, const Reason reason)
   {
     return is_used ? nullptr : reason;
+  }
+
+  /// Whether @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
+  inline bool concerns(const std::string &path, const std::string &parameter)
+  {
+    return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
   }
 
   /// When a parameter, or all of a section, is of no use.
@@ -25,8 +35,8 @@ namespace Squeal
   };
 
   /**
-   * A question that a run may answer, with all that the program has to know of it. Each stands in the file that
-   * answers it.
+   * A question that a run may answer: its name, the parameters that it uses, what they must fulfil, and what answers it. Each stands in the
+   * file that answers it.
    */
   struct Study
   {
@@ -39,17 +49,13 @@ namespace Squeal
     /// When it leaves parameters unused, its own or others'. For those that it names the general rules do not hold.
     std::vector<UsageRule> rules = {};
 
-    /// Why no mode shape is written; null if some are.
-    Reason (*no_mode_shapes)(const Parameters &) = nullptr;
-
-    /// Whether it solves for modes with friction; null: always.
-    bool (*has_friction)(const Parameters &) = nullptr;
-
-    /// Memory that it takes beside what modes of the scene do [byte]; null: little.
-    double (*further_memory)(const Parameters &, const ProblemSize &, double n_modes) = nullptr;
-
     /// Throws ParameterError where parameters do not fit the study; null: nothing to check.
     void (*check)(const Parameters &) = nullptr;
+
+    bool has(const std::string &parameter) const
+    {
+      return std::any_of(own_parameters.begin(), own_parameters.end(), [&](const char *own) { return concerns(own, parameter); });
+    }
   };
 
   /// All studies, the default first. Parameter files name them; they are listed where they are made, in studies/.

@@ -58,7 +58,7 @@ namespace Squeal
      */
     ProjectedResiduals restricted(const SystemMember &member, const DenseMatrix &Z) const;
 
-    /// Puts together what products() needs for all modes; it does so itself, but not for several threads that call it.
+    /// Puts the bracket together from its parts, which products() needs; it does so itself, but not for several threads that call it.
     void prepare() const;
 
     /// Products for reduced modes λ, φ_r and ψ_r (r × k).
@@ -87,26 +87,17 @@ namespace Squeal
     /// Finds the parts of W without their numbers; @p values as above.
     ProjectedResiduals(const CoupledSystem &system, const UpdatedInverse &inverse, const ParameterValues &values);
 
-    /// Coefficients y, or z of the transposed problem, real and imaginary halves.
+    /// Coefficients y, or z of the transposed problem, with zeros for columns that are not theirs; real and imaginary halves.
     DenseMatrix coefficients(const ParameterValues                   &values,
                              const std::vector<std::complex<double>> &lambda,
                              const ComplexDenseMatrix                &vectors,
                              bool                                     transposed) const;
 
-    /// Rows of y and z of right and left residuals among all columns of W, those of zeros left out, each of a mode of unit strain energy.
+    /// Those of right and left residuals side by side, each of a mode of unit strain energy, those of zeros left out.
     DenseMatrix coordinates(const ModesAt &modes) const;
-
-    /// The bracket times Y.
-    DenseMatrix bracket_times(const DenseMatrix &Y) const;
-
-    /// W C.
-    MultiVector columns_times(const ReducedModel &model, const DenseMatrix &C) const;
 
     /// Products of the factors with a block of vectors.
     DenseMatrix factor_products(const MultiVector &X) const;
-
-    /// The bracket from its parts: when it is needed, which for a family it is not.
-    void assemble() const;
 
     /// A T of a sparse term.
     struct Sparse
@@ -152,13 +143,13 @@ namespace Squeal
     std::vector<const Term *>                    low_rank;
     std::vector<Factor>                          factors;
     int                                          n_factor_columns = 0;
-    DenseMatrix                                  factor_gram;          ///< Fᵀ S⁻¹ F of all factors
-    std::map<const LowRankFactor *, DenseMatrix> motions;              ///< FᵀT
-    int                                          r = 0;                ///< size of the basis
-    DenseMatrix                                  pencil;               ///< TᵀST
-    mutable std::vector<Block>                   blocks;               ///< those of left residuals only first, of right ones only last
-    mutable int         n_columns = 0, n_in_left = 0, n_left_only = 0; ///< of W: all, of left residuals, of these only
-    mutable bool        is_assembled = false;
-    mutable DenseMatrix left_columns, right_block; ///< of the bracket: what left and right residuals need
+    DenseMatrix                                  factor_gram; ///< Fᵀ S⁻¹ F of all factors
+    std::map<const LowRankFactor *, DenseMatrix> motions;     ///< FᵀT
+    int                                          r = 0;       ///< size of the basis
+    DenseMatrix                                  pencil;      ///< TᵀST
+    mutable std::vector<Block>                   blocks;
+    mutable int                                  n_columns   = 0; ///< of W
+    mutable bool                                 is_prepared = false;
+    mutable DenseMatrix                          bracket;
   };
 } // namespace Squeal

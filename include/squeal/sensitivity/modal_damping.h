@@ -3,7 +3,7 @@
 #include <squeal/contact/coupled_system.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/parameters/damping.h>
-#include <squeal/sensitivity/term_products.h>
+#include <squeal/sensitivity/eigenvalue_derivatives.h>
 
 #include <map>
 #include <memory>

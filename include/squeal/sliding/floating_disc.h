@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/bases/inertia_relief.h>
+#include <squeal/bases/rigid_body.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/sliding/contact_problem.h>
 

@@ -2,10 +2,11 @@
 
 #include <squeal/base/enum_table.h>
 #include <squeal/tracking/chart_point.h>
-#include <squeal/tracking/zero_search.h>
 
+#include <algorithm>
 #include <complex>
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace Squeal
@@ -31,6 +32,12 @@ namespace Squeal
   struct Branch
   {
     std::vector<int> modes; ///< number of the mode at each point of the chart, -1 where it is not in the list
+
+    /// The first point at which it is in the list.
+    int begin() const
+    {
+      return static_cast<int>(std::find_if(modes.begin(), modes.end(), [](const int mode) { return mode >= 0; }) - modes.begin());
+    }
   };
 
   /// What happens to a branch at a threshold.
@@ -143,4 +150,41 @@ namespace Squeal
                                  const EvaluateChart       &evaluate,
                                  const ChartOptions        &options,
                                  const PredictZero         &predict = {});
+
+  /// The mode of the band that grows most, or is damped least; -1: none.
+  int leading_mode(const ChartPoint &point, double largest_circular_frequency);
+
+  /// The branch that a mode of another point resembles most at point k, of those that grow there if @p is_growing; -1: none.
+  int similar_branch(const StabilityChart &chart, int k, const ChartPoint &point, int mode, bool is_growing);
+
+  /// Where modes of the band begin to grow, or to grow faster than a level.
+  struct GrowthOnset
+  {
+    double               friction_coefficient = 0.;
+    double               uncertainty          = 0.; ///< of the friction coefficient: of the search and of λ
+    int                  branch               = -1;
+    std::complex<double> lambda; ///< there [rad/s]
+  };
+
+  /**
+   * The smallest friction coefficient from which on a mode of the band grows by more than the uncertainty of λ at some point of
+   * the chart: the threshold or the band crossing with which that growth begins. Growth that is there at the first point began
+   * between @p before, the last friction coefficient known below the chart, and this point; the uncertainty is their distance.
+   */
+  std::optional<GrowthOnset> first_onset(const StabilityChart &chart, double largest_circular_frequency, double before);
+
+  /**
+   * The smallest friction coefficient at which the largest divergence rate ξ of the band exceeds a level. Modes are evaluated
+   * between two points of the chart until the interval is no wider than the tolerance; the uncertainty is its width and three times
+   * the estimated error of ξ by dξ/dμ. See first_onset() for @p before.
+   *
+   * @param level    divergence rate [-]
+   * @param evaluate the function with which the chart was made
+   * @param options  likewise
+   */
+  std::optional<GrowthOnset> onset_beyond(double                level,
+                                          const StabilityChart &chart,
+                                          const EvaluateChart  &evaluate,
+                                          const ChartOptions   &options,
+                                          double                before);
 } // namespace Squeal

@@ -2,7 +2,6 @@
 
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/tracking/chart_point.h>
-#include <squeal/tracking/zero_search.h>
 
 #include <memory>
 #include <optional>
@@ -10,6 +9,9 @@
 
 namespace Squeal
 {
+  /// Modes are followed up to (1 + this) times the end of the band, so that none is lost that enters or leaves it.
+  inline constexpr double band_margin = 0.05;
+
   /// Where a chart is evaluated.
   struct OperatingPoint
   {
@@ -33,7 +35,6 @@ namespace Squeal
      * @param inverse           factor of K_c, or of K_c + s² M_c without damping if the @p shift s [rad/s] is positive
      * @param real_modes        M_c-orthonormal, somewhat beyond the band
      * @param largest_circular_frequency end of the band [rad/s]
-     * @param margin            modes are followed up to (1 + margin) times the end of the band
      *
      * @p system, @p inverse and @p real_modes must outlive it.
      */
@@ -41,8 +42,7 @@ namespace Squeal
                const UpdatedInverse &inverse,
                double                shift,
                const MultiVector    &real_modes,
-               double                largest_circular_frequency,
-               double                margin);
+               double                largest_circular_frequency);
 
     /**
      * The model of a member of a family from what is projected of that. It has no real modes to be compressed around, and does
@@ -57,13 +57,18 @@ namespace Squeal
                double                shift,
                ReducedModel          model,
                ProjectedResiduals    residuals,
-               double                largest_circular_frequency,
-               double                margin);
+               double                largest_circular_frequency);
 
     /// Vectors in the basis.
-    int size() const;
+    int size() const
+    {
+      return model.size();
+    }
 
-    const ReducedModel &reduced() const;
+    const ReducedModel &reduced() const
+    {
+      return model;
+    }
 
     /// What evaluate() needs at every point, for which it would be found by the first; before several threads evaluate.
     void prepare() const;
@@ -123,7 +128,7 @@ namespace Squeal
     const CoupledSystem  &system;
     const UpdatedInverse &inverse;
     const MultiVector    *real_modes = nullptr; ///< null: of a member of a family
-    double                shift, largest_circular_frequency, margin;
+    double                shift, largest_circular_frequency;
     ReducedModel          model;
     ProjectedResiduals    residuals;
   };

@@ -47,7 +47,7 @@ namespace Squeal
     std::string                            why_stopped; ///< empty if all points meet the tolerance
   };
 
-  /// The results of @p model at several operating points: the processes share them.
+  /// The results of @p model at several operating points, in turns of some for each thread of each process, which are then given to @p each in order.
   std::vector<ChartPoint> evaluate(const ChartModel                                   &model,
                                    const std::vector<OperatingPoint>                  &points,
                                    MPI_Comm                                            communicator,

@@ -1,11 +1,11 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/resident_memory.h>
+#include <squeal/base/memory.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
 #include <squeal/modes/reduced_modes.h>
 #include <squeal/parameters/mesh_family.h>
-#include <squeal/studies/accuracy/accuracy_solutions.h>
+#include <squeal/studies/accuracy/accuracy.h>
 #include <squeal/studies/steps/mesh_estimate.h>
 #include <squeal/studies/steps/reduction_sets.h>
 
@@ -90,6 +90,81 @@ namespace Squeal
       result.algebraic_errors.assign(result.lambda.size(), 0.); // dense eigenproblems: rounding errors
       return result;
     }
+
+    /// All that the parameters ask for, the coarsest meshes first.
+    std::vector<MeshAndElement> meshes_and_elements(const Parameters &parameters)
+    {
+      const AccuracyStudyParameters &study   = parameters.accuracy;
+      std::vector<double>            factors = study.factors;
+      std::sort(factors.begin(), factors.end());
+      std::vector<MeshAndElement> result;
+      for (const double factor : factors)
+        for (const Element element : study.elements)
+          for (const Outlines outlines : study.outlines)
+            if (element != Element::quadratic || outlines == study.outlines.front())
+              result.push_back({element, outlines, factor});
+      return result;
+    }
+
+    /// Those of the scene on a mesh, with the reduced bases that are measured.
+    Parameters with(const MeshAndElement &mesh, const Parameters &given)
+    {
+      Parameters result                       = given;
+      result.geometry                         = refined(result.geometry, mesh.factor);
+      result.geometry.outlines                = mesh.outlines;
+      result.discretization.element           = mesh.element;
+      result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
+      result.reduction                        = {}; // that section belongs to another study
+      result.reduction.problem                = ReductionProblem::friction;
+      result.reduction.bases                  = result.accuracy.bases;
+      result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};
+      return result;
+    }
+
+    /// @param resident_before memory of this process before the first mesh [byte]
+    /// @param points          of the first mesh, taken from it
+    SolvedMesh solved(const MeshAndElement &mesh, const double resident_before, std::optional<CommonPoints> &points, Run &run)
+    {
+      const Parameters  parameters = with(mesh, run.parameters);
+      Progress          silent;
+      Run               part(parameters, run, silent);
+      const MemoryMeter memory(run.communicator, resident_before);
+
+      Stopwatch watch;
+      Scene     scene  = mesh_scene(part);
+      const int n_dofs = scene.model->n_dofs();
+      if (n_dofs > parameters.accuracy.largest_dofs)
+        throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
+      FrictionlessModes frictionless  = damped_modes(scene, part);
+      Cost              to_real_modes = watch.cost();
+      to_real_modes.peak_memory       = memory.peak();
+      const FrictionModes full        = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
+      Cost                cost        = watch.cost();
+      cost.peak_memory                = memory.peak();
+
+      if (!points)
+        points = common_points(*scene.model, parameters.materials);
+      SolvedMesh result{
+        mesh, n_dofs, static_cast<int>(scene.interface.size()), modes_at(*points, frictionless, full), full.labels, full.n_unstable(), {}};
+      const int n_coupled = frictionless.linearisation.coupled.kernel->n_columns();
+      result.methods.push_back({full_order, n_coupled, cost, full.modes.lambda, algebraic_errors(full.modes)});
+
+      if (!parameters.accuracy.bases.empty())
+        {
+          const ReductionPlan plan = reduction_plan(parameters);
+          ReductionSets       sets(plan, frictionless, frictionless.linearisation.coupled, part);
+          for (const BasisRecipe *recipe : plan.recipes)
+            {
+              const MemoryMeter of_basis(run.communicator, resident_before);
+              ModesByMethod     modes = reduced(*recipe, sets, full.modes, of_basis);
+              modes.cost              = modes.cost + before_modes(to_real_modes, frictionless);
+              result.methods.push_back(std::move(modes));
+            }
+        }
+      run.progress.finish(Squeal::text(n_dofs, " dofs, ", result.n_contact_nodes, " contact nodes, ", full.modes.lambda.size(), " modes, ",
+                                       result.n_unstable, " unstable, ", cost.peak_memory / 1e9, " GB"));
+      return result;
+    }
   } // namespace
 
   std::string MeshAndElement::family() const
@@ -102,102 +177,31 @@ namespace Squeal
     return family() + ", x " + exact_text(factor);
   }
 
-  std::vector<MeshAndElement> meshes_and_elements(const Parameters &parameters)
+  SolvedMeshes solve_meshes(Run &run)
   {
-    const AccuracyStudyParameters &study   = parameters.accuracy;
-    std::vector<double>            factors = study.factors;
-    std::sort(factors.begin(), factors.end());
-    std::vector<MeshAndElement> result;
-    for (const double factor : factors)
-      for (const Element element : study.elements)
-        for (const Outlines outlines : study.outlines)
-          if (element != Element::quadratic || outlines == study.outlines.front())
-            result.push_back({element, outlines, factor});
-    return result;
-  }
-
-  AccuracySolver::AccuracySolver(Run &run)
-    : run(run)
-    , resident_before(resident_memory())
-  {}
-
-  Parameters AccuracySolver::with(const MeshAndElement &mesh) const
-  {
-    Parameters result                       = run.parameters;
-    result.geometry                         = refined(result.geometry, mesh.factor);
-    result.geometry.outlines                = mesh.outlines;
-    result.discretization.element           = mesh.element;
-    result.discretization.maximum_frequency = (1. + result.accuracy.margin) * result.discretization.maximum_frequency;
-    result.reduction                        = {}; // that section belongs to another study
-    result.reduction.problem                = ReductionProblem::friction;
-    result.reduction.bases                  = result.accuracy.bases;
-    result.reduction.grown_tolerances       = {result.accuracy.grown_tolerance};
-    return result;
-  }
-
-  std::optional<SolvedMesh> AccuracySolver::solve(const MeshAndElement &mesh)
-  {
-    run.progress.begin(mesh.text());
-    const auto leave_out = [&](const std::string &reason) {
-      run.progress.finish("left out: " + reason);
-      missing.push_back({mesh, reason});
-    };
-    try
+    const double                resident_before = resident_memory();
+    std::optional<CommonPoints> points;
+    SolvedMeshes                result;
+    for (const MeshAndElement &mesh : meshes_and_elements(run.parameters))
       {
-        return solved(mesh);
-      }
-    catch (const Error &error)
-      {
-        leave_out(error.reason);
-      }
-    catch (const std::runtime_error &error) // of another process
-      {
-        leave_out(error.what());
-      }
-    return {};
-  }
-
-  SolvedMesh AccuracySolver::solved(const MeshAndElement &mesh)
-  {
-    const Parameters  parameters = with(mesh);
-    Progress          silent;
-    Run               part(parameters, run, silent);
-    const MemoryMeter memory(run.communicator, resident_before);
-
-    Stopwatch watch;
-    Scene     scene  = mesh_scene(part);
-    const int n_dofs = scene.model->n_dofs();
-    if (n_dofs > parameters.accuracy.largest_dofs)
-      throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
-    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
-    add_modal_damping(frictionless, parameters);
-    Cost to_real_modes        = watch.cost();
-    to_real_modes.peak_memory = memory.peak();
-    const FrictionModes full  = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
-    Cost                cost  = watch.cost();
-    cost.peak_memory          = memory.peak();
-
-    if (!points)
-      points = common_points(*scene.model, parameters.materials);
-    SolvedMesh result{
-      mesh, n_dofs, static_cast<int>(scene.interface.size()), modes_at(*points, frictionless, full), full.labels, full.n_unstable(), {}};
-    const int n_coupled = frictionless.linearisation.coupled.kernel->n_columns();
-    result.methods.push_back({full_order, n_coupled, cost, full.modes.lambda, algebraic_errors(full.modes)});
-
-    if (!parameters.accuracy.bases.empty())
-      {
-        const ReductionPlan plan = reduction_plan(parameters);
-        ReductionSets       sets(plan, frictionless, frictionless.linearisation.coupled, part);
-        for (const BasisRecipe *recipe : plan.recipes)
+        const auto leave_out = [&](const std::string &reason) {
+          run.progress.finish("left out: " + reason);
+          result.left_out.push_back({mesh, reason});
+        };
+        run.progress.begin(mesh.text());
+        try
           {
-            const MemoryMeter of_basis(run.communicator, resident_before);
-            ModesByMethod     modes = reduced(*recipe, sets, full.modes, of_basis);
-            modes.cost              = modes.cost + before_modes(to_real_modes, frictionless);
-            result.methods.push_back(std::move(modes));
+            result.meshes.push_back(solved(mesh, resident_before, points, run));
+          }
+        catch (const Error &error)
+          {
+            leave_out(error.reason);
+          }
+        catch (const std::runtime_error &error) // of another process
+          {
+            leave_out(error.what());
           }
       }
-    run.progress.finish(Squeal::text(n_dofs, " dofs, ", result.n_contact_nodes, " contact nodes, ", full.modes.lambda.size(), " modes, ",
-                                     result.n_unstable, " unstable, ", cost.peak_memory / 1e9, " GB"));
     return result;
   }
 } // namespace Squeal

@@ -1,6 +1,7 @@
 #include <squeal/parameters/mesh_family.h>
-#include <squeal/studies/accuracy/accuracy_tables.h>
-#include <squeal/studies/steps/reduction_plan.h>
+#include <squeal/studies/accuracy/accuracy.h>
+#include <squeal/studies/steps/parameter_usage.h>
+#include <squeal/studies/steps/reduction_sets.h>
 
 #include <algorithm>
 #include <ostream>
@@ -30,10 +31,6 @@ namespace Squeal
       run.progress.note(text("  ", n, " modes; the frequencies of ", n_orders, " converge with an observed order, ", n_in_cluster,
                              " are in clusters whose members the mesh decides"));
     }
-  } // namespace
-
-  namespace
-  {
     Reason no_grown_basis(const Parameters &p)
     {
       const auto &bases = p.accuracy.bases;
@@ -52,23 +49,19 @@ namespace Squeal
    */
   static void run_accuracy_study(Scene &, Run &run)
   {
-    const double            maximum_frequency = run.parameters.discretization.maximum_frequency;
-    AccuracySolver          solver(run);
-    std::vector<SolvedMesh> meshes;
-    for (const MeshAndElement &mesh : meshes_and_elements(run.parameters))
-      if (std::optional<SolvedMesh> solved = solver.solve(mesh))
-        meshes.push_back(std::move(*solved));
+    const double       maximum_frequency = run.parameters.discretization.maximum_frequency;
+    const SolvedMeshes solutions         = solve_meshes(run);
 
-    const std::vector<ConvergedFamily> families  = converged_families(meshes, maximum_frequency);
+    const std::vector<ConvergedFamily> families  = converged_families(solutions.meshes, maximum_frequency);
     const ConvergedFamily             &reference = best_family(families);
-    const std::vector<ComparedMethod>  methods   = compare(meshes, reference, maximum_frequency);
+    const std::vector<ComparedMethod>  methods   = compare(solutions.meshes, reference, maximum_frequency);
 
     // ----------------------------------------------------------------- results
     run.store_table("accuracy", accuracy_table(methods));
     run.store_table("accuracy_modes", accuracy_mode_table(methods));
     run.store_table("accuracy_orders", accuracy_order_table(families, reference, maximum_frequency));
-    if (!solver.left_out().empty())
-      run.store_table("accuracy_left_out", left_out_table(solver.left_out()));
+    if (!solutions.left_out.empty())
+      run.store_table("accuracy_left_out", left_out_table(solutions.left_out));
     report(reference, maximum_frequency, run);
     run.screen << "\n  Pareto front: what nothing beats in both time and largest frequency error\n\n";
     pareto_table(methods).print(run.screen);
@@ -78,13 +71,13 @@ namespace Squeal
 
   extern const Study accuracy_study = [] {
     Study study{"accuracy", run_accuracy_study, {"Accuracy study/"}};
-    study.rules          = {{"Discretization/Element", [](const Parameters &) { return "the study compares elements"; }},
-                            {"Geometry/Outlines", [](const Parameters &) { return "the study compares outlines"; }},
-                            {"Accuracy study/Grown tolerance", no_grown_basis},
-                            {"Complex modes/Maximum basis",
-                             [](const Parameters &p) { return p.solves_by(ComplexSolver::residual_iteration) ? nullptr : no_grown_basis(p); }}};
-    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
-    study.check          = [](const Parameters &p) {
+    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+                   {"Discretization/Element", [](const Parameters &) { return "the study compares elements"; }},
+                   {"Geometry/Outlines", [](const Parameters &) { return "the study compares outlines"; }},
+                   {"Accuracy study/Grown tolerance", no_grown_basis},
+                   {"Complex modes/Maximum basis",
+                    [](const Parameters &p) { return p.solves_by(ComplexSolver::residual_iteration) ? nullptr : no_grown_basis(p); }}};
+    study.check = [](const Parameters &p) {
       for (const double factor : p.accuracy.factors)
         refined(p.geometry, factor);
       Parameters reduced      = p;

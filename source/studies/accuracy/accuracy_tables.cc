@@ -1,6 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/estimates/mode_pairing.h>
-#include <squeal/studies/accuracy/accuracy_tables.h>
+#include <squeal/studies/accuracy/accuracy.h>
 
 #include <algorithm>
 #include <cmath>

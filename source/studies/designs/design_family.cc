@@ -33,24 +33,6 @@ namespace Squeal
     {
       return coefficient == 0. ? 0. : 1.;
     }
-
-    /// Ends, middle and quarters.
-    std::vector<std::size_t> training(const std::size_t n)
-    {
-      std::vector<std::size_t> result;
-      for (const std::size_t i : {n - 1, (n - 1) / 2, (n - 1) / 4, 3 * (n - 1) / 4, std::size_t(0)})
-        if (std::find(result.begin(), result.end(), i) == result.end())
-          result.push_back(i);
-      return result;
-    }
-
-    std::vector<ParameterValues> values_of(const std::vector<Parameters> &designs, const Model &model)
-    {
-      std::vector<ParameterValues> result;
-      for (const Parameters &design : designs)
-        result.push_back(body_values(model, design.materials));
-      return result;
-    }
   } // namespace
 
   std::string family_key(Parameters design)
@@ -84,8 +66,11 @@ namespace Squeal
     , scene(mesh_scene(run))
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
   {
-    const BodyTerms bodies = assemble_scene(scene, run);
-    terms                  = term_family(bodies.terms, values_of(designs, *scene.model));
+    const BodyTerms              bodies = assemble_scene(scene, run);
+    std::vector<ParameterValues> values;
+    for (const Parameters &design : designs)
+      values.push_back(body_values(*scene.model, design.materials));
+    terms = term_family(bodies.terms, values);
 
     // Which kinds of damping of the contact there are, is the same for all
     const SweepPlan       plan          = sweep_plan(scene, run);
@@ -119,7 +104,7 @@ namespace Squeal
   std::unique_ptr<ChartModel> DesignFamily::restricted(const SystemMember &member, const DenseMatrix &Z) const
   {
     return std::make_unique<ChartModel>(member.system, *middle.inverse, middle.shift, model->restricted(member, Z),
-                                        residuals->restricted(member, Z), largest_circular_frequency, band_margin);
+                                        residuals->restricted(member, Z), largest_circular_frequency);
   }
 
   void DesignFamily::find_whole_model(Member &member) const
@@ -193,7 +178,7 @@ namespace Squeal
     const double            margin = (1. + band_margin) * largest_circular_frequency;
     std::vector<double>     eigenvalues; // of real modes
     std::vector<ChartPoint> charts;
-    for (const std::size_t i : training(points.size()))
+    for (const int i : ends_and_quarters(static_cast<int>(points.size())))
       charts.push_back(accurate_point(points[i], result));
     {
       const ReducedPencil pencil = model->at(middle.linearisation.coupled.at(0., terms.members[design]));
@@ -250,7 +235,7 @@ namespace Squeal
 
     run.progress.begin("Mode count");
     const double limit = largest_circular_frequency * largest_circular_frequency;
-    result.n_counted   = count_modes(*result.system.system.stiffness, *result.system.system.mass, limit, "real modes of a design");
+    result.n_counted   = count_below(*result.system.system.stiffness, *result.system.system.mass, limit, "real modes of a design").n_modes;
     run.progress.finish(text(result.n_counted, " by inertia"));
 
     std::vector<double> friction_coefficients;

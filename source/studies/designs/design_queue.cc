@@ -53,21 +53,11 @@ namespace Squeal
       replace_file(folder / key_file, title + key);
     }
 
-    /// The sentence with which a process ended: what stands behind "error: " in what it printed, in one line.
-    std::string last_error(const fs::path &log)
-    {
-      const std::string text  = content(log);
-      const std::string mark  = "error: ";
-      const auto        place = text.rfind(mark);
-      return place == std::string::npos ? "" : single_spaced(text.substr(place + mark.size()));
-    }
-
     /// Designs that are being solved by one process, one after the other.
     struct Worker
     {
       std::vector<int>               designs; ///< all of them
       std::vector<int>               left;    ///< of which no result has been seen
-      fs::path                       log;
       std::unique_ptr<WorkerProcess> process;
       Stopwatch                      stopwatch;
     };
@@ -157,11 +147,9 @@ namespace Squeal
       std::vector<std::string> arguments = given;
       arguments.push_back("--designs=" + list_of(designs));
       arguments.push_back("--output=" + folder.string());
-      const fs::path log = folder.string() + ".log";
       return Worker{designs,
                     left,
-                    log,
-                    std::make_unique<WorkerProcess>(arguments, log, std::max(1u, n_usable_cores() / n_side_by_side)),
+                    std::make_unique<WorkerProcess>(arguments, folder.string() + ".log", std::max(1u, n_usable_cores() / n_side_by_side)),
                     {}};
     };
     const auto report_found = [&](Worker &worker) {
@@ -175,10 +163,9 @@ namespace Squeal
     };
     /// What a process leaves when it ends is the fault of the design that it was at.
     const auto blame_next = [&](Worker &worker, const std::string &end) {
-      const std::string error  = last_error(worker.log);
-      DesignResult      result = unfinished(worker.left.front());
-      result.reason            = error.empty() ? "its process was " + end : error;
-      result.seconds           = worker.stopwatch.cost().seconds;
+      DesignResult result = unfinished(worker.left.front());
+      result.reason       = "its process was " + end;
+      result.seconds      = worker.stopwatch.cost().seconds;
       store.keep(result);
       report(result);
       worker.left.erase(worker.left.begin());

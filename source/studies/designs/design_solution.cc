@@ -6,41 +6,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numeric>
 
 namespace Squeal
 {
   namespace
   {
-    bool is_in_band(const SweepModel &model, const ChartPoint &point, const int mode)
-    {
-      return mode >= 0 && model.is_in_band(point.lambda[mode]);
-    }
-
-    DesignGrowth growth_at(const ChartPoint &point, const int mode, const std::string &label)
-    {
-      const ModalQuantities quantities = modal_quantities(point.lambda[mode]);
-      return {point.friction_coefficient, 0., label, quantities.frequency, quantities.divergence_rate, point.errors[mode]};
-    }
-
     /// Names of the branches of a chart by the reference modes, found where each branch begins.
     std::vector<ReferenceName> names_of_branches(const SweepModel &model, const SweepChart &chart, const ReferenceModes &reference)
     {
-      const std::vector<Branch>              &branches = chart.chart.branches;
-      std::vector<ReferenceName>              result(branches.size());
-      std::map<std::size_t, std::vector<int>> branches_from; // by the point at which they begin
+      const std::vector<Branch>      &branches = chart.chart.branches;
+      std::vector<ReferenceName>      result(branches.size());
+      std::map<int, std::vector<int>> branches_from; // by the point at which they begin
       for (std::size_t b = 0; b < branches.size(); ++b)
-        branches_from[std::find_if(branches[b].modes.begin(), branches[b].modes.end(), [](const int mode) { return mode >= 0; }) -
-                      branches[b].modes.begin()]
-          .push_back(static_cast<int>(b));
+        branches_from[branches[b].begin()].push_back(static_cast<int>(b));
       const Linearisation &linearisation = model.frictionless.linearisation;
       for (const auto &[i, members] : branches_from)
         {
           // All modes of the point: how much of a mode is left to others depends on them
           const ChartPoint &point = chart.chart.points[i];
           ComplexModes      modes;
-          std::vector<int>  all;
-          for (std::size_t j = 0; j < point.lambda.size(); ++j)
-            all.push_back(static_cast<int>(j));
+          std::vector<int>  all(point.lambda.size());
+          std::iota(all.begin(), all.end(), 0);
           auto [re, im]                          = model.shapes(point, all);
           modes.lambda                           = point.lambda;
           modes.real_part                        = std::make_shared<MultiVector>(std::move(re));
@@ -97,9 +85,9 @@ namespace Squeal
           mode.overlap   = overlap(names[b]);
           bool is_seen = false, grows = false;
           for (std::size_t i = 0; i < chart.points.size(); ++i)
-            if (const ChartPoint &point = chart.points[i]; is_in_band(model, point, chart.branches[b].modes[i]))
+            if (const int j = chart.branches[b].modes[i]; j >= 0 && model.is_in_band(chart.points[i].lambda[j]))
               {
-                const int             j          = chart.branches[b].modes[i];
+                const ChartPoint     &point      = chart.points[i];
                 const ModalQuantities quantities = modal_quantities(point.lambda[j]);
                 if (!is_seen)
                   mode.first_frequency = quantities.frequency;
@@ -119,7 +107,8 @@ namespace Squeal
                     result.largest_residual = std::max({result.largest_residual, point.right_residuals[j], point.left_residuals[j]});
                   }
                 if (point.verdicts[j] == Verdict::unstable && (!result.worst || quantities.divergence_rate > result.worst->divergence_rate))
-                  result.worst = growth_at(point, j, labels[b]);
+                  result.worst = DesignGrowth{
+                    point.friction_coefficient, 0., labels[b], quantities.frequency, quantities.divergence_rate, point.errors[j]};
               }
           if (!is_seen)
             continue;

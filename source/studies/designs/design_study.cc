@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <new>
 #include <ostream>
 #include <set>
 #include <utility>
@@ -94,6 +95,11 @@ namespace Squeal
           const bool makes_no_sense = dynamic_cast<const MeshError *>(&error) || dynamic_cast<const ParameterError *>(&error);
           result.outcome            = makes_no_sense ? DesignOutcome::refused : DesignOutcome::failed;
           result.reason             = in_one_line(error);
+        }
+      catch (const std::bad_alloc &)
+        {
+          result.outcome = DesignOutcome::failed;
+          result.reason  = "the memory is exhausted";
         }
       result.seconds = stopwatch.cost().seconds;
       return result;

@@ -1,7 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
-#include <squeal/base/memory_limit.h>
+#include <squeal/base/memory.h>
 #include <squeal/base/version.h>
 #include <squeal/base/worker_process.h>
 #include <squeal/geometry/scene_size.h>
@@ -67,37 +67,16 @@ namespace Squeal
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
-    /// Says how a design went, and how long the others may take.
-    class Reporter
+    /// How a design went.
+    std::string outcome_of(const DesignResult &result)
     {
-    public:
-      Reporter(Run &run, const std::size_t n_all, const std::size_t n_known)
-        : run(run)
-        , n_all(n_all)
-        , n_known(n_known)
-      {}
-
-      void operator()(const DesignResult &result)
-      {
-        ++n_done;
-        const std::size_t n_left  = n_all - n_known - n_done;
-        const double      seconds = stopwatch.cost().seconds / static_cast<double>(n_done) * static_cast<double>(n_left);
-        const std::string what =
-          result.outcome != DesignOutcome::solved ? to_string(result.outcome) + ": " + result.reason :
-          result.weak_onset ? text("beyond ", 100. * weak_divergence, " % from mu = ", result.weak_onset->friction_coefficient, " on (",
-                                   result.weak_onset->label, ")") :
-                              text("nowhere beyond ", 100. * weak_divergence, " %");
-        run.progress.note(text("    design ", result.number, ": ", what, "; ", std::round(result.seconds), " s",
-                               n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
-        run.progress.update(text(n_known + n_done, " of ", n_all, " designs"));
-      }
-
-    private:
-      Run              &run;
-      const std::size_t n_all, n_known;
-      std::size_t       n_done = 0;
-      const Stopwatch   stopwatch;
-    };
+      if (result.outcome != DesignOutcome::solved)
+        return to_string(result.outcome) + ": " + result.reason;
+      const std::string limit = text(100. * weak_divergence, " %");
+      return result.weak_onset ?
+               text("beyond ", limit, " from mu = ", result.weak_onset->friction_coefficient, " on (", result.weak_onset->label, ")") :
+               "nowhere beyond " + limit;
+    }
 
     /// Designs of fewer than this are solved one by one: what they share costs more than it saves.
     constexpr std::size_t least_family = 4;
@@ -159,13 +138,9 @@ namespace Squeal
   std::string design_key(const Run &run, const Scene &scene, const DesignPlan &plan)
   {
     Parameters parameters          = run.parameters;
-    parameters.output              = {};
     parameters.designs.n_processes = 0;
-    parameters.solvers.n_threads   = SolverParameters().n_threads;
     std::ostringstream stream;
-    stream << "# squeal " << version << '\n';
-    parameters.print(stream, false);
-    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(scene.mesh) << '\n';
+    stream << identity(parameters, scene.mesh);
     for (const auto &values : plan.designs)
       {
         for (const std::string &value : values)
@@ -260,14 +235,23 @@ namespace Squeal
     n_mine += to_keep.size();
     const bool has_families   = std::any_of(batches.begin(), batches.end(), [](const std::vector<int> &batch) { return batch.size() > 1; });
     const unsigned int n_here = n_side_by_side(scene, run, has_families);
-    Reporter           report(run, n_known + n_mine, n_known);
+    std::size_t        n_done = 0;
+    const Stopwatch    stopwatch;
+    const auto         report = [&](const DesignResult &result) {
+      ++n_done;
+      const std::size_t n_left  = n_mine - n_done;
+      const double      seconds = stopwatch.cost().seconds / static_cast<double>(n_done) * static_cast<double>(n_left);
+      run.progress.note(text("    design ", result.number, ": ", outcome_of(result), "; ", std::round(result.seconds), " s",
+                             n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
+      run.progress.update(text(n_known + n_done, " of ", n_known + n_mine, " designs"));
+    };
     for (const DesignResult &design : to_keep)
       {
         store.keep(design);
         report(design);
       }
     solve_side_by_side(
-      mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, std::ref(report), arguments);
+      mine, n_here, store, [&](const int design) { return unfinished(run, work.plan, design); }, report, arguments);
     MPI_Barrier(run.communicator);
     std::vector<DesignResult> results;
     for (const int design : work.designs)
@@ -314,7 +298,8 @@ namespace Squeal
          {"Sweep/Compare dissipation", "Sweep/Mode shapes at", "Sweep/Complex plane at", "Sweep/Count modes at", "Sweep/Map parameter",
           "Sweep/First map value", "Sweep/Last map value", "Sweep/Number of map values", "Sweep/Map friction coefficients"})
       study.rules.push_back({path, [](const Parameters &) { return "designs have no maps, planes and mode shapes; Study = sweep has"; }});
-    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; };
+    study.rules.push_back(
+      {"Output/", [](const Parameters &) { return "the study writes no mode shapes; parameter files of its designs do"; }});
     return study;
   }
 } // namespace Squeal

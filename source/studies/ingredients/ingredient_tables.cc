@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/studies/ingredients/ingredient_tables.h>
+#include <squeal/studies/ingredients/ingredients.h>
 
 namespace Squeal
 {
@@ -47,54 +47,56 @@ namespace Squeal
     }
   } // namespace
 
-  Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference)
+  Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
   {
-    const double total = reference.costs.cpu_seconds();
-    return Table(
-      Columns<IngredientResult>{
-        {"ingredient", "", &IngredientResult::name},
-        {"here", "", &IngredientResult::here},
-        {"tried", "", &IngredientResult::tried},
-        where_made("change of frequency", "%", [](const IngredientResult &row) { return row.effect.frequency(); }),
-        where_made("mode of that change", "",
-                   [](const IngredientResult &row) { return label_of(row.effect.largest_frequency(), row.effect.frequency()); }),
-        where_made("change of divergence rate", "percentage points", [](const IngredientResult &row) { return row.effect.divergence(); }),
-        where_made("mode of that change of divergence rate", "",
-                   [](const IngredientResult &row) { return label_of(row.effect.largest_divergence(), row.effect.divergence()); }),
-        where_made("modes without counterpart", "-", [](const IngredientResult &row) { return row.effect.n_lost(); }),
-        where_made("unstable modes here", "-", [](const IngredientResult &row) { return row.effect.n_unstable(false); }),
-        where_made("unstable modes tried", "-", [](const IngredientResult &row) { return row.effect.n_unstable(true); }),
-        where_made("verdict changed", "-", [](const IngredientResult &row) { return row.effect.changes_verdict() ? 1 : 0; }),
-        where_made("wall time", "s", [](const IngredientResult &row) { return row.costs.seconds(); }),
-        where_made("processor time", "s", [](const IngredientResult &row) { return row.costs.cpu_seconds(); }),
-        where_made("dofs", "-", [](const IngredientResult &row) { return row.n_dofs; }),
-        where_made("cost beside the reference", "-", [total](const IngredientResult &row) { return row.costs.cpu_seconds() / total; }),
-        {"not tried because", "", &IngredientResult::obstacle}},
-      results);
-  }
-
-  Table short_ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference)
-  {
-    const double total = reference.costs.cpu_seconds();
-    return Table(
-      Columns<IngredientResult>{
-        {"ingredient", "", &IngredientResult::name},
-        {"here", "", &IngredientResult::here},
-        {"tried", "", [](const IngredientResult &row) { return row.obstacle.empty() ? row.tried : "-"; }},
-        where_made("frequency", "%", [](const IngredientResult &row) { return row.effect.frequency(); }),
-        where_made("mode", "",
-                   [](const IngredientResult &row) { return label_of(row.effect.largest_frequency(), row.effect.frequency()); }),
-        where_made(
-          "divergence", "points", [](const IngredientResult &row) { return row.effect.divergence(); }, 4),
-        where_made("mode", "",
-                   [](const IngredientResult &row) { return label_of(row.effect.largest_divergence(), row.effect.divergence()); }),
-        where_made("unstable", "",
-                   [](const IngredientResult &row) { return text(row.effect.n_unstable(false), " -> ", row.effect.n_unstable(true)); }),
-        where_made("verdict", "",
-                   [](const IngredientResult &row) { return row.effect.changes_verdict() ? std::string("changes") : "same"; }),
-        where_made(
-          "cost", "-", [total](const IngredientResult &row) { return row.costs.cpu_seconds() / total; }, 2)},
-      results);
+    using Row           = IngredientResult;
+    const double total  = reference.costs.sum(&Cost::cpu_seconds);
+    const auto   column = [is_short](const char *name, const char *short_name, const char *unit, const auto &value, const int digits = 3) {
+      return where_made(is_short ? short_name : name, unit, value, digits);
+    };
+    const auto frequency      = column("change of frequency", "frequency", "%", [](const Row &row) { return row.effect.frequency(); });
+    const auto frequency_mode = column("mode of that change", "mode", "",
+                                       [](const Row &row) { return label_of(row.effect.largest_frequency(), row.effect.frequency()); });
+    const auto divergence     = column(
+          "change of divergence rate", "divergence", is_short ? "points" : "percentage points",
+          [](const Row &row) { return row.effect.divergence(); }, is_short ? 4 : 3);
+    const auto divergence_mode = column("mode of that change of divergence rate", "mode", "",
+                                        [](const Row &row) { return label_of(row.effect.largest_divergence(), row.effect.divergence()); });
+    const auto cost            = column(
+                 "cost beside the reference", "cost", "-", [total](const Row &row) { return row.costs.sum(&Cost::cpu_seconds) / total; },
+      is_short ? 2 : 3);
+    if (is_short)
+      return Table(
+        Columns<Row>{
+          {"ingredient", "", &Row::name},
+          {"here", "", &Row::here},
+          {"tried", "", [](const Row &row) { return row.obstacle.empty() ? row.tried : "-"; }},
+          frequency,
+          frequency_mode,
+          divergence,
+          divergence_mode,
+          where_made("unstable", "",
+                     [](const Row &row) { return text(row.effect.n_unstable(false), " -> ", row.effect.n_unstable(true)); }),
+          where_made("verdict", "", [](const Row &row) { return row.effect.changes_verdict() ? std::string("changes") : "same"; }),
+          cost},
+        results);
+    return Table(Columns<Row>{{"ingredient", "", &Row::name},
+                              {"here", "", &Row::here},
+                              {"tried", "", &Row::tried},
+                              frequency,
+                              frequency_mode,
+                              divergence,
+                              divergence_mode,
+                              where_made("modes without counterpart", "-", [](const Row &row) { return row.effect.n_lost(); }),
+                              where_made("unstable modes here", "-", [](const Row &row) { return row.effect.n_unstable(false); }),
+                              where_made("unstable modes tried", "-", [](const Row &row) { return row.effect.n_unstable(true); }),
+                              where_made("verdict changed", "-", [](const Row &row) { return row.effect.changes_verdict() ? 1 : 0; }),
+                              where_made("wall time", "s", [](const Row &row) { return row.costs.sum(&Cost::seconds); }),
+                              where_made("processor time", "s", [](const Row &row) { return row.costs.sum(&Cost::cpu_seconds); }),
+                              where_made("dofs", "-", [](const Row &row) { return row.n_dofs; }),
+                              cost,
+                              {"not tried because", "", &Row::obstacle}},
+                 results);
   }
 
   Table ingredient_mode_table(const std::vector<IngredientResult> &results)

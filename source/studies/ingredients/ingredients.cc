@@ -2,6 +2,7 @@
 #include <squeal/studies/ingredients/ingredients.h>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace Squeal
 {
@@ -13,32 +14,6 @@ namespace Squeal
     constexpr double shorter_band = 0.5;
 
     // What ingredients are called ------------------------------------------------
-
-    template <RadialDissipation dissipation>
-    std::string dissipation_name(const Parameters &)
-    {
-      return to_string(dissipation);
-    }
-
-    std::string dissipation_here(const Parameters &p)
-    {
-      return to_string(p.operation.radial_dissipation);
-    }
-
-    std::string state_here(const Parameters &p)
-    {
-      return to_string(p.sliding.state);
-    }
-
-    std::string element_here(const Parameters &p)
-    {
-      return to_string(p.discretization.element);
-    }
-
-    std::string outlines_here(const Parameters &p)
-    {
-      return to_string(p.geometry.outlines);
-    }
 
     std::string slope_text(const double slope)
     {
@@ -85,58 +60,91 @@ namespace Squeal
       return std::count(state->closed.begin(), state->closed.end(), false) > 0 ? nullptr : "no node lifts off";
     }
 
-    template <Element element>
-    bool has_element(const Parameters &p)
-    {
-      return p.discretization.element == element;
-    }
-
-    template <Element element>
-    std::string element_name(const Parameters &)
-    {
-      return to_string(element);
-    }
-
-    template <Element element>
-    void take_element(Variation &v)
-    {
-      v.parameters.discretization.element = element;
-    }
-
     Reason no_polygon(const Parameters &p, const std::optional<SlidingState> &)
     {
-      if (has_element<Element::quadratic>(p))
+      if (p.discretization.element == Element::quadratic)
         return "edges of quadratic elements follow the circles";
       return unless(p.geometry.is_plan(), "the geometry is a solid, whose outlines are as it has them");
     }
 
-    template <const char *reduced_basis>
-    void reduce(Variation &v)
+    using P = const Parameters &;
+
+    /// @p value of the parameter that @p member finds. It is present where the parameter has it, unless @p is_present says more.
+    template <typename Member, typename Value>
+    Ingredient option(const char                                    *name,
+                      const Member                                  &member,
+                      const Value                                    value,
+                      const ChangeKind                               kind,
+                      const Departure                                departure,
+                      const decltype(Ingredient::obstacle)           obstacle   = nullptr,
+                      const std::function<bool(const Parameters &)> &is_present = nullptr)
     {
-      v.basis = reduced_basis;
+      const auto text = [](const Value shown) {
+        if constexpr (std::is_same_v<Value, bool>)
+          return on_or_off(shown);
+        else
+          return to_string(shown);
+      };
+      return {name,
+              [=](P p) { return text(member(p)); },
+              [=](P) { return text(value); },
+              is_present ? is_present : [=](P p) { return member(p) == value; },
+              [=](Variation &v) { member(v.parameters) = value; },
+              kind,
+              departure,
+              obstacle};
     }
 
-    constexpr char real_modes[] = "real", first_order[] = "real + 1st-ord.";
+    /// Complex modes from a reduced basis in the place of those of full order.
+    Ingredient from_basis(const std::function<std::string(const Parameters &)> &tried, const char *basis, const double margin = 0.)
+    {
+      return {"complex modes",
+              [](P p) { return to_string(p.solvers.complex_solver); },
+              tried,
+              [](P) { return false; },
+              [=](Variation &v) {
+                v.basis  = basis;
+                v.margin = margin;
+              },
+              ChangeKind::shows,
+              Departure::friction};
+    }
   } // namespace
 
   const std::vector<Ingredient> &ingredients()
   {
-    using P                                    = const Parameters &;
+    const auto dissipation = [](auto &p) -> auto &
+    {
+      return p.operation.radial_dissipation;
+    };
+    const auto state = [](auto &p) -> auto &
+    {
+      return p.sliding.state;
+    };
+    const auto rotation = [](auto &p) -> auto &
+    {
+      return p.operation.rotating_disc;
+    };
+    const auto element = [](auto &p) -> auto &
+    {
+      return p.discretization.element;
+    };
+    const auto outlines = [](auto &p) -> auto &
+    {
+      return p.geometry.outlines;
+    };
+    const auto solver = [](auto &p) -> auto &
+    {
+      return p.solvers.complex_solver;
+    };
+
     static const std::vector<Ingredient> table = {
       // ------------------------------------------------------------------- contact
-      {"radial dissipation", dissipation_here, dissipation_name<RadialDissipation::none>,
-       [](P p) { return p.operation.radial_dissipation == RadialDissipation::none; },
-       [](Variation &v) { v.parameters.operation.radial_dissipation = RadialDissipation::none; }, ChangeKind::removes, Departure::friction},
-      {"radial dissipation", dissipation_here, dissipation_name<RadialDissipation::consistent>,
-       [](P p) { return p.operation.radial_dissipation != RadialDissipation::none; },
-       [](Variation &v) { v.parameters.operation.radial_dissipation = RadialDissipation::consistent; }, ChangeKind::adds,
-       Departure::friction, no_sliding},
-      {"contact state", state_here, [](P) { return to_string(ContactState::equal_load); },
-       [](P p) { return p.sliding.state == ContactState::equal_load; },
-       [](Variation &v) { v.parameters.sliding.state = ContactState::equal_load; }, ChangeKind::removes, Departure::contact},
-      {"contact state", state_here, [](P) { return to_string(ContactState::steady_sliding); },
-       [](P p) { return p.sliding.state == ContactState::steady_sliding; },
-       [](Variation &v) { v.parameters.sliding.state = ContactState::steady_sliding; }, ChangeKind::adds, Departure::contact, no_sliding},
+      option("radial dissipation", dissipation, RadialDissipation::none, ChangeKind::removes, Departure::friction),
+      option("radial dissipation", dissipation, RadialDissipation::consistent, ChangeKind::adds, Departure::friction, no_sliding,
+             [](P p) { return p.operation.radial_dissipation != RadialDissipation::none; }),
+      option("contact state", state, ContactState::equal_load, ChangeKind::removes, Departure::contact),
+      option("contact state", state, ContactState::steady_sliding, ChangeKind::adds, Departure::contact, no_sliding),
       {"lift-off", [](P p) { return on_or_off(p.sliding.state == ContactState::steady_sliding); }, [](P) { return on_or_off(false); },
        [](P) { return false; }, [](Variation &v) { v.without_lift_off = true; }, ChangeKind::shows, Departure::contact, no_open_node},
       {"friction slope", [](P p) { return slope_text(p.operation.friction_slope); }, nothing,
@@ -170,49 +178,26 @@ namespace Squeal
        [](P p, const std::optional<SlidingState> &) {
          return unless(p.ingredients.trial_damping_ratio > 0., "the scene has none, and Ingredients/Trial damping ratio gives none to try");
        }},
-      {"rotation of the disc", [](P p) { return on_or_off(p.operation.rotating_disc); }, [](P) { return on_or_off(false); },
-       [](P p) { return !p.operation.rotating_disc; }, [](Variation &v) { v.parameters.operation.rotating_disc = false; },
-       ChangeKind::removes, Departure::mesh},
-      {"rotation of the disc", [](P p) { return on_or_off(p.operation.rotating_disc); }, [](P) { return on_or_off(true); },
-       [](P p) { return p.operation.rotating_disc; }, [](Variation &v) { v.parameters.operation.rotating_disc = true; }, ChangeKind::adds,
-       Departure::mesh},
+      option("rotation of the disc", rotation, false, ChangeKind::removes, Departure::mesh),
+      option("rotation of the disc", rotation, true, ChangeKind::adds, Departure::mesh),
 
       // ------------------------------------------------------------- discretisation
-      {"element", element_here, element_name<Element::trilinear>, has_element<Element::trilinear>, take_element<Element::trilinear>,
-       ChangeKind::speeds, Departure::mesh},
-      {"element", element_here, element_name<Element::incompatible_modes>, [](P p) { return !has_element<Element::quadratic>(p); },
-       take_element<Element::incompatible_modes>, ChangeKind::speeds, Departure::mesh},
-      {"element", element_here, element_name<Element::incompatible_modes>, [](P p) { return !has_element<Element::trilinear>(p); },
-       take_element<Element::incompatible_modes>, ChangeKind::adds, Departure::mesh},
-      {"element", element_here, element_name<Element::quadratic>, has_element<Element::quadratic>, take_element<Element::quadratic>,
-       ChangeKind::adds, Departure::mesh},
-      {"outlines", outlines_here, [](P) { return to_string(Outlines::inscribed); },
-       [](P p) { return p.geometry.outlines == Outlines::inscribed; },
-       [](Variation &v) { v.parameters.geometry.outlines = Outlines::inscribed; }, ChangeKind::shows, Departure::mesh, no_polygon},
-      {"outlines", outlines_here, [](P) { return to_string(Outlines::true_area); },
-       [](P p) { return p.geometry.outlines == Outlines::true_area; },
-       [](Variation &v) { v.parameters.geometry.outlines = Outlines::true_area; }, ChangeKind::adds, Departure::mesh, no_polygon},
+      option("element", element, Element::trilinear, ChangeKind::speeds, Departure::mesh),
+      option("element", element, Element::incompatible_modes, ChangeKind::speeds, Departure::mesh, nullptr,
+             [](P p) { return p.discretization.element != Element::quadratic; }),
+      option("element", element, Element::incompatible_modes, ChangeKind::adds, Departure::mesh, nullptr,
+             [](P p) { return p.discretization.element != Element::trilinear; }),
+      option("element", element, Element::quadratic, ChangeKind::adds, Departure::mesh),
+      option("outlines", outlines, Outlines::inscribed, ChangeKind::shows, Departure::mesh, no_polygon),
+      option("outlines", outlines, Outlines::true_area, ChangeKind::adds, Departure::mesh, no_polygon),
 
       // -------------------------------------------------------------------- modes
-      {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); }, [](P) { return to_string(ComplexSolver::krylov); },
-       [](P p) { return p.solvers.complex_solver == ComplexSolver::krylov; },
-       [](Variation &v) { v.parameters.solvers.complex_solver = ComplexSolver::krylov; }, ChangeKind::speeds, Departure::friction},
-      {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); },
-       [](P) { return to_string(ComplexSolver::residual_iteration); },
-       [](P p) { return p.solvers.complex_solver == ComplexSolver::residual_iteration; },
-       [](Variation &v) { v.parameters.solvers.complex_solver = ComplexSolver::residual_iteration; }, ChangeKind::speeds,
-       Departure::friction},
-      {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); }, [](P) { return std::string("real modes alone"); },
-       [](P) { return false; }, reduce<real_modes>, ChangeKind::shows, Departure::friction},
-      {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); },
-       [](P p) { return "real modes to " + hertz_text((1. + upper_modes) * p.discretization.maximum_frequency); }, [](P) { return false; },
-       [](Variation &v) {
-         v.basis  = real_modes;
-         v.margin = upper_modes;
-       },
-       ChangeKind::shows, Departure::friction},
-      {"complex modes", [](P p) { return to_string(p.solvers.complex_solver); }, [](P) { return std::string("real modes + 1st order"); },
-       [](P) { return false; }, reduce<first_order>, ChangeKind::shows, Departure::friction},
+      option("complex modes", solver, ComplexSolver::krylov, ChangeKind::speeds, Departure::friction),
+      option("complex modes", solver, ComplexSolver::residual_iteration, ChangeKind::speeds, Departure::friction),
+      from_basis([](P) { return "real modes alone"; }, "real"),
+      from_basis([](P p) { return "real modes to " + hertz_text((1. + upper_modes) * p.discretization.maximum_frequency); }, "real",
+                 upper_modes),
+      from_basis([](P) { return "real modes + 1st order"; }, "real + 1st-ord."),
       {"band", [](P p) { return "to " + hertz_text(p.discretization.maximum_frequency); },
        [](P p) { return "to " + hertz_text(shorter_band * p.discretization.maximum_frequency); }, [](P) { return false; },
        [](Variation &v) { v.parameters.discretization.maximum_frequency *= shorter_band; }, ChangeKind::shows, Departure::modes}};

@@ -1,7 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/parameter_file.h>
-#include <squeal/studies/ingredients/ingredient_selection.h>
-#include <squeal/studies/ingredients/ingredient_tables.h>
+#include <squeal/studies/ingredients/ingredients.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
 #include <limits>
@@ -30,7 +29,7 @@ namespace Squeal
           result.effect             = effect_of(reference, variant);
           result.severity           = result.effect.severity(run.parameters.ingredients);
           result.costs              = variant.costs;
-          result.n_dofs             = variant.n_dofs();
+          result.n_dofs             = variant.scene->model->free_map().n();
           result.answer             = answer_of(variant);
         }
       // A model that cannot be is an answer, too
@@ -61,8 +60,8 @@ namespace Squeal
       if (!result.obstacle.empty())
         return false;
       const ChangeKind kind = result.ingredient->kind;
-      return kind == ChangeKind::removes ||
-             (kind == ChangeKind::speeds && result.costs.cpu_seconds() < clearly_faster * reference.costs.cpu_seconds());
+      return kind == ChangeKind::removes || (kind == ChangeKind::speeds && result.costs.sum(&Cost::cpu_seconds) <
+                                                                             clearly_faster * reference.costs.sum(&Cost::cpu_seconds));
     }
 
     /// "radial dissipation = none, rotation of the disc = off"
@@ -186,7 +185,7 @@ namespace Squeal
         text(exact_text(accuracy.frequency_tolerance), " % and ", exact_text(accuracy.divergence_tolerance), " percentage points");
       if (cheapest.changes.empty())
         return {text("  cheapest model within ", asked, ": the scene as it is; nothing that it has can be left out")};
-      const double                   here = reference.costs.cpu_seconds(), there = cheapest.together.costs.cpu_seconds();
+      const double here = reference.costs.sum(&Cost::cpu_seconds), there = cheapest.together.costs.sum(&Cost::cpu_seconds);
       const std::vector<std::string> result = {
         text("  cheapest model within ", asked, ": ", changes_text(cheapest.changes)),
         text("    it changes up to ", largest_changes(cheapest.together.effect), "; ", cheapest.together.effect.n_unstable(true),
@@ -224,10 +223,10 @@ namespace Squeal
       run.progress.note("    put back, too much together with others: " + back->name + " = " + back->tried);
     note_missing(results, run);
     run.screen << '\n';
-    short_ingredient_table(results, reference).print(run.screen);
+    ingredient_table(results, reference, true).print(run.screen);
     run.screen << '\n';
     note_obstacles(results, run);
-    run.store_table("ingredients", ingredient_table(results, reference));
+    run.store_table("ingredients", ingredient_table(results, reference, false));
     run.store_table("ingredients_modes", ingredient_mode_table(results));
     write_parameter_file(cheapest, lines, run);
     run.progress.note("  parameter file: cheapest.prm");
@@ -236,7 +235,7 @@ namespace Squeal
 
   extern const Study ingredients_study = [] {
     Study study{"ingredients", run_ingredients_study, {"Ingredients/"}};
-    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
+    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }}};
     // It goes through contact states, dissipations, speeds and solvers on its own, and leaves them to the cheapest model
     const auto of_use = [](const Parameters &) -> Reason { return nullptr; };
     for (const char *path : {"Operation/Load per side", "Operation/Rotation speed", "Steady sliding/", "Complex modes/"})

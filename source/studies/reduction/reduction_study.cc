@@ -1,7 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/studies/steps/friction_modes.h>
-#include <squeal/studies/steps/reduction_plan.h>
+#include <squeal/studies/steps/parameter_usage.h>
 #include <squeal/studies/reduction/reduction_tables.h>
 
 #include <algorithm>
@@ -161,11 +161,10 @@ namespace Squeal
    */
   static void run_reduction_study(Scene &scene, Run &run)
   {
-    const ReductionPlan plan         = reduction_plan(run.parameters);
-    FrictionlessModes   frictionless = frictionless_modes(linearised_scene(scene, run), run);
-    add_modal_damping(frictionless, run.parameters);
-    const CoupledSystem &coupled = frictionless.linearisation.coupled;
-    const CoupledSystem  system  = plan.has_friction ? coupled : undamped(coupled);
+    const ReductionPlan     plan         = reduction_plan(run.parameters);
+    const FrictionlessModes frictionless = damped_modes(scene, run);
+    const CoupledSystem    &coupled      = frictionless.linearisation.coupled;
+    const CoupledSystem     system       = plan.has_friction ? coupled : undamped(coupled);
 
     Reference                   reference = plan.has_friction ? complex_reference(plan, frictionless, run) : real_reference(frictionless);
     ReductionSets               sets(plan, frictionless, system, run);
@@ -193,9 +192,8 @@ namespace Squeal
 
   extern const Study reduction_study = [] {
     Study study{"reduction", run_reduction_study, {"Reduction/"}, reduction_usage()};
-    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
-    study.check          = [](const Parameters &p) { reduction_plan(p); };
-    study.has_friction   = [](const Parameters &p) { return p.reduction.problem == ReductionProblem::friction; };
+    study.rules.push_back({"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }});
+    study.check = [](const Parameters &p) { reduction_plan(p); };
     return study;
   }();
 } // namespace Squeal

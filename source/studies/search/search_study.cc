@@ -10,11 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <condition_variable>
-#include <mutex>
+#include <functional>
 #include <numeric>
+#include <optional>
 #include <ostream>
-#include <thread>
 
 namespace Squeal
 {
@@ -66,39 +65,30 @@ namespace Squeal
           run.progress.note(text("  an interrupted search goes on: ", n_known, " designs are known"));
       }
 
-      /// Values of the objective at some points, new ones solved side by side; none where the budget does not suffice.
-      std::vector<double> solve(const std::vector<Point> &points)
+      /// The objective at a point that is known.
+      std::optional<double> value(const Point &point) const
       {
-        std::vector<std::vector<std::string>> wanted;
-        for (const Point &point : points)
-          {
-            wanted.emplace_back();
-            for (std::size_t v = 0; v < variables.size(); ++v)
-              wanted.back().push_back(variables[v].at(std::clamp(point[v], 0., 1.)));
-          }
+        const auto place = std::find(plan.designs.begin(), plan.designs.end(), values_at(point));
+        return place == plan.designs.end() ? std::nullopt : std::optional(objective(results[place - plan.designs.begin()], run.parameters));
+      }
+
+      /// Solves those of some points that are not known side by side; false where the budget does not suffice.
+      bool solve(const std::vector<Point> &points)
+      {
         DesignWork work{plan, {}};
-        for (const auto &values : wanted)
-          if (std::find(work.plan.designs.begin(), work.plan.designs.end(), values) == work.plan.designs.end())
+        for (const Point &point : points)
+          if (const auto values = values_at(point);
+              std::find(work.plan.designs.begin(), work.plan.designs.end(), values) == work.plan.designs.end())
             {
               work.plan.designs.push_back(values);
               work.designs.push_back(static_cast<int>(work.plan.designs.size()));
             }
-        if (work.designs.size() > left())
-          return {};
+        if (work.plan.designs.size() > run.parameters.search.n_evaluations)
+          return false;
         plan = work.plan;
         if (!work.designs.empty())
           solve(work);
-        std::vector<double> result;
-        for (const auto &values : wanted)
-          result.push_back(
-            objective(results[std::find(plan.designs.begin(), plan.designs.end(), values) - plan.designs.begin()], run.parameters));
-        return result;
-      }
-
-      /// Evaluations that the budget still has.
-      std::size_t left() const
-      {
-        return run.parameters.search.n_evaluations - std::min<std::size_t>(run.parameters.search.n_evaluations, plan.designs.size());
+        return true;
       }
 
       void forget() const
@@ -115,6 +105,15 @@ namespace Squeal
       std::vector<DesignResult>         results; ///< in the order of their numbers
 
     private:
+      /// Values of the variables at a point.
+      std::vector<std::string> values_at(const Point &point) const
+      {
+        std::vector<std::string> result;
+        for (std::size_t v = 0; v < variables.size(); ++v)
+          result.push_back(variables[v].at(std::clamp(point[v], 0., 1.)));
+        return result;
+      }
+
       void solve(const DesignWork &work)
       {
         // Other processes read the designs from a file: a study of these, without the values that it would refuse and nobody solves
@@ -135,107 +134,27 @@ namespace Squeal
       }
     };
 
-    /**
-     * Methods of NLopt that ask for one point at a time, several of them side by side: each runs in a thread of its own, and waits
-     * until all have asked, so that the points of a round are solved together. The rounds are the same in every run.
-     */
-    class Rounds
+    /// A point at which a method wants the objective; nothing if it has ended, and then why, for a sentence.
+    struct NextStep
     {
-    public:
-      explicit Rounds(const std::size_t n)
-        : asked(n)
-        , answers(n)
-        , is_active(n, true)
-      {}
-
-      /// Of a method: the value at a point.
-      double ask(const std::size_t who, const Point &point)
-      {
-        std::unique_lock<std::mutex> lock(mutex);
-        asked[who] = point;
-        changed.notify_all();
-        changed.wait(lock, [&] { return answers[who].has_value() || is_over; });
-        if (!answers[who])
-          throw nlopt::forced_stop();
-        const double value = *answers[who];
-        answers[who].reset();
-        return value;
-      }
-
-      /// Of a method that has ended.
-      void leave(const std::size_t who)
-      {
-        const std::lock_guard<std::mutex> lock(mutex);
-        is_active[who] = false;
-        changed.notify_all();
-      }
-
-      /// Answers until all methods have ended or the budget has.
-      void answer(Evaluations &evaluations)
-      {
-        for (;;)
-          {
-            std::vector<std::size_t> who;
-            std::vector<Point>       points;
-            {
-              std::unique_lock<std::mutex> lock(mutex);
-              changed.wait(lock, [&] {
-                for (std::size_t i = 0; i < asked.size(); ++i)
-                  if (is_active[i] && !asked[i])
-                    return false;
-                return true;
-              });
-              for (std::size_t i = 0; i < asked.size(); ++i)
-                if (is_active[i])
-                  {
-                    who.push_back(i);
-                    points.push_back(*asked[i]);
-                    asked[i].reset();
-                  }
-            }
-            if (who.empty())
-              return;
-            std::vector<double> values;
-            try
-              {
-                values = evaluations.solve(points);
-              }
-            catch (...)
-              {
-                end();
-                throw;
-              }
-            if (values.empty())
-              {
-                end();
-                return;
-              }
-            const std::lock_guard<std::mutex> lock(mutex);
-            for (std::size_t i = 0; i < who.size(); ++i)
-              answers[who[i]] = values[i];
-            changed.notify_all();
-          }
-      }
-
-    private:
-      void end()
-      {
-        const std::lock_guard<std::mutex> lock(mutex);
-        is_over = true;
-        changed.notify_all();
-      }
-
-      std::mutex                         mutex;
-      std::condition_variable            changed;
-      std::vector<std::optional<Point>>  asked;
-      std::vector<std::optional<double>> answers;
-      std::vector<bool>                  is_active;
-      bool                               is_over = false;
+      std::optional<Point> asked;
+      std::string          end;
     };
 
-    /// Why a search ended, for its table and a sentence.
-    std::string search_from(const Point &start, const SearchParameters &parameters, const std::function<double(const Point &)> &value)
+    /**
+     * Runs a method from a start until it asks for a point that is not known. A method does the same each time, so that it goes on as
+     * soon as the point is solved, and several methods can have their points solved side by side.
+     */
+    NextStep next_step(const Point &start, const Evaluations &evaluations)
     {
+      const SearchParameters                    &parameters = evaluations.run.parameters.search;
+      NextStep                                   result;
+      const std::function<double(const Point &)> value = [&](const Point &x) {
+        if (const auto known = evaluations.value(x))
+          return *known;
+        result.asked = x;
+        throw nlopt::forced_stop();
+      };
       nlopt::opt method(algorithm(parameters.method), static_cast<unsigned int>(start.size()));
       method.set_lower_bounds(0.);
       method.set_upper_bounds(1.);
@@ -249,57 +168,44 @@ namespace Squeal
       try
         {
           method.optimize(x, smallest);
+          result.end = "steps are smaller than Search/Smallest step";
         }
       catch (const nlopt::forced_stop &)
-        {
-          return "Search/Evaluations is used up";
-        }
+        {}
       catch (const nlopt::roundoff_limited &)
         {
-          return "rounding errors are larger than what steps change";
+          result.end = "rounding errors are larger than what steps change";
         }
       catch (const std::exception &error)
         {
-          return std::string("NLopt says: ") + error.what();
+          result.end = std::string("NLopt says: ") + error.what();
         }
-      return "steps are smaller than Search/Smallest step";
+      return result;
     }
 
     /// Searches side by side from some starts; returns why each ended.
     std::vector<std::string> search(const std::vector<Point> &starts, Evaluations &evaluations)
     {
-      Rounds                   rounds(starts.size());
-      std::vector<std::string> ends(starts.size(), "");
-      std::vector<std::thread> methods;
-      for (std::size_t i = 0; i < starts.size(); ++i)
-        methods.emplace_back([&, i] {
-          ends[i] = search_from(starts[i], evaluations.run.parameters.search, [&, i](const Point &x) { return rounds.ask(i, x); });
-          rounds.leave(i);
-        });
-      const auto join_all = [&] {
-        for (std::thread &method : methods)
-          method.join();
-      };
-      try
+      std::vector<std::string> ends(starts.size());
+      for (;;)
         {
-          rounds.answer(evaluations);
+          std::vector<Point> asked;
+          for (std::size_t i = 0; i < starts.size(); ++i)
+            if (ends[i].empty())
+              {
+                const NextStep next = next_step(starts[i], evaluations);
+                ends[i]             = next.end;
+                if (next.asked)
+                  asked.push_back(*next.asked);
+              }
+          if (asked.empty())
+            return ends;
+          if (!evaluations.solve(asked))
+            {
+              std::replace(ends.begin(), ends.end(), std::string(), std::string("Search/Evaluations is used up"));
+              return ends;
+            }
         }
-      catch (...)
-        {
-          join_all();
-          throw;
-        }
-      join_all();
-      return ends;
-    }
-
-    /// Number of the best design so far, from zero on.
-    std::size_t best_of(const std::vector<DesignResult> &results, const Parameters &parameters)
-    {
-      return std::min_element(
-               results.begin(), results.end(),
-               [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); }) -
-             results.begin();
     }
 
     // ------------------------------------------------------------------ at full order
@@ -399,20 +305,22 @@ namespace Squeal
     Evaluations             evaluations(scene, run);
     const std::size_t       dimension = evaluations.variables.size();
 
-    std::vector<Point>        points = sobol_points(options.n_samples, dimension, parameters.designs.seed);
-    const std::vector<double> values = evaluations.solve(points);
-    std::vector<std::size_t>  order(values.size());
+    std::vector<Point> points = sobol_points(options.n_samples, dimension, parameters.designs.seed);
+    evaluations.solve(points);
+    std::vector<std::size_t> order(points.size());
     std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) { return values[a] < values[b]; });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](const std::size_t a, const std::size_t b) { return evaluations.value(points[a]) < evaluations.value(points[b]); });
     std::vector<Point> starts;
     for (std::size_t i = 0; i < std::min(most_searches, order.size()); ++i)
       starts.push_back(points[order[i]]);
     const std::vector<std::string> ends = search(starts, evaluations);
 
-    const std::size_t   best   = best_of(evaluations.results, parameters);
-    const DesignResult &winner = evaluations.results[best];
-    std::string         reason;
-    const auto          design = parameters_of(run, evaluations.plan, winner.number, reason);
+    const DesignResult &winner =
+      *std::min_element(evaluations.results.begin(), evaluations.results.end(),
+                        [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); });
+    std::string reason;
+    const auto  design = parameters_of(run, evaluations.plan, winner.number, reason);
     if (!design || winner.outcome != DesignOutcome::solved)
       throw SolverError("no design of the search could be solved: " + winner.reason, "search", "choose other ranges in Designs/Variables");
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
@@ -427,7 +335,7 @@ namespace Squeal
                            options.goal == SearchGoal::onset ? " there (mu of 0.01 %)" : " % there (largest divergence rate)"));
     for (std::size_t i = 0; i < ends.size(); ++i)
       run.progress.note(text("    from design ", order[i] + 1, ": ", ends[i]));
-    run.store_table("search", search_table(evaluations, values.size()));
+    run.store_table("search", search_table(evaluations, points.size()));
     run.write_table("full_order", full_order_table(checked));
     write_parameter_file(*design, "best.prm", run);
     run.finish([&] { evaluations.forget(); });

@@ -1,5 +1,5 @@
 #include <squeal/base/conventions.h>
-#include <squeal/studies/sensitivity/sensitivity_modes.h>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/tracking/mode_links.h>
 
 #include <algorithm>
@@ -130,15 +130,8 @@ namespace Squeal
       return result;
     }
 
-    double real_part(const Complex &z)
-    {
-      return z.real();
-    }
-
-    double imaginary_part(const Complex &z)
-    {
-      return z.imag();
-    }
+    const auto real_part      = [](const Complex &z) { return z.real(); };
+    const auto imaginary_part = [](const Complex &z) { return z.imag(); };
 
     /// Keeps the changes since an earlier basis; returns the largest one over the largest derivative of its mode.
     double compare(std::vector<ModeSensitivity>            &modes,

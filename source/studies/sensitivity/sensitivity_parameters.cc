@@ -1,11 +1,10 @@
-#include <squeal/model/rotation.h>
+#include <squeal/model/elasticity.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/contact/travel.h>
 #include <squeal/sensitivity/mesh_motions.h>
-#include <squeal/studies/sensitivity/sensitivity_parameters.h>
+#include <squeal/studies/sensitivity/sensitivity_model.h>
 
 #include <algorithm>
-#include <functional>
 
 namespace Squeal
 {
@@ -23,15 +22,10 @@ namespace Squeal
       bool of_single_pins;
     };
 
-    const std::vector<MaterialNumber> &material_numbers()
-    {
-      static const std::vector<MaterialNumber> all = {
-        {"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus, true},
-        {"Density", "kg/m^3", &Material::density, BodyParameter::density, true},
-        {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false},
-        {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false}};
-      return all;
-    }
+    const MaterialNumber material_numbers[] = {{"Young modulus", "Pa", &Material::young_modulus, BodyParameter::young_modulus, true},
+                                               {"Density", "kg/m^3", &Material::density, BodyParameter::density, true},
+                                               {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false},
+                                               {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false}};
 
     SensitivityParameter of_material(const std::string              &section,
                                      const Material                 &material,
@@ -46,16 +40,16 @@ namespace Squeal
     }
 
     /// (X(ν + h) − X(ν − h)) / 2h of the stiffness of some bodies, and of their damping by stiffness.
-    SensitivityParameter of_poisson_ratio(const std::string                                         &section,
-                                          const Scene                                               &scene,
-                                          const MaterialParameters                                  &materials,
-                                          const std::function<double &(MaterialParameters &values)> &poisson_ratio,
-                                          const std::vector<std::string>                            &bodies)
+    SensitivityParameter of_poisson_ratio(const std::string        &section,
+                                          const Scene              &scene,
+                                          const MaterialParameters &materials,
+                                          Material MaterialParameters::  *material,
+                                          const std::vector<std::string> &bodies)
     {
       MaterialParameters less = materials, more = materials;
-      const double       nu = poisson_ratio(less), h = relative_step * std::min(0.5 - nu, 1. + nu);
-      poisson_ratio(less) -= h;
-      poisson_ratio(more) += h;
+      const double       nu = (materials.*material).poisson_ratio, h = relative_step * std::min(0.5 - nu, 1. + nu);
+      (less.*material).poisson_ratio -= h;
+      (more.*material).poisson_ratio += h;
       SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}};
       const std::vector<Term> before = body_terms(*scene.model, less).terms, after = body_terms(*scene.model, more).terms;
       for (std::size_t k = 0; k < after.size(); ++k)
@@ -82,19 +76,17 @@ namespace Squeal
         alike.push_back(pin);
 
     std::vector<SensitivityParameter> result;
-    for (const MaterialNumber &number : material_numbers())
+    for (const MaterialNumber &number : material_numbers)
       result.push_back(of_material("Disc material", materials.disc, number, disc));
-    result.push_back(of_poisson_ratio(
-      "Disc material", scene, materials, [](MaterialParameters &m) -> double & { return m.disc.poisson_ratio; }, disc));
+    result.push_back(of_poisson_ratio("Disc material", scene, materials, &MaterialParameters::disc, disc));
     // Single pins have the damping of all
-    for (const MaterialNumber &number : material_numbers())
+    for (const MaterialNumber &number : material_numbers)
       if (const std::vector<std::string> &bodies = number.of_single_pins ? alike : pins; !bodies.empty())
         result.push_back(of_material("Pin material", materials.pin, number, bodies));
     if (!alike.empty())
-      result.push_back(of_poisson_ratio(
-        "Pin material", scene, materials, [](MaterialParameters &m) -> double & { return m.pin.poisson_ratio; }, alike));
+      result.push_back(of_poisson_ratio("Pin material", scene, materials, &MaterialParameters::pin, alike));
     for (const std::string &pin : pins)
-      for (const MaterialNumber &number : material_numbers())
+      for (const MaterialNumber &number : material_numbers)
         if (number.of_single_pins)
           {
             const bool is_alike = std::find(alike.begin(), alike.end(), pin) != alike.end();

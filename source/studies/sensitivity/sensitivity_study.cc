@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/geometry/scene_size.h>
 #include <squeal/studies/sensitivity/sensitivity_tables.h>
 
 #include <algorithm>
@@ -66,31 +65,6 @@ namespace Squeal
           text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
     }
 
-    // Fit of further_memory() to runs of 5 700 and 32 000 dofs
-    constexpr int    n_lengths        = 5;     ///< of disc and pins
-    constexpr double bytes_per_length = 2.1e3; ///< and dof: K' and M', and those of the moved meshes
-    constexpr double bytes_per_place  = 2e2;   ///< the same of the place of one pin, which little of the mesh goes along with
-    constexpr double vectors_per_mode = 5.;    ///< of the basis as it has grown, which is copied then
-    constexpr double points_per_given = 2.3;   ///< points of the sweep, with those that branches and thresholds want
-    constexpr double points_per_mode  = 2.;    ///< six for each threshold
-    constexpr double bytes_per_entry  = 2. * sizeof(std::complex<double>); ///< of a right and a left vector
-
-    /// What moved meshes, the basis and evaluated points take.
-    double further_memory(const Parameters &parameters, const ProblemSize &size, const double n_modes)
-    {
-      const GeometryParameters &geometry = parameters.geometry;
-      const double              vectors  = vectors_per_mode * n_modes;
-      double                    result   = 2. * sizeof(double) * vectors * size.dofs;
-      if (parameters.sensitivity.thresholds)
-        result += bytes_per_entry * n_modes * vectors *
-                  (points_per_given * double(parameters.sweep.friction_coefficients.linear().size()) + points_per_mode * n_modes);
-      if (geometry.file == GeometryParameters().file && parameters.sensitivity.geometry != GeometrySensitivities::none)
-        result += n_lengths * bytes_per_length * size.dofs;
-      if (geometry.file == GeometryParameters().file && parameters.sensitivity.geometry == GeometrySensitivities::sizes_and_places)
-        result += 2. * double(geometry.top.radii.size() + geometry.bottom.radii.size()) * bytes_per_place * size.dofs;
-      return result;
-    }
-
     /// Of the modal damping that the coupled system of a sweep has; nothing without it.
     std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
     {
@@ -155,13 +129,12 @@ namespace Squeal
                 run_sensitivity_study,
                 {"Sensitivity/", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
                       "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance"}};
-    study.rules          = {{"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
-                            {"Sweep/First friction coefficient", no_thresholds},
-                            {"Sweep/Last friction coefficient", no_thresholds},
-                            {"Sweep/Number of friction coefficients", no_thresholds},
-                            {"Sweep/Threshold tolerance", no_thresholds}};
-    study.no_mode_shapes = [](const Parameters &) { return "the study writes no mode shapes"; };
-    study.further_memory = further_memory;
+    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+                   {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
+                   {"Sweep/First friction coefficient", no_thresholds},
+                   {"Sweep/Last friction coefficient", no_thresholds},
+                   {"Sweep/Number of friction coefficients", no_thresholds},
+                   {"Sweep/Threshold tolerance", no_thresholds}};
     return study;
   }();
 } // namespace Squeal

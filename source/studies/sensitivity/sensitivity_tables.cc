@@ -16,42 +16,37 @@ namespace Squeal
     struct SensitivityRow
     {
       int                         mode; ///< from 0
-      const ModeSensitivity      &of;
-      const SensitivityParameter &parameter;
+      const ModeSensitivity      *of;
+      const SensitivityParameter *parameter;
       Complex                     derivative; ///< dλ/dp
       std::optional<Complex>      change;     ///< by the last growth of the basis
 
-      /// dξ/dp, ξ = R/ω.
-      static double of_divergence(const Complex &lambda, const Complex &derivative)
+      double growth_per_percent() const
       {
-        return (derivative.real() - lambda.real() / lambda.imag() * derivative.imag()) / lambda.imag();
+        return one_percent * parameter->value * derivative.real();
       }
 
+      /// 100 dξ, ξ = R/ω.
       double divergence_per_percent() const
       {
-        return 100. * one_percent * parameter.value * of_divergence(of.lambda, derivative);
+        const Complex &lambda = of->lambda;
+        return 100. * one_percent * parameter->value * (derivative.real() - lambda.real() / lambda.imag() * derivative.imag()) /
+               lambda.imag();
+      }
+
+      double frequency_per_percent() const
+      {
+        return hertz(one_percent * parameter->value * derivative.imag());
       }
     };
-
-    const char *body_or_all(const SensitivityParameter &parameter)
-    {
-      return parameter.body.c_str();
-    }
 
     std::vector<SensitivityRow> rows_of(const ModeSensitivity &mode, const int number, const std::vector<SensitivityParameter> &parameters)
     {
       std::vector<SensitivityRow> rows;
       for (std::size_t p = 0; p < parameters.size(); ++p)
         rows.push_back(
-          {number, mode, parameters[p], mode.derivatives[p], mode.changes.empty() ? std::nullopt : std::make_optional(mode.changes[p])});
+          {number, &mode, &parameters[p], mode.derivatives[p], mode.changes.empty() ? std::nullopt : std::make_optional(mode.changes[p])});
       return rows;
-    }
-
-    /// Nothing per cent of a parameter that is zero.
-    template <typename Row, typename Value>
-    auto per_percent(const Value &value)
-    {
-      return [value](const Row &row) { return row.parameter.value != 0. ? Cell(value(row)) : Cell(); };
     }
   } // namespace
 
@@ -62,29 +57,30 @@ namespace Squeal
     for (std::size_t m = 0; m < modes.size(); ++m)
       for (const Row &row : rows_of(modes[m], static_cast<int>(m), parameters))
         rows.push_back(row);
-    const auto percent = [](const auto &value) { return per_percent<Row>(value); };
+    // Nothing per cent of a parameter that is zero
+    const auto percent = [](double (Row::*value)() const) {
+      return [value](const Row &row) { return row.parameter->value != 0. ? Cell((row.*value)()) : Cell(); };
+    };
     return Table(
-      Columns<Row>{
-        {"mode", "-", [](const Row &row) { return row.mode + 1; }},
-        {"label", "", [](const Row &row) { return row.of.label; }},
-        {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.of.lambda).frequency; }},
-        {"growth rate", "1/s", [](const Row &row) { return row.of.lambda.real(); }},
-        {"divergence rate", "%", [](const Row &row) { return 100. * modal_quantities(row.of.lambda).divergence_rate; }},
-        {"parameter", "", [](const Row &row) { return row.parameter.path; }},
-        {"only of", "", [](const Row &row) { return body_or_all(row.parameter); }},
-        {"value", "", [](const Row &row) { return row.parameter.value; }},
-        {"unit", "", [](const Row &row) { return row.parameter.unit; }},
-        {"growth rate per 1 %", "1/s", percent([](const Row &row) { return one_percent * row.parameter.value * row.derivative.real(); })},
-        {"divergence rate per 1 %", "percentage points", percent([](const Row &row) { return row.divergence_per_percent(); })},
-        {"frequency per 1 %", "Hz",
-         percent([](const Row &row) { return hertz(one_percent * row.parameter.value * row.derivative.imag()); })},
-        {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
-        {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }},
-        {"estimated error of the growth rate per unit", "1/s",
-         [](const Row &row) { return row.change ? Cell(std::abs(row.change->real())) : Cell(); }},
-        {"estimated error of the frequency per unit", "Hz",
-         [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
-        {"derivative of", "", [](const Row &row) { return row.of.kind; }}},
+      Columns<Row>{{"mode", "-", [](const Row &row) { return row.mode + 1; }},
+                   {"label", "", [](const Row &row) { return row.of->label; }},
+                   {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.of->lambda).frequency; }},
+                   {"growth rate", "1/s", [](const Row &row) { return row.of->lambda.real(); }},
+                   {"divergence rate", "%", [](const Row &row) { return 100. * modal_quantities(row.of->lambda).divergence_rate; }},
+                   {"parameter", "", [](const Row &row) { return row.parameter->path; }},
+                   {"only of", "", [](const Row &row) { return row.parameter->body; }},
+                   {"value", "", [](const Row &row) { return row.parameter->value; }},
+                   {"unit", "", [](const Row &row) { return row.parameter->unit; }},
+                   {"growth rate per 1 %", "1/s", percent(&Row::growth_per_percent)},
+                   {"divergence rate per 1 %", "percentage points", percent(&Row::divergence_per_percent)},
+                   {"frequency per 1 %", "Hz", percent(&Row::frequency_per_percent)},
+                   {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
+                   {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }},
+                   {"estimated error of the growth rate per unit", "1/s",
+                    [](const Row &row) { return row.change ? Cell(std::abs(row.change->real())) : Cell(); }},
+                   {"estimated error of the frequency per unit", "Hz",
+                    [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
+                   {"derivative of", "", [](const Row &row) { return row.of->kind; }}},
       rows);
   }
 
@@ -121,7 +117,7 @@ namespace Squeal
                               {"label of partner", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
                               {"frequency", "Hz", of_threshold([](const Threshold &t) { return modal_quantities(t.lambda).frequency; })},
                               {"parameter", "", known([](const Row &row) { return row.parameter.path; })},
-                              {"only of", "", known([](const Row &row) { return std::string(body_or_all(row.parameter)); })},
+                              {"only of", "", known([](const Row &row) { return row.parameter.body; })},
                               {"value", "", known([](const Row &row) { return row.parameter.value; })},
                               {"unit", "", known([](const Row &row) { return row.parameter.unit; })},
                               {"mu per 1 %", "-",
@@ -143,29 +139,25 @@ namespace Squeal
                       const bool                               with_single_pins,
                       const std::size_t                        most)
   {
-    using Row = SensitivityRow;
-    std::vector<Row> all, rows;
-    for (const Row &row : rows_of(mode, 0, parameters))
-      if (row.parameter.value != 0. && (with_single_pins || row.parameter.body.empty()))
-        all.push_back(row);
-    std::vector<std::size_t> order(all.size());
-    for (std::size_t i = 0; i < order.size(); ++i)
-      order[i] = i;
-    std::stable_sort(order.begin(), order.end(), [&](const std::size_t a, const std::size_t b) {
-      return std::abs(all[a].divergence_per_percent()) > std::abs(all[b].divergence_per_percent());
+    using Row             = SensitivityRow;
+    std::vector<Row> rows = rows_of(mode, 0, parameters);
+    rows.erase(
+      std::remove_if(rows.begin(), rows.end(),
+                     [&](const Row &row) { return row.parameter->value == 0. || (!with_single_pins && !row.parameter->body.empty()); }),
+      rows.end());
+    std::stable_sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) {
+      return std::abs(a.divergence_per_percent()) > std::abs(b.divergence_per_percent());
     });
-    for (std::size_t i = 0; i < order.size() && (most == 0 || i < most); ++i)
-      rows.push_back(all[order[i]]);
-    Columns<Row> columns = {{"parameter", "", [](const Row &row) { return row.parameter.path; }}};
+    if (most > 0 && rows.size() > most)
+      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(most), rows.end());
+    Columns<Row> columns = {{"parameter", "", [](const Row &row) { return row.parameter->path; }}};
     if (with_single_pins)
-      columns.push_back({"only of", "", [](const Row &row) { return body_or_all(row.parameter); }});
-    columns.push_back({"value", "", [](const Row &row) { return row.parameter.value; }, 4, true});
-    columns.push_back({"unit", "", [](const Row &row) { return row.parameter.unit; }});
+      columns.push_back({"only of", "", [](const Row &row) { return row.parameter->body; }});
+    columns.push_back({"value", "", [](const Row &row) { return row.parameter->value; }, 4, true});
+    columns.push_back({"unit", "", [](const Row &row) { return row.parameter->unit; }});
     columns.push_back({"divergence rate per 1 %", "percentage points", [](const Row &row) { return row.divergence_per_percent(); }, 6});
-    columns.push_back(
-      {"growth rate per 1 %", "1/s", [](const Row &row) { return one_percent * row.parameter.value * row.derivative.real(); }, 4});
-    columns.push_back(
-      {"frequency per 1 %", "Hz", [](const Row &row) { return hertz(one_percent * row.parameter.value * row.derivative.imag()); }, 4});
+    columns.push_back({"growth rate per 1 %", "1/s", [](const Row &row) { return row.growth_per_percent(); }, 4});
+    columns.push_back({"frequency per 1 %", "Hz", [](const Row &row) { return row.frequency_per_percent(); }, 4});
     return Table(columns, rows);
   }
 } // namespace Squeal

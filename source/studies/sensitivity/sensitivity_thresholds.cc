@@ -1,4 +1,4 @@
-#include <squeal/studies/sensitivity/sensitivity_thresholds.h>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/tracking/mode_links.h>
 
 #include <algorithm>
@@ -173,7 +173,7 @@ namespace Squeal
                 return;
               const SensitivityProducts products = model.products(*point, last_samples.back().modes);
               for (std::size_t p = 0; p < means.size(); ++p)
-                means[p][distance - 1] += 0.5 * squared_difference_derivative(products.N[p], products.D, products.lambda, 0, 1);
+                means[p][distance - 1] += 0.5 * squared_difference_derivative(products.N[p], products.D, products.lambda);
             }
         const ValueAtCentre slope = value_at_centre(means[friction()]);
         for (const auto &mean : means)

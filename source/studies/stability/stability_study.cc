@@ -3,9 +3,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/steps/friction_modes.h>
 #include <squeal/studies/steps/mesh_estimate.h>
-#include <squeal/studies/steps/mode_shapes.h>
-#include <squeal/studies/steps/mode_tables.h>
-#include <squeal/studies/steps/sliding_results.h>
+#include <squeal/studies/steps/mode_results.h>
 
 #include <algorithm>
 #include <cmath>
@@ -144,13 +142,12 @@ namespace Squeal
     // Process 0 writes the mesh; the others have their parts in the model
     if (!run.is_root)
       release(scene.mesh);
-    const std::optional<CoarserSolution> coarser      = solve_on_coarser_mesh(run);
-    FrictionlessModes                    frictionless = frictionless_modes(linearised_scene(scene, run), run);
-    add_modal_damping(frictionless, parameters);
-    const FrictionModes                friction      = friction_modes(frictionless, operation.friction_coefficient, run);
-    const Linearisation               &linearisation = frictionless.linearisation;
-    const std::optional<SlidingState> &sliding       = linearisation.sliding;
-    const SolverParameters            &solvers       = parameters.solvers;
+    const std::optional<CoarserSolution> coarser       = solve_on_coarser_mesh(run);
+    const FrictionlessModes              frictionless  = damped_modes(scene, run);
+    const FrictionModes                  friction      = friction_modes(frictionless, operation.friction_coefficient, run);
+    const Linearisation                 &linearisation = frictionless.linearisation;
+    const std::optional<SlidingState>   &sliding       = linearisation.sliding;
+    const SolverParameters              &solvers       = parameters.solvers;
     record_conditioning(frictionless.linearisation.coupled, friction.modes, friction.conditioning,
                         solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
     run.count("complex modes", friction.modes.lambda.size());

@@ -176,4 +176,11 @@ namespace Squeal
     mark_doublets(result.labels);
     return result;
   }
+
+  FrictionlessModes damped_modes(Scene &scene, Run &run)
+  {
+    FrictionlessModes result = frictionless_modes(linearised_scene(scene, run), run);
+    add_modal_damping(result, run.parameters);
+    return result;
+  }
 } // namespace Squeal

@@ -49,15 +49,14 @@ namespace Squeal
     if (run.parameters.goal == AccuracyGoal::as_given)
       return {};
     run.progress.begin("Coarser mesh");
-    const Parameters  parameters = with_coarser_mesh(run.parameters);
-    Progress          silent;
-    Run               part(parameters, run, silent);
-    Scene             scene        = mesh_scene(part);
-    FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
-    add_modal_damping(frictionless, parameters);
-    const FrictionModes friction = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
-    const CommonPoints  points   = common_points(*scene.model, parameters.materials);
-    CoarserSolution     result{points, modes_at(points, frictionless, friction)};
+    const Parameters        parameters = with_coarser_mesh(run.parameters);
+    Progress                silent;
+    Run                     part(parameters, run, silent);
+    Scene                   scene        = mesh_scene(part);
+    const FrictionlessModes frictionless = damped_modes(scene, part);
+    const FrictionModes     friction     = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
+    const CommonPoints      points       = common_points(*scene.model, parameters.materials);
+    CoarserSolution         result{points, modes_at(points, frictionless, friction)};
     run.count("dofs of the coarser mesh", scene.model->free_map().n());
     run.progress.finish(text(scene.model->free_map().n(), " dofs, ", friction.modes.lambda.size(), " complex modes, ",
                              friction.n_unstable(), " unstable, to estimate the error of the mesh"));

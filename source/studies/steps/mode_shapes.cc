@@ -1,7 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/verdict.h>
-#include <squeal/studies/steps/mode_shapes.h>
+#include <squeal/studies/steps/mode_results.h>
 
 #include <algorithm>
 #include <cmath>

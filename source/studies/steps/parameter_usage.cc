@@ -7,11 +7,6 @@
 
 namespace Squeal
 {
-  bool concerns(const std::string &path, const std::string &parameter)
-  {
-    return path.back() == '/' ? parameter.rfind(path, 0) == 0 : parameter == path;
-  }
-
   namespace
   {
     // --------------------------------------------------------------------- rules
@@ -41,14 +36,9 @@ namespace Squeal
       return unless(p.needs_steady_sliding(), "Steady sliding/Contact state = equal load");
     }
 
-    Reason no_mode_shapes(const Parameters &p)
-    {
-      return p.study->no_mode_shapes == nullptr ? nullptr : p.study->no_mode_shapes(p);
-    }
-
     Reason no_complex_shapes(const Parameters &p)
     {
-      return p.output.fields == FieldSelection::none ? "Output/Mode shapes = none" : no_mode_shapes(p);
+      return unless(p.output.fields != FieldSelection::none, "Output/Mode shapes = none");
     }
 
     Reason no_frames(const Parameters &p)
@@ -100,9 +90,6 @@ namespace Squeal
         {"Complex modes/Iteration tolerance", no_iteration},
         {"Complex modes/Maximum basis", no_iteration},
 
-        {"Output/Mode shapes",
-         // Who wants none gets none
-         [](const Parameters &p) { return p.output.fields == FieldSelection::none ? nullptr : no_mode_shapes(p); }},
         {"Output/Animation frames",
          // Who wants none gets none
          [](const Parameters &p) { return p.output.animation_frames == 0 ? nullptr : no_complex_shapes(p); }},
@@ -114,19 +101,14 @@ namespace Squeal
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
-      const auto has = [&path](const Study &study) {
-        return std::any_of(study.own_parameters.begin(), study.own_parameters.end(), [&](const char *own) { return concerns(own, path); });
-      };
       for (const Study *other : studies())
-        if (has(*other) && !has(*parameters.study))
+        if (other->has(path) && !parameters.study->has(path))
           return std::string("of Study = ") + other->name;
       for (const auto *table : {&parameters.study->rules, &general_rules()})
         for (const UsageRule &rule : *table)
           if (concerns(rule.path, path))
-            {
-              const Reason reason = rule.why_unused(parameters);
+            if (const Reason reason = rule.why_unused(parameters); reason == nullptr || *reason != '\0')
               return reason == nullptr ? "" : reason;
-            }
       return "";
     }
 

@@ -25,42 +25,27 @@ namespace Squeal
   } // namespace
 
   Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
-    : parameters(parameters)
-    , communicator(communicator)
-    , progress(progress)
-    , screen(screen)
-    , is_dry(options.dry_run)
-    , is_root(dealii::Utilities::MPI::this_mpi_process(communicator) == 0)
-    , options(options)
-    , record{options.command,
-             static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator)),
-             usable_threads(parameters.solvers.n_threads, n_processes_here(communicator)),
-             set_blas_threads(parameters.solvers.blas_threads),
-             {},
-             {},
-             {},
-             {},
-             options.revision}
+    : RunContext{parameters, communicator, progress, screen, options.dry_run, dealii::Utilities::MPI::this_mpi_process(communicator) == 0,
+                 options}
   {
+    record.command      = options.command;
+    record.revision     = options.revision;
+    record.n_processes  = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
+    record.n_threads    = usable_threads(parameters.solvers.n_threads, n_processes_here(communicator));
+    record.blas_threads = set_blas_threads(parameters.solvers.blas_threads);
     set_task_threads(record.n_threads);
     if (!is_dry)
-      results = std::make_unique<ResultFolder>(options.output, is_root);
+      place = std::make_unique<ResultFolder>(options.output, is_root);
   }
 
-  Run::Run(const Parameters &parameters, const Run &whole, Progress &progress)
-    : parameters(parameters)
-    , communicator(whole.communicator)
-    , progress(progress)
-    , screen(whole.screen)
-    , is_dry(true)
-    , is_root(whole.is_root)
-    , options(whole.options)
+  Run::Run(const Parameters &parameters, const RunContext &whole, Progress &progress)
+    : RunContext{parameters, whole.communicator, progress, whole.screen, true, whole.is_root, whole.options}
   {}
 
   void Run::keep_geometry()
   {
     for (const GeometryCopy::File &file : copy_of(parameters.geometry.path()).files)
-      results->write(file.to, [&](std::ostream &stream) { stream << std::ifstream(file.from, std::ios::binary).rdbuf(); });
+      place->write(file.to, [&](std::ostream &stream) { stream << std::ifstream(file.from, std::ios::binary).rdbuf(); });
   }
 
   void Run::warn(const std::string &text)
@@ -69,9 +54,9 @@ namespace Squeal
     record.warnings.push_back(text);
   }
 
-  void Run::store_table(const std::string &name, const Table &table)
+  void RunResults::store_table(const std::string &name, const Table &table)
   {
-    results->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
+    place->write(name + ".csv", [&](std::ostream &stream) { table.write_csv(stream); });
     tables.push_back(name + ".csv");
   }
 
@@ -89,17 +74,17 @@ namespace Squeal
     if (const std::string designs = designs_file(parameters); !designs.empty())
       {
         repeated.designs.file = "designs/given.csv";
-        results->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
+        place->write(repeated.designs.file, [&](std::ostream &stream) { stream << std::ifstream(designs, std::ios::binary).rdbuf(); });
       }
-    results->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
-    record.files = results->files();
-    results->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
-    for (const std::string &remark : results->commit(afterwards))
+    place->write("parameters.prm", [&](std::ostream &stream) { repeated.print(stream, false); });
+    record.files = place->files();
+    place->write(ResultFolder::run_record, [&](std::ostream &stream) { write_run_record(stream, record, progress); });
+    for (const std::string &remark : place->commit(afterwards))
       progress.note("  note: " + remark);
     std::string names;
     for (const std::string &name : tables)
       names += (names.empty() ? "" : ", ") + name;
     progress.note("  tables: " + names);
-    progress.note(text("  results in ", results->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
+    progress.note(text("  results in ", place->name(), ", ", std::round(10. * progress.elapsed()) / 10., " s"));
   }
 } // namespace Squeal

@@ -1,4 +1,4 @@
-#include <squeal/model/rotation.h>
+#include <squeal/model/elasticity.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/scene_size.h>

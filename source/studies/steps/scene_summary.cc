@@ -1,42 +1,47 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/memory_limit.h>
+#include <squeal/base/memory.h>
+#include <squeal/geometry/hex_mesh.h>
 #include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/scene_size.h>
 #include <squeal/studies/steps/scene_summary.h>
 
+#include <deal.II/base/bounding_box.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace Squeal
 {
   namespace
   {
     // Bodies and materials of machines, from a desk toy to a turbine and from rubber to beryllium
-    constexpr Range disc_radii  = {5e-3, 5.};    ///< [m]
-    constexpr Range heights     = {1e-5, 1.};    ///< [m]
-    constexpr Range densities   = {50., 25000.}; ///< [kg/m³]
-    constexpr Range bar_speeds  = {20., 20000.}; ///< [m/s]
-    constexpr Range disc_masses = {1e-3, 2e4};   ///< [kg]
+    constexpr Range disc_radii = {5e-3, 5.};    ///< [m]
+    constexpr Range heights    = {1e-5, 1.};    ///< [m]
+    constexpr Range densities  = {50., 25000.}; ///< [kg/m³]
+    constexpr Range bar_speeds = {20., 20000.}; ///< [m/s]
 
     constexpr double alike = 1e-3; ///< relative difference of pins that count as equal
 
     /// For which memory is estimated: modes are counted later, and take little of it.
     constexpr double typical_modes = 70.;
 
-    /// Disc, or pins that are alike.
-    struct BodySummary : BodyShape
+    /// The disc, or pins that are alike, as the mesh has them.
+    struct Body
     {
-      std::vector<std::string> names;     ///< of all bodies
-      double                   mass;      ///< of one body [kg]
-      double                   bar_speed; ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
-    };
+      std::vector<std::string> names;
+      double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of nodes about z [m]
+      double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
+      double                   mass      = 0.;                              ///< of one of them [kg]
+      double                   bar_speed = 0.;                              ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
 
-    bool are_alike(const BodySummary &a, const BodySummary &b)
-    {
-      const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
-      return close(a.height, b.height) && close(a.contact_area, b.contact_area) && close(a.volume, b.volume) && close(a.mass, b.mass) &&
-             close(a.bar_speed, b.bar_speed);
-    }
+      bool is_like(const Body &other) const
+      {
+        const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
+        return close(height, other.height) && close(contact_area, other.contact_area) && close(volume, other.volume) &&
+               close(mass, other.mass) && close(bar_speed, other.bar_speed);
+      }
+    };
 
     double bar_speed(const Material &material)
     {
@@ -44,34 +49,54 @@ namespace Squeal
     }
 
     /// The disc first, then the pins: those with the same height, contact area, volume and material as one.
-    std::vector<BodySummary> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
+    std::vector<Body> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
     {
-      std::vector<BodySummary> result;
-      for (const BodyShape &shape : body_shapes(mesh))
+      std::vector<Body>                        bodies(mesh.volume_names.size());
+      std::vector<std::vector<HexMesh::Point>> points(bodies.size());
+      const std::vector<unsigned int>          volume_of_node = volume_of_nodes(mesh);
+      for (std::size_t node = 0; node < mesh.points.size(); ++node)
         {
-          const Material    material = materials.of(shape.name);
-          const BodySummary body{shape, {shape.name}, shape.volume * material.density, bar_speed(material)};
-          const auto        same =
-            std::find_if(result.begin() + !result.empty(), result.end(), [&](const BodySummary &other) { return are_alike(other, body); });
-          if (same != result.end())
-            same->names.push_back(body.name);
-          else
-            result.push_back(body);
+          const HexMesh::Point &p      = mesh.points[node];
+          Body                 &body   = bodies[volume_of_node[node]];
+          const double          radius = std::hypot(p[0], p[1]);
+          body.inner_radius            = std::min(body.inner_radius, radius);
+          body.outer_radius            = std::max(body.outer_radius, radius);
+          points[volume_of_node[node]].push_back(p);
+        }
+      for (const HexFace &face : outer_faces(mesh))
+        {
+          const auto [centre, normal] = face_geometry(mesh, face.nodes);
+          bodies[face.volume].volume += centre * normal / 3.; // Gauss' theorem
+        }
+      for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
+        if (const std::string &name = mesh.surface_names[face.surface];
+            name == PhysicalNames::pin_contact || name == PhysicalNames::disc_contact)
+          bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
+
+      std::vector<Body> result;
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        {
+          const Material material = materials.of(mesh.volume_names[b]);
+          Body          &body     = bodies[b];
+          body.height             = dealii::BoundingBox<3>(points[b]).side_length(2);
+          body.mass               = body.volume * material.density;
+          body.bar_speed          = bar_speed(material);
+          auto same = std::find_if(result.begin() + !result.empty(), result.end(), [&](const Body &other) { return other.is_like(body); });
+          if (same == result.end())
+            same = result.insert(same, body);
+          same->names.push_back(mesh.volume_names[b]);
         }
       return result;
     }
 
     /// What in bodies and materials suggests other units than those that the program takes.
-    void warn_of_units(const std::vector<BodySummary> &bodies, const MaterialParameters &materials, Run &run)
+    void warn_of_units(const std::vector<Body> &bodies, const MaterialParameters &materials, Run &run)
     {
-      const BodySummary &disc = bodies[0];
-      if (!disc_radii.contains(disc.outer_radius))
-        run.warn(text("the disc has an outer radius of ", disc.outer_radius, " m; lengths are in metres"));
-      for (const BodySummary &body : bodies)
+      if (!disc_radii.contains(bodies[0].outer_radius))
+        run.warn(text("the disc has an outer radius of ", bodies[0].outer_radius, " m; lengths are in metres"));
+      for (const Body &body : bodies)
         if (!heights.contains(body.height))
-          run.warn(text(body.name, " extends ", body.height, " m along z; lengths are in metres"));
-      if (!disc_masses.contains(disc.mass))
-        run.warn(text("the disc has a mass of ", disc.mass, " kg; lengths are in metres, densities in kg/m^3"));
+          run.warn(text(body.names[0], " extends ", body.height, " m along z; lengths are in metres"));
       const auto range_text = [](const Range &range, const char *unit) { return text(range.least, " to ", range.greatest, " ", unit); };
       for (const auto &[section, material] : materials.all())
         {
@@ -83,7 +108,7 @@ namespace Squeal
         }
     }
 
-    std::string describe(const BodySummary &body, const bool is_disc)
+    std::string describe(const Body &body, const bool is_disc)
     {
       const std::string waves = text("bar waves ", body.bar_speed, " m/s");
       if (is_disc)
@@ -100,8 +125,8 @@ namespace Squeal
     const Parameters &parameters = run.parameters;
 
     // Bodies
-    const std::vector<BodySummary> bodies = summarise_bodies(mesh, parameters.materials);
-    double                         pins   = 0.;
+    const std::vector<Body> bodies = summarise_bodies(mesh, parameters.materials);
+    double                  pins   = 0.;
     for (std::size_t b = 0; b < bodies.size(); ++b)
       {
         run.progress.note(describe(bodies[b], b == 0));
@@ -117,9 +142,7 @@ namespace Squeal
     ProblemSize        size   = expected_size(mesh, degree);
     if (parameters.solves_by(ComplexSolver::residual_iteration))
       size.contact_nodes = 0.; // no attachment modes
-    const Study &study   = *parameters.study;
-    const double further = study.further_memory == nullptr ? 0. : study.further_memory(parameters, size, typical_modes);
-    const double bytes   = size.memory(degree, typical_modes) + further;
+    const double bytes = size.memory(degree, typical_modes);
     run.progress.note(text("    expected: ", size.dofs, " dofs, ", bytes / 1e9, " GB of memory; ", available_memory(run.communicator) / 1e9,
                            " GB are available"));
     run.measure("expected memory [byte]", bytes);
@@ -133,6 +156,6 @@ namespace Squeal
                     " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
                     " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
                     ") m: the bodies touch there, but nothing couples them"));
-    check_memory(size, degree, typical_modes, parameters.geometry.path(), further, run.communicator);
+    check_memory(size, degree, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal

@@ -68,14 +68,14 @@ namespace Squeal
     /// Names branches after the modes with which they begin; of a doublet the one that grows most over the chart is plus.
     std::vector<ModeLabel> branch_labels(const SweepModel &model, const StabilityChart &chart)
     {
-      const int                               n_branches = chart.branches.size();
-      std::vector<ModeLabel>                  result(n_branches);
-      std::vector<double>                     growth(n_branches, 0.); // largest [1/s]; zero for a branch that never grows
-      std::map<std::size_t, std::vector<int>> branches_from;          // by the point at which they begin
+      const int                       n_branches = chart.branches.size();
+      std::vector<ModeLabel>          result(n_branches);
+      std::vector<double>             growth(n_branches, 0.); // largest [1/s]; zero for a branch that never grows
+      std::map<int, std::vector<int>> branches_from;          // by the point at which they begin
       for (int b = 0; b < n_branches; ++b)
         {
           const std::vector<int> &modes = chart.branches[b].modes;
-          branches_from[std::find_if(modes.begin(), modes.end(), [](const int j) { return j >= 0; }) - modes.begin()].push_back(b);
+          branches_from[chart.branches[b].begin()].push_back(b);
           for (std::size_t i = 0; i < modes.size(); ++i)
             if (modes[i] >= 0 && chart.points[i].verdicts[modes[i]] == Verdict::unstable)
               growth[b] = std::max(growth[b], chart.points[i].lambda[modes[i]].real());
@@ -129,21 +129,24 @@ namespace Squeal
     }
   } // namespace
 
-  std::string sweep_identity(const Run &run, const Scene &scene)
+  std::string identity(Parameters parameters, const HexMesh &mesh)
   {
-    // What only adds to the results, or is another way to the same ones, does not change them
-    Parameters parameters        = run.parameters;
     parameters.solvers.n_threads = SolverParameters().n_threads;
     parameters.output            = {};
-    parameters.sweep.mode_shapes = {};
-    parameters.sweep.planes      = {};
-    parameters.sweep.counts      = {};
     std::ostringstream stream;
     stream << "# squeal " << version << '\n';
     parameters.print(stream, false);
-    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, " << scene.model->free_map().n() << " dofs, nodes " << std::hex
-           << checksum(scene.mesh) << '\n';
+    stream << "# mesh: " << mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(mesh) << '\n';
     return stream.str();
+  }
+
+  std::string sweep_identity(const Run &run, const Scene &scene)
+  {
+    Parameters parameters        = run.parameters;
+    parameters.sweep.mode_shapes = {};
+    parameters.sweep.planes      = {};
+    parameters.sweep.counts      = {};
+    return identity(parameters, scene.mesh);
   }
 
   SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore *store)

@@ -22,6 +22,15 @@ namespace Squeal
     }
   } // namespace
 
+  std::vector<int> ends_and_quarters(const int n)
+  {
+    std::vector<int> result;
+    for (const int i : {n - 1, (n - 1) / 2, (n - 1) / 4, 3 * (n - 1) / 4, 0})
+      if (std::find(result.begin(), result.end(), i) == result.end())
+        result.push_back(i);
+    return result;
+  }
+
   const OperatingPoint &most_damped(const ContactRegime &regime)
   {
     return *std::max_element(regime.points.begin(), regime.points.end(),
@@ -60,7 +69,7 @@ namespace Squeal
 
     run.progress.begin("Reduced model");
     reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
-                                           *frictionless.real.vectors, largest_circular_frequency, band_margin);
+                                           *frictionless.real.vectors, largest_circular_frequency);
     run.progress.finish(text(reduced->size(), " vectors to start from"));
   }
 
@@ -142,8 +151,7 @@ namespace Squeal
       for (const int line : {first->line, last->line})
         {
           const auto numbers = regime.on_line(line);
-          const int  end     = static_cast<int>(numbers.size()) - 1;
-          for (const int place : {end, end / 2, end / 4, 3 * end / 4, 0})
+          for (const int place : ends_and_quarters(static_cast<int>(numbers.size())))
             if (std::find(result.begin(), result.end(), numbers[place]) == result.end())
               result.push_back(numbers[place]);
         }

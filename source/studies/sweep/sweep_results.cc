@@ -1,8 +1,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/studies/steps/friction_modes.h>
-#include <squeal/studies/steps/mode_shapes.h>
+#include <squeal/studies/steps/mode_results.h>
 #include <squeal/studies/sweep/sweep_results.h>
-#include <squeal/tracking/growth_onset.h>
+#include <squeal/tracking/branches.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,20 +18,8 @@ namespace Squeal
       const auto  distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
       const auto  nearest =
         std::min_element(points.begin(), points.end(), [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
-      ModeLabel label;
-      double    largest = 0.;
-      for (std::size_t b = 0; b < main.chart.branches.size(); ++b)
-        if (const int j = main.chart.branches[b].modes[nearest - points.begin()]; j >= 0)
-          {
-            const auto   r       = std::min(point.right.rows(), nearest->right.rows());
-            const double overlap = std::abs(point.right.col(mode).head(r).dot(nearest->right.col(j).head(r)));
-            if (overlap > largest)
-              {
-                largest = overlap;
-                label   = main.labels[b];
-              }
-          }
-      return label;
+      const int branch = similar_branch(main.chart, static_cast<int>(nearest - points.begin()), point, mode, false);
+      return branch >= 0 ? main.labels[branch] : ModeLabel();
     }
 
     /// The modes of a line at one of the chosen friction coefficients, which may miss the tolerance.

@@ -304,17 +304,20 @@ namespace Squeal
       return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none");
     };
     Study study{"sweep", run_sweep_study, {"Sweep/"}};
-    study.rules          = {{"Operation/Friction coefficient",
-                             [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
-                            {"Operation/Rotation speed", no_sliding_speed},
-                            {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
-                            {"Sweep/First map value", map_axis},
-                            {"Sweep/Last map value", map_axis},
-                            {"Sweep/Number of map values", map_axis},
-                            {"Sweep/Map friction coefficients", map_axis}};
-    study.no_mode_shapes = [](const Parameters &p) {
-      return unless(!p.sweep.mode_shapes.empty(), "a sweep writes mode shapes for Sweep/Mode shapes at");
-    };
+    study.rules = {{"Output/",
+                    [](const Parameters &p) {
+                      return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
+                               "a sweep writes mode shapes for Sweep/Mode shapes at" :
+                               as_in_general;
+                    }},
+                   {"Operation/Friction coefficient",
+                    [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
+                   {"Operation/Rotation speed", no_sliding_speed},
+                   {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+                   {"Sweep/First map value", map_axis},
+                   {"Sweep/Last map value", map_axis},
+                   {"Sweep/Number of map values", map_axis},
+                   {"Sweep/Map friction coefficients", map_axis}};
     study.check = check_map;
     return study;
   }();

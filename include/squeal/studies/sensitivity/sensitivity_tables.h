@@ -1,7 +1,6 @@
 #pragma once
 
-#include <squeal/studies/sensitivity/sensitivity_modes.h>
-#include <squeal/studies/sensitivity/sensitivity_thresholds.h>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 
 namespace Squeal
 {

@@ -41,6 +41,9 @@ namespace Squeal
   /// Adds the modal damping that the parameters ask for to the linearised system: that of the modes in the band.
   void add_modal_damping(FrictionlessModes &modes, const Parameters &parameters);
 
+  /// Assembles and linearises a scene; its modes with the modal damping of the parameters, as steps of the run.
+  FrictionlessModes damped_modes(Scene &scene, Run &run);
+
   /// A mode of a component in the band, as the tables list it.
   struct ListedComponentMode
   {

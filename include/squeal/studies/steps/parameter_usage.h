@@ -32,9 +32,6 @@ namespace Squeal
   /// Paths of the parameters that differ from their defaults.
   std::vector<std::string> changed_parameters(Parameters parameters);
 
-  /// Whether @p path, "Section/Name" or "Section/", is that of a parameter or of its section.
-  bool concerns(const std::string &path, const std::string &parameter);
-
   /// Paths of all parameters, and sections with "/" at the end, that some run does not use.
   std::vector<std::string> conditional_parameters();
 } // namespace Squeal

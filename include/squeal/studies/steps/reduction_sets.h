@@ -1,7 +1,7 @@
 #pragma once
 
+#include <squeal/bases/basis_recipes.h>
 #include <squeal/studies/steps/frictionless_modes.h>
-#include <squeal/studies/steps/reduction_plan.h>
 
 #include <map>
 #include <memory>
@@ -10,6 +10,24 @@
 
 namespace Squeal
 {
+  /// What a study of reduced bases measures, and on which problem.
+  struct ReductionPlan
+  {
+    std::vector<const BasisRecipe *> recipes;
+    bool                             has_friction;               ///< complex modes; else real ones
+    double                           friction_coefficient;       ///< 0 without friction
+    double                           largest_circular_frequency; ///< end of the band [rad/s]
+
+    /// Whether one of the bases rests on something.
+    bool rests_on(BasisSource source) const;
+  };
+
+  /// Throws ParameterError if the parameters name a basis that is none, or one that does not fit the problem.
+  ReductionPlan reduction_plan(const Parameters &parameters);
+
+  /// When a study of reduced bases leaves parameters unused.
+  std::vector<UsageRule> reduction_usage();
+
   /// What computing something that bases rest on has cost.
   struct Charge
   {

@@ -29,31 +29,25 @@ namespace Squeal
     std::string              designs; ///< numbers of designs that are wanted, as in "3, 7-9"; empty: all
   };
 
-  /// What every study has at hand: its question, its processes, and where its answers go.
-  class Run
+  /// The context of a run: its question, its processes, and where it says how it goes.
+  struct RunContext
   {
-  public:
-    /**
-     * @param screen where tables go; a null stream buffer on all processes but one
-     *
-     * Throws FileError if the result folder cannot be made; a dry run makes none.
-     */
-    Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
-
-    /// Part of @p whole that computes with other parameters, reports to a channel of its own, and writes nothing.
-    Run(const Parameters &parameters, const Run &whole, Progress &progress);
-
     const Parameters &parameters;
     const MPI_Comm    communicator;
     Progress         &progress;
-    std::ostream     &screen;
+    std::ostream     &screen; ///< where tables go; a null stream buffer on all processes but one
     const bool        is_dry, is_root;
     const RunOptions  options;
+  };
 
+  /// The results of a run: its tables and fields in a folder, and its record.
+  class RunResults
+  {
+  public:
     /// Folder of the results; a dry run has none.
     const ResultFolder &folder() const
     {
-      return *results;
+      return *place;
     }
 
     void count(const std::string &name, const long value)
@@ -65,14 +59,30 @@ namespace Squeal
       record.quantities.emplace_back(name, value);
     }
 
+    /// Writes NAME.csv.
+    void store_table(const std::string &name, const Table &table);
+
+  protected:
+    RunRecord                     record = {};
+    std::unique_ptr<ResultFolder> place;
+    std::vector<std::string>      tables; ///< files, in the order in which they were written
+  };
+
+  /// What every study has at hand.
+  class Run : public RunContext, public RunResults
+  {
+  public:
+    /// Throws FileError if the result folder cannot be made; a dry run makes none.
+    Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen);
+
+    /// Part of @p whole that computes with other parameters, reports to a channel of its own, and writes nothing.
+    Run(const Parameters &parameters, const RunContext &whole, Progress &progress);
+
     /// Keeps a copy of a geometry of the user's own, so that the results repeat themselves.
     void keep_geometry();
 
     /// Prints a doubt about the input and keeps it for the run record.
     void warn(const std::string &text);
-
-    /// Writes NAME.csv.
-    void store_table(const std::string &name, const Table &table);
 
     /// Writes NAME.csv and shows the table.
     void write_table(const std::string &name, const Table &table);
@@ -83,11 +93,6 @@ namespace Squeal
      * @param afterwards removes what only an unfinished run needs
      */
     void finish(const std::function<void()> &afterwards = {});
-
-  private:
-    RunRecord                     record;
-    std::unique_ptr<ResultFolder> results;
-    std::vector<std::string>      tables; ///< files, in the order in which they were written
   };
 
   /// Meshes the scene and answers the question of the run; a dry run only meshes.

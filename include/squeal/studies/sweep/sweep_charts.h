@@ -3,7 +3,6 @@
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/studies/sweep/sweep_model.h>
 #include <squeal/tracking/branches.h>
-#include <squeal/tracking/growth_onset.h>
 
 #include <optional>
 #include <string>
@@ -29,7 +28,10 @@ namespace Squeal
     ModeLabel   label;
   };
 
-  /// Everything on which the results of a sweep depend: the version of the program, the parameters, the mesh.
+  /// The version of the program, parameters and a mesh, but for threads and for output that only adds to results or shows them otherwise.
+  std::string identity(Parameters parameters, const HexMesh &mesh);
+
+  /// Everything on which the results of a sweep depend.
   std::string sweep_identity(const Run &run, const Scene &scene);
 
   /// Where the results of a phase of the work on a contact set are kept.

@@ -57,8 +57,8 @@ namespace Squeal
     mutable std::vector<DenseMatrix> reference_products; ///< with the basis as it was when modes were last named
   };
 
-  /// Modes are followed somewhat beyond the band, so that none is lost that enters or leaves it.
-  inline constexpr double band_margin = 0.05;
+  /// Places among n friction coefficients at which a basis learns most: the ends, the middle and the quarters, the last one first.
+  std::vector<int> ends_and_quarters(int n);
 
   /// The damping of the contact where a sweep's is largest.
   const OperatingPoint &most_damped(const ContactRegime &regime);

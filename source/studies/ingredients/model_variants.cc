@@ -5,7 +5,7 @@
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/reduction/reduced_model.h>
-#include <squeal/studies/steps/model_variants.h>
+#include <squeal/studies/ingredients/ingredients.h>
 
 namespace Squeal
 {
@@ -76,26 +76,13 @@ namespace Squeal
       });
     }
 
-    ModesAtPoints shapes_of(const SolvedModel &model, const SparseMatrix &displacements, const FrictionlessModes &frictionless)
+    std::shared_ptr<ModesAtPoints> shapes_of(const SolvedModel       &model,
+                                             const SparseMatrix      &displacements,
+                                             const FrictionlessModes &frictionless)
     {
-      return at_points(displacements, *frictionless.linearisation.coupled.kernel, model.friction.modes);
+      return std::make_shared<ModesAtPoints>(at_points(displacements, *frictionless.linearisation.coupled.kernel, model.friction.modes));
     }
   } // namespace
-
-  double StepCosts::seconds() const
-  {
-    return mesh.seconds + assembly.seconds + sliding.seconds + modes.seconds + friction.seconds;
-  }
-
-  double StepCosts::cpu_seconds() const
-  {
-    return mesh.cpu_seconds + assembly.cpu_seconds + sliding.cpu_seconds + modes.cpu_seconds + friction.cpu_seconds;
-  }
-
-  int SolvedModel::n_dofs() const
-  {
-    return scene->model->free_map().n();
-  }
 
   ReferenceModel solve_reference(Scene &&meshed, Run &run)
   {
@@ -115,7 +102,7 @@ namespace Squeal
     solve_with_friction(result, result.frictionless, "", run);
     result.points        = common_points(*scene->model, run.parameters.materials);
     result.displacements = displacements_at(result.points, *scene->model);
-    result.shapes        = std::make_shared<ModesAtPoints>(shapes_of(result, *result.displacements, result.frictionless));
+    result.shapes        = shapes_of(result, *result.displacements, result.frictionless);
     agree(run.communicator, result.costs);
     return result;
   }
@@ -160,7 +147,7 @@ namespace Squeal
     solve_with_friction(result, frictionless, variation.basis, run);
     const auto displacements =
       variation.departure == Departure::mesh ? displacements_at(reference.points, *result.scene->model) : reference.displacements;
-    result.shapes = std::make_shared<ModesAtPoints>(shapes_of(result, *displacements, frictionless));
+    result.shapes = shapes_of(result, *displacements, frictionless);
     agree(run.communicator, result.costs);
     return result;
   }

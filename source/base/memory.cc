@@ -1,0 +1,108 @@
+#include <squeal/base/memory.h>
+
+#include <boost/algorithm/string/predicate.hpp>
+
+#include <malloc.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <string>
+
+namespace Squeal
+{
+  namespace fs = std::filesystem;
+
+  namespace
+  {
+    constexpr double unlimited = std::numeric_limits<double>::infinity(), kilobyte = 1024.;
+
+    /// Numbers behind the words with which lines begin.
+    std::map<std::string, double> numbers_in(const fs::path &file)
+    {
+      std::map<std::string, double> numbers;
+      std::ifstream                 stream(file);
+      std::string                   word;
+      double                        number;
+      for (std::string line; std::getline(stream, line);)
+        if (std::istringstream(line) >> word >> number)
+          numbers[word] = number;
+      return numbers;
+    }
+
+    /// What the control group of one folder leaves [byte]. Its limit may be `max`; in a container inner folders may not be there.
+    double left_by_group(const fs::path &folder)
+    {
+      double limit, usage;
+      if (!(std::ifstream(folder / "memory.max") >> limit) || !(std::ifstream(folder / "memory.current") >> usage))
+        return unlimited;
+      auto         statistics = numbers_in(folder / "memory.stat");
+      const double cache      = statistics["inactive_file"] + statistics["active_file"];
+      return std::max(0., limit - std::max(0., usage - cache));
+    }
+  } // namespace
+
+  double available_memory(const fs::path &root)
+  {
+    const auto memory = numbers_in(root / "proc/meminfo");
+    double     result = memory.count("MemAvailable:") > 0 ? memory.at("MemAvailable:") * kilobyte : unlimited;
+
+    // The group of this process and all about it
+    const std::string prefix = "0::/";
+    std::ifstream     groups(root / "proc/self/cgroup");
+    for (std::string line; std::getline(groups, line);)
+      if (boost::starts_with(line, prefix))
+        {
+          result = std::min(result, left_by_group(root / "sys/fs/cgroup"));
+          for (fs::path group = line.substr(prefix.size()); !group.empty(); group = group.parent_path())
+            result = std::min(result, left_by_group(root / "sys/fs/cgroup" / group));
+        }
+    return result;
+  }
+
+  double available_memory(const MPI_Comm communicator)
+  {
+    MPI_Comm machine;
+    int      rank;
+    MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_rank(machine, &rank);
+    MPI_Comm_free(&machine);
+    double result = rank == 0 ? available_memory() : 0.; // one process of each machine tells
+    MPI_Allreduce(MPI_IN_PLACE, &result, 1, MPI_DOUBLE, MPI_SUM, communicator);
+    return result;
+  }
+
+  double resident_memory()
+  {
+    return numbers_in("/proc/self/status")["VmRSS:"] * kilobyte;
+  }
+
+  double peak_resident_memory()
+  {
+    return numbers_in("/proc/self/status")["VmHWM:"] * kilobyte;
+  }
+
+  void return_freed_blocks()
+  {
+    constexpr int large = 32 << 20; // the largest threshold that the allocator takes [byte]
+    mallopt(M_MMAP_THRESHOLD, large);
+    mallopt(M_MMAP_MAX, 65536);
+    mallopt(M_TRIM_THRESHOLD, 8 * large);
+  }
+
+  void return_freed_memory()
+  {
+    malloc_trim(0);
+  }
+
+  bool reset_peak_memory()
+  {
+    return_freed_memory();
+    // 5: the peak of the resident memory becomes what is resident now, proc(5)
+    std::ofstream stream("/proc/self/clear_refs");
+    stream << 5 << std::flush;
+    return static_cast<bool>(stream);
+  }
+} // namespace Squeal
