@@ -59,6 +59,23 @@ namespace Squeal::Testing
     });
   }
 
+  /// The matrix A, which all processes have.
+  inline std::shared_ptr<SparseMatrix> sparse(const RowMap &row_map, const RowMap &column_map, const DenseMatrix &A)
+  {
+    return sparse(row_map, column_map, [&A](const int i) {
+      Row row;
+      for (int j = 0; j < A.cols(); ++j)
+        if (A(i, j) != 0.)
+          row[j] = A(i, j);
+      return row;
+    });
+  }
+
+  inline std::shared_ptr<SparseMatrix> sparse(const DenseMatrix &A)
+  {
+    return sparse(rows(A.rows()), rows(A.cols()), A);
+  }
+
   /// diag(f(0), f(1), ...).
   inline std::shared_ptr<SparseMatrix> diagonal(const RowMap &row_map, const std::function<double(int)> &f)
   {

@@ -3,7 +3,7 @@
 #include <squeal/model/elasticity.h>
 #include <squeal/contact/coupled_system.h>
 #include <squeal/contact/travel.h>
-#include <squeal/geometry/extrusion.h>
+#include <squeal/geometry/plan.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>

@@ -8,7 +8,7 @@
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/estimates/residual_iteration.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/modes/krylov_modes.h>
 
@@ -133,6 +133,12 @@ namespace Squeal::Testing
     CoupledSystem result = coupled_system(bodies, tangential, sparse(tangential->rows(), map, [](int) { return Row{}; }));
     result.kernel        = diagonal(map, [](int) { return 1.; });
     return result;
+  }
+
+  /// The same without contact.
+  inline CoupledSystem system_of(const SecondOrderSystem &matrices)
+  {
+    return system_of(matrices, sparse(rows(1), matrices.mass->rows(), [](int) { return Row{}; }), nullptr);
   }
 
   // ------------------------------------------------------------- comparisons

@@ -86,10 +86,8 @@ namespace Squeal
 
   void return_freed_blocks()
   {
-    constexpr int large = 32 << 20; // the largest threshold that the allocator takes [byte]
-    mallopt(M_MMAP_THRESHOLD, large);
-    mallopt(M_MMAP_MAX, 65536);
-    mallopt(M_TRIM_THRESHOLD, 8 * large);
+    mallopt(M_MMAP_MAX, 0);
+    mallopt(M_TRIM_THRESHOLD, 256 << 20);
   }
 
   void return_freed_memory()

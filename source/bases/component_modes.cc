@@ -1,7 +1,6 @@
-#include <squeal/base/assignment.h>
+#include <squeal/base/groups.h>
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <algorithm>
 #include <complex>

@@ -2,7 +2,7 @@
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 
 #include <algorithm>
 #include <cmath>

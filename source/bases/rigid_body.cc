@@ -2,8 +2,8 @@
 #include <squeal/base/conventions.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/linear_algebra/communication.h>
-#include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/rounding.h>
+#include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/dense.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>

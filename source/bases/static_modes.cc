@@ -1,7 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/bases/static_modes.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <vector>

@@ -1,8 +1,7 @@
 #include <squeal/base/memory.h>
 #include <squeal/contact/updated_inverse.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/linear_algebra/weighted_gram.h>
 
 #include <deal.II/base/mpi.h>
 

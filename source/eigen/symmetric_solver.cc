@@ -4,7 +4,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
-#include <squeal/linear_algebra/rounding.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,25 +1,23 @@
-#include <squeal/model/model.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/estimates/common_points.h>
+#include <squeal/model/model.h>
 
+#include <boost/algorithm/string/join.hpp>
+#include <boost/serialization/utility.hpp>
+#include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/fe/fe_values.h>
-
-#include <boost/serialization/utility.hpp>
+#include <deal.II/numerics/rtree.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
-
-#include <deal.II/numerics/rtree.h>
+#include <optional>
 #include <string>
 #include <vector>
-#include <deal.II/base/geometry_info.h>
-#include <boost/algorithm/string/join.hpp>
-#include <optional>
 
 namespace Squeal
 {
@@ -42,10 +40,8 @@ namespace Squeal
       nearest ///< in the nearest cells, and beside them
     };
 
-    /**
-   * Finds points in the cells of this process, those of one body at a time: the faces of disc and pins coincide, so that a place alone does not say
-   * in which body it is.
-   */
+    /// Finds points in the cells of this process, those of one body at a time: the faces of disc and pins coincide, so that a place alone
+    /// does not say in which body it is.
     class PointLocation
     {
     public:
@@ -55,10 +51,8 @@ namespace Squeal
       /// Number of a body in the mesh; throws MeshError naming those that there are.
       unsigned int body(const std::string &name) const;
 
-      /**
-     * The cell of a body that holds a point; with PointSearch::nearest, of a point beside the body, as between two outlines by polygons, the nearest
-     * point among those of the nearest cells with their reference coordinates cut to [0, 1].
-     */
+      /// The cell of a body that holds a point; with PointSearch::nearest, of a point beside the body, as between two outlines by polygons,
+      /// the nearest point among those of the nearest cells with their reference coordinates cut to [0, 1].
       PointInCell find(unsigned int body, const Point<3> &point, PointSearch search) const;
 
     private:

@@ -1,6 +1,6 @@
 #include <squeal/estimates/conditioning.h>
-#include <squeal/estimates/subspaces.h>
-#include <squeal/linear_algebra/weighted_gram.h>
+#include <squeal/estimates/mode_groups.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
@@ -125,10 +125,8 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * Of a multiple eigenvalue any basis of its space is found, which says nothing about how this space lies to others: T, for which
-     * TᴴGT = I in each cluster.
-     */
+    /// Of a multiple eigenvalue any basis of its space is found, which says nothing about how this space lies to others: T, for which TᴴGT
+    /// = I in each cluster.
     ComplexDenseMatrix orthonormal_within_clusters(const std::vector<std::complex<double>> &lambda, const ComplexDenseMatrix &G)
     {
       const int          k = static_cast<int>(lambda.size());

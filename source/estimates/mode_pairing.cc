@@ -1,7 +1,6 @@
-#include <squeal/base/assignment.h>
 #include <squeal/base/groups.h>
 #include <squeal/estimates/mode_pairing.h>
-#include <squeal/estimates/subspaces.h>
+#include <squeal/estimates/mode_groups.h>
 #include <squeal/linear_algebra/communication.h>
 
 #include <Eigen/QR>

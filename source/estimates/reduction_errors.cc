@@ -1,9 +1,8 @@
-#include <squeal/base/assignment.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/estimates/reduction_errors.h>
-#include <squeal/estimates/subspaces.h>
+#include <squeal/estimates/mode_groups.h>
 #include <squeal/linear_algebra/communication.h>
 
 #include <boost/algorithm/string/join.hpp>

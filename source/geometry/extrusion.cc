@@ -1,4 +1,4 @@
-#include <squeal/geometry/extrusion.h>
+#include <squeal/geometry/plan.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan_smoothing.h>
 

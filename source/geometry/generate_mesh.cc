@@ -1,6 +1,5 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/geometry/extrusion.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>

@@ -235,7 +235,7 @@ namespace Squeal
       if (log.find("Out of memory") != std::string::npos)
         refuse_memory(limits, where);
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGSYS)
-        throw ForbiddenAction("starts another program");
+        throw ForbiddenAction("starts a program, writes a file or opens a connection");
       if (WIFSIGNALED(status))
         throw MeshError(std::string("Gmsh crashed (") + strsignal(WTERMSIG(status)) + "). " + quoted(log), where, repair);
       throw MeshError("The geometry ended Gmsh before there was a mesh. " + quoted(log), where, "remove Exit or Abort from the geometry");
@@ -252,12 +252,6 @@ namespace Squeal
             throw MeshError(content + ". " + quoted(log), where, log.find("Unknown entity") == std::string::npos ? repair : add_entities);
           case MesherReply::out_of_memory:
             refuse_memory(limits, where);
-          case MesherReply::starts_program:
-            throw ForbiddenAction("starts another program");
-          case MesherReply::writes_file:
-            throw ForbiddenAction("makes or changes the file `" + content + "`");
-          case MesherReply::uses_network:
-            throw ForbiddenAction("opens a network connection");
         }
       throw MeshError("The mesher gave an unknown reply", where, "build all of the program anew");
     }

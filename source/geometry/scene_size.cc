@@ -3,7 +3,7 @@
 #include <squeal/base/memory.h>
 #include <squeal/base/text.h>
 #include <squeal/geometry/scene_size.h>
-#include <squeal/parameters/pin_face.h>
+#include <squeal/parameters/geometry.h>
 
 #include <Eigen/Eigenvalues>
 

@@ -1,6 +1,6 @@
 #include "libraries.h"
 
-#include <squeal/linear_algebra/row_delivery.h>
+#include <squeal/linear_algebra/row_map.h>
 #include <squeal/linear_algebra/blas_threads.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 

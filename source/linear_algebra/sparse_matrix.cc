@@ -1,7 +1,8 @@
 #include "sparse_products.h"
 #include <squeal/base/exceptions.h>
+#include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/communication.h>
-#include <squeal/linear_algebra/row_delivery.h>
+#include <squeal/linear_algebra/row_map.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -346,5 +347,50 @@ namespace Squeal
     if (A.halo() == nullptr)
       return A.by_place();
     return filled(A.rows().n_local(), A.n_columns(), [&](const int i, SparseMatrix::Row &row) { A.get_row(i, row); });
+  }
+
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A, const MultiVector &Y)
+  {
+    DenseMatrix result(X.n_columns(), Y.n_columns());
+    for_column_blocks(Y.n_columns(), [&](const int first, const int n) { result.middleCols(first, n) = gram(X, A * view(Y, first, n)); });
+    return result;
+  }
+
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A)
+  {
+    const int   k = X.n_columns();
+    DenseMatrix result(k, k);
+    for_column_blocks(k, [&](const int first, const int n) {
+      const int         rows           = first + n;
+      const DenseMatrix block          = gram(view(X, 0, rows), A * view(X, first, n));
+      result.block(0, first, rows, n)  = block;
+      result.block(first, 0, n, first) = block.topRows(first).transpose();
+      result.block(first, first, n, n) = 0.5 * (block.bottomRows(n) + block.bottomRows(n).transpose());
+    });
+    return result;
+  }
+
+  void multiply_in_place(MultiVector &X, const DenseMatrix &S)
+  {
+    constexpr int rows_together = 1024;
+    auto          x             = X.local();
+    run_parts(X.n_local_rows(), rows_together, [&](const int first, const int n) {
+      auto              rows    = x.middleRows(first, n);
+      const DenseMatrix product = rows * S;
+      rows                      = product;
+    });
+  }
+
+  double unresolved_square(const SparseMatrix &K, const SparseMatrix &M)
+  {
+    constexpr double safety   = 100.;
+    const auto       row_sums = [](const SparseMatrix &A) -> Eigen::ArrayXd {
+      return A.by_place().cwiseAbs() * Eigen::VectorXd::Ones(A.by_place().cols());
+    };
+    const Eigen::ArrayXd stiffness = row_sums(K), mass = row_sums(M);
+    const auto           counts  = mass > 0. && stiffness > 0.;
+    double               sums[2] = {counts.select(mass * (stiffness / mass).log(), 0.).sum(), counts.select(mass, 0.).sum()};
+    sum_over_processes(K.communicator(), sums, 2);
+    return sums[1] > 0. ? safety * std::numeric_limits<double>::epsilon() * std::exp(sums[0] / sums[1]) : 0.;
   }
 } // namespace Squeal

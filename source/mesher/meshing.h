@@ -33,7 +33,7 @@ namespace Squeal
   /**
    * From here on this process starts no program, writes, makes, renames and
    * removes no file, and opens no connection; what is open stays usable. Whoever
-   * tries ends the process with a MesherReply that says what was tried (libseccomp).
+   * tries ends the process by SIGSYS (libseccomp).
    *
    * A Gmsh script does all of these with statements of its own: SystemCall,
    * NonBlockingSystemCall, OnelabRun, CreateDir, Save, Print, Printf > "file",

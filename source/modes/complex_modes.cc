@@ -1,5 +1,5 @@
 #include <squeal/eigen/phase.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/modes/complex_modes.h>
 
 #include <algorithm>
@@ -119,5 +119,15 @@ namespace Squeal
             modes.energy_residuals[first + j] = U_R[j] / X_KX[j];
           }
       }
+  }
+
+  Verdict verdict_of(const std::complex<double> &lambda, const double error, const bool growth_needs_coalescence)
+  {
+    const double rate = lambda.real(), uncertainty = error_safety * error, negligible = negligible_divergence * lambda.imag();
+    if (rate / (negligible + uncertainty) > 1.)
+      return Verdict::unstable;
+    if (!(rate + (growth_needs_coalescence && !std::isnan(error) ? 0. : uncertainty) <= negligible))
+      return Verdict::undecided;
+    return rate >= -negligible ? Verdict::neutral : Verdict::stable;
   }
 } // namespace Squeal

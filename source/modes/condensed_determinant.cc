@@ -1,7 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/modes/condensed_determinant.h>
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 
 #include <algorithm>
 #include <cmath>

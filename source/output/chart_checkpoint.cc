@@ -1,7 +1,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
 #include <squeal/base/text.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/output/chart_checkpoint.h>
 
 #include <deal.II/base/mpi.h>

@@ -32,45 +32,6 @@ namespace Squeal
       return largest > 0. ? largest : 1.;
     }
 
-    /// A picture of an animation.
-    struct AnimationFrame
-    {
-      double  time; ///< [s]
-      Complex turn; ///< Re(turn φ) is shown
-    };
-
-    /// Pictures of Re(φ e^{iωt}), or of Re(φ e^{λt}) where the animation grows, with a largest amplitude as write_animation() has it.
-    std::vector<AnimationFrame> animation_frames(const ModeField &mode, const AnimationOptions &options, const MPI_Comm communicator)
-    {
-      const double       scale    = 1. / largest_modulus(mode.displacement, communicator);
-      const double       period   = 2. * M_PI / mode.lambda.imag();
-      const unsigned int n_steps  = options.frames_per_period * options.periods;
-      const unsigned int n_frames = options.grows ? n_steps + 1 : n_steps;
-      const double       growth   = options.grows ? mode.lambda.real() : 0.;
-      // When the amplitude is largest: scaled to this time, growth cannot overflow
-      const double largest_at = growth > 0. ? options.periods * period : 0.;
-
-      std::vector<AnimationFrame> frames;
-      for (unsigned int frame = 0; frame < n_frames; ++frame)
-        {
-          const double time = period * frame / options.frames_per_period;
-          frames.push_back({time, std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time)});
-        }
-      return frames;
-    }
-
-    /// Frequencies [Hz] as times, see write_list().
-    std::vector<double> distinct_times(const std::vector<ListedMode> &modes)
-    {
-      std::vector<double> times;
-      for (const ListedMode &mode : modes)
-        {
-          const double least = times.empty() ? 0. : (1. + least_relative_step) * times.back() + least_step;
-          times.push_back(std::max(mode.frequency, least));
-        }
-      return times;
-    }
-
     using Partitioner = dealii::Utilities::MPI::Partitioner;
 
     /// Free dofs of this process, and those of its cells that others have.
@@ -216,14 +177,15 @@ namespace Squeal
 
   void FieldWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes) const
   {
-    const std::vector<double>                   times = distinct_times(modes);
     std::vector<std::pair<double, std::string>> bodies, faces;
-    for (std::size_t j = 0; j < modes.size(); ++j)
+    for (const ListedMode &listed : modes)
       {
-        const std::string mode = "modes/" + modes[j].name, contact = mode + "_contact.vtu";
-        bodies.emplace_back(times[j], mode + ".vtu");
+        const std::string mode = "modes/" + listed.name, contact = mode + "_contact.vtu";
+        const double      least = bodies.empty() ? 0. : (1. + least_relative_step) * bodies.back().first + least_step;
+        const double      time  = std::max(listed.frequency, least);
+        bodies.emplace_back(time, mode + ".vtu");
         if (folder.files().count(contact) > 0)
-          faces.emplace_back(times[j], contact);
+          faces.emplace_back(time, contact);
       }
     write_pvd(folder, name, bodies);
     if (!faces.empty())
@@ -234,16 +196,24 @@ namespace Squeal
   {
     if (!surface)
       surface.emplace(surface_mesh(model));
-    const auto                                  values = vertex_values(surface->mesh, dofs, mode.displacement);
+    const auto         values   = vertex_values(surface->mesh, dofs, mode.displacement);
+    const double       scale    = 1. / largest_modulus(mode.displacement, model.communicator());
+    const double       period   = 2. * M_PI / mode.lambda.imag();
+    const unsigned int n_frames = options.frames_per_period * options.periods + (options.grows ? 1 : 0);
+    const double       growth   = options.grows ? mode.lambda.real() : 0.;
+    // When the amplitude is largest: scaled to this time, growth cannot overflow
+    const double                                largest_at = growth > 0. ? options.periods * period : 0.;
     std::vector<std::pair<double, std::string>> files;
-    for (const AnimationFrame &frame : animation_frames(mode, options, model.communicator()))
+    for (unsigned int frame = 0; frame < n_frames; ++frame)
       {
+        const double       time = period * frame / options.frames_per_period;
+        const Complex      turn = std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time);
         std::ostringstream name;
-        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << files.size();
+        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame;
         write(*surface, "animations/" + name.str(), {}, {vector_field("displacement", values, [&](const Complex &u) {
-          return std::round(steps_of_animations * (frame.turn * u).real()) / steps_of_animations;
+          return std::round(steps_of_animations * (turn * u).real()) / steps_of_animations;
         })});
-        files.emplace_back(frame.time, name.str() + ".vtu");
+        files.emplace_back(time, name.str() + ".vtu");
       }
     write_pvd(folder, "animations/" + mode.name, files);
   }

@@ -1,11 +1,16 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/parameters/accuracy_goal.h>
-#include <squeal/parameters/mesh_family.h>
 #include <squeal/parameters/parameters.h>
-#include <squeal/parameters/pin_face.h>
+
+#include <boost/algorithm/string/join.hpp>
+#include <deal.II/base/utilities.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace Squeal
 {
@@ -30,33 +35,18 @@ namespace Squeal
       double         tolerance; ///< of reduction and solvers: estimated |δλ| / |λ| [-]
     };
 
-    /// Measured on the default scene, see doc/accuracy.md.
+    /// Measured on the default scene, see doc/accuracy.md. There must be a goal.
     const Level &level(const AccuracyGoal goal)
     {
-      static const Level five_percent = {{5e-2, 5e-3},
-                                         {Element::incompatible_modes, 2, 0, 1., 4, 2, 13.},
-                                         {Element::incompatible_modes, 1, 0, 1., 2, 1, 6.5},
-                                         1e-5};
-      static const Level one_percent  = {{1e-2, 1e-3},
-                                         {Element::quadratic, 2, 0, 1., 2, 2, 10.},
-                                         {Element::quadratic, 2, 0, 1., 1, 1, 6.5},
-                                         1e-5};
-      static const Level tenth        = {{1e-3, 1e-4},
-                                         {Element::quadratic, 2, 3, 1.5, 5, 3, 10.},
-                                         {Element::quadratic, 2, 2, 1.5, 3, 2, 7.5},
-                                         1e-5};
-      static const Level hundredth    = {{1e-4, 1e-5}, {Element::quadratic, 2, 4, 1.5, 7, 4, 13.}, tenth.mesh, 1e-6};
-      switch (goal)
-        {
-          case AccuracyGoal::five_percent:
-            return five_percent;
-          case AccuracyGoal::one_percent:
-            return one_percent;
-          case AccuracyGoal::a_tenth_percent:
-            return tenth;
-          default:
-            return hundredth;
-        }
+      static const MeshDensity                   fine   = {Element::quadratic, 2, 3, 1.5, 5, 3, 10.};
+      static const std::map<AccuracyGoal, Level> levels = {
+        {AccuracyGoal::five_percent,
+         {{5e-2, 5e-3}, {Element::incompatible_modes, 2, 0, 1., 4, 2, 13.}, {Element::incompatible_modes, 1, 0, 1., 2, 1, 6.5}, 1e-5}},
+        {AccuracyGoal::one_percent,
+         {{1e-2, 1e-3}, {Element::quadratic, 2, 0, 1., 2, 2, 10.}, {Element::quadratic, 2, 0, 1., 1, 1, 6.5}, 1e-5}},
+        {AccuracyGoal::a_tenth_percent, {{1e-3, 1e-4}, fine, {Element::quadratic, 2, 2, 1.5, 3, 2, 7.5}, 1e-5}},
+        {AccuracyGoal::a_hundredth_percent, {{1e-4, 1e-5}, {Element::quadratic, 2, 4, 1.5, 7, 4, 13.}, fine, 1e-6}}};
+      return levels.at(goal);
     }
 
     /// Height over diameter up to which the layers of a level serve [-].
@@ -128,5 +118,84 @@ namespace Squeal
     Parameters   result = with(given, asked.coarser, asked.tolerance);
     result.discretization.maximum_frequency *= 1. + std::max(margin_of_coarser_band * asked.limits.frequency, least_band_margin);
     return result;
+  }
+
+  namespace
+  {
+    std::vector<std::string> split(const std::string &text)
+    {
+      std::vector<std::string> names = dealii::Utilities::split_string_list(text, ',');
+      names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+      return names;
+    }
+
+    /// Names of an enumeration, separated by commas.
+    template <typename Enum>
+    void add_list(Declarations &declarations, const std::string &name, std::vector<Enum> &values, const std::string &documentation)
+    {
+      const std::vector<std::string> known = enum_names<Enum>();
+      declarations.add_text(
+        name, documentation + " One or more of " + boost::algorithm::join(known, ", ") + ", separated by commas.",
+        [&values] {
+          std::vector<std::string> names;
+          for (const Enum value : values)
+            names.push_back(to_string(value));
+          return boost::algorithm::join(names, ", ");
+        },
+        [&values, known, name](const std::string &text) {
+          std::vector<Enum> read;
+          for (const std::string &entry : split(text))
+            {
+              if (std::find(known.begin(), known.end(), entry) == known.end())
+                throw ParameterError("Accuracy study/" + name + " names " + in_quotes(entry) + ", which is none of " +
+                                       boost::algorithm::join(known, ", "),
+                                     "", "choose among these, separated by commas");
+              read.push_back(enum_value<Enum>(entry));
+            }
+          values = read;
+        });
+    }
+
+    template <typename Value>
+    void check_list(const std::vector<Value> &values, const char *name)
+    {
+      if (values.empty())
+        throw ParameterError(text("Accuracy study/", name, " is empty"), text("parameter Accuracy study/", name), "give at least one");
+      if (std::set<Value>(values.begin(), values.end()).size() < values.size())
+        throw ParameterError(text("Accuracy study/", name, " has an entry twice"), text("parameter Accuracy study/", name),
+                             "give each once");
+    }
+  } // namespace
+
+  void AccuracyStudyParameters::declare(Declarations &declarations)
+  {
+    declarations.enter("Accuracy study");
+    declarations.add("Mesh factors", factors,
+                     "How many times as fine as the mesh of the section Geometry the meshes are, in every direction, separated by commas: "
+                     "element size, layers and nodes per pin face follow. Two or more; three give an order of convergence. Units: none.",
+                     {0.1, 10.}, 20);
+    add_list(declarations, "Elements", elements, "Elements that are compared.");
+    add_list(declarations, "Outlines", outlines, "Outlines of meshes with straight edges; quadratic elements follow the circles.");
+    declarations.add_text(
+      "Bases", "Names of reduced bases that are measured beside full order, separated by commas, as in the section Reduction; empty: none.",
+      [this] { return boost::algorithm::join(bases, ", "); }, [this](const std::string &text) { bases = split(text); });
+    declarations.add("Grown tolerance", grown_tolerance,
+                     "Bases `residual-grown`: estimated relative error of lambda at which they stop to grow. Units: none.", {1e-11, 1e-1});
+    declarations.add("Largest number of dofs", largest_dofs, "Meshes with more dofs are left out. Units: none.", {1.});
+    declarations.add(
+      "Band margin", margin,
+      "Part of the band by which all modes are found beyond its end, so that modes of coarse meshes, whose frequencies are too "
+      "high, do not lack partners. Units: none.",
+      {0., 1.});
+  }
+
+  void AccuracyStudyParameters::check() const
+  {
+    check_list(factors, "Mesh factors");
+    check_list(elements, "Elements");
+    check_list(outlines, "Outlines");
+    if (factors.size() < 2)
+      throw ParameterError("Accuracy study/Mesh factors has one entry: without a second mesh no error is known",
+                           "parameter Accuracy study/Mesh factors", "give two or more; three show the order of convergence");
   }
 } // namespace Squeal

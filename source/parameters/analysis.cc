@@ -4,7 +4,6 @@
 
 namespace Squeal
 {
-
   void DiscretizationParameters::declare(Declarations &declarations)
   {
     declarations.enter("Discretization");
@@ -64,8 +63,6 @@ namespace Squeal
 
   void SolverParameters::check() const
   {
-    if (library == FactorizationLibrary::umfpack)
-      return;
     if (library == FactorizationLibrary::cholmod && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)
       throw ParameterError("CHOLMOD cannot factorise the nonsymmetric matrix that `Shift inverse = sparse LU` asks for",
                            "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");

@@ -1,6 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/parameters/design_file.h>
+#include <squeal/parameters/design_plan.h>
 #include <squeal/parameters/number_list.h>
 
 #include <deal.II/base/utilities.h>

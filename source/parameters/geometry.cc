@@ -2,7 +2,6 @@
 #include <squeal/base/text.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/number_list.h>
-#include <squeal/parameters/pin_face.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,17 +39,15 @@ namespace Squeal
 
     void check_nodes_per_pin_face(const unsigned int nodes_per_pin_face)
     {
-      const unsigned int below = nodes_per_pin_face < 7 ? 1 : std::floor(blocks_of_pin_face(nodes_per_pin_face) + 1e-9);
-      if (nodes_of_pin_face(below) == nodes_per_pin_face)
+      const unsigned int k     = std::max(1., std::floor(blocks_of_pin_face(nodes_per_pin_face) + 1e-9));
+      const unsigned int below = nodes_of_pin_face(k), above = nodes_of_pin_face(k + 1);
+      if (nodes_per_pin_face == below)
         return;
-      const unsigned int above   = nodes_per_pin_face < 7 ? 1 : below + 1;
-      const unsigned int nearest = nodes_per_pin_face - nodes_of_pin_face(below) <= nodes_of_pin_face(above) - nodes_per_pin_face ?
-                                     nodes_of_pin_face(below) :
-                                     nodes_of_pin_face(above);
+      const bool is_below_nearest = nodes_per_pin_face < below || nodes_per_pin_face - below <= above - nodes_per_pin_face;
       refuse(text("Geometry/Nodes per pin face is ", nodes_per_pin_face,
                   ", but a pin is filled by three blocks of k x k elements, which gives 3 k (k + 1) + 1 nodes: "
                   "7, 19, 37, 61, ..."),
-             "Nodes per pin face", text("the nearest allowed value is ", nodes_per_pin_face < 7 ? 7 : nearest));
+             "Nodes per pin face", text("the nearest allowed value is ", is_below_nearest ? below : above));
     }
 
     /// Positions of the pins of one side; @p side is "Top" or "Bottom".
@@ -300,5 +297,43 @@ namespace Squeal
              "place at least one pin");
     check_layout(top, "Top", *this);
     check_layout(bottom, "Bottom", *this);
+  }
+
+  namespace
+  {
+    /// The number times the factor, rounded, at least one.
+    unsigned int scaled(const double number, const double factor)
+    {
+      return std::max(1L, std::lround(number * factor));
+    }
+  } // namespace
+
+  void check_follows(const GeometryParameters &geometry)
+  {
+    const auto used = geometry.used_variables();
+    for (const auto &[variable, parameter] : {std::make_pair("element_size", "Element size"), std::make_pair("disc_layers", "Disc layers"),
+                                              std::make_pair("pin_layers", "Pin layers")})
+      if (used.count(variable) == 0)
+        throw ParameterError(
+          text("the mesh of Geometry/File = ", in_quotes(geometry.file), " cannot be refined: it does not follow Geometry/", parameter),
+          "parameter Geometry/File",
+          text("give a plan, which the program extrudes, or a script (.geo) that uses the variables element_size, "
+               "disc_layers and pin_layers; or do without meshes of other widths"));
+  }
+
+  GeometryParameters refined(const GeometryParameters &geometry, const double factor)
+  {
+    if (factor == 1.)
+      return geometry;
+    check_follows(geometry);
+    GeometryParameters result = geometry;
+    result.element_size       = geometry.element_size / factor;
+    result.disc_layers        = scaled(geometry.disc_layers, factor);
+    result.pin_layers         = scaled(geometry.pin_layers, factor);
+    if (geometry.pin_rings > 0)
+      result.pin_rings = scaled(geometry.pin_rings, factor);
+    result.pin_grading        = std::pow(geometry.pin_grading, 1. / factor);
+    result.nodes_per_pin_face = nodes_of_pin_face(scaled(blocks_of_pin_face(geometry.nodes_per_pin_face), factor));
+    return result;
   }
 } // namespace Squeal

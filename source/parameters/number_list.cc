@@ -45,10 +45,8 @@ namespace Squeal
       return std::distance(std::sregex_iterator(text.begin(), text.end(), spaced), std::sregex_iterator());
     }
 
-    /**
-     * Whether commas look like decimal ones: digits behind one begin with zero; semicolons separate the numbers; or some commas have a
-     * blank on some side and all others join digits, several of them or behind a zero.
-     */
+    /// Whether commas look like decimal ones: digits behind one begin with zero; semicolons separate the numbers; or some commas have a
+    /// blank on some side and all others join digits, several of them or behind a zero.
     bool has_decimal_commas(const std::string &list, const std::vector<JoinedDigits> &joined)
     {
       if (joined.empty())

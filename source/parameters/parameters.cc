@@ -47,10 +47,8 @@ namespace Squeal
       return row[b.size()];
     }
 
-    /**
-     * Edits that lead from one name to another, words compared with their best counterparts: words may be left out,
-     * exchanged or cut short, each at the price of one edit.
-     */
+    /// Edits that lead from one name to another, words compared with their best counterparts: words may be left out, exchanged or cut
+    /// short, each at the price of one edit.
     unsigned int word_distance(const std::string &written, const std::string &name)
     {
       using dealii::Utilities::split_string_list;

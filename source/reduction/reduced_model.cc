@@ -1,4 +1,4 @@
-#include <squeal/linear_algebra/weighted_gram.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/reduction/reduced_model.h>
 
 #include <array>

@@ -1,6 +1,6 @@
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/weighted_gram.h>
+#include <squeal/linear_algebra/multivector.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/reduction/residual_products.h>
 
 #include <algorithm>

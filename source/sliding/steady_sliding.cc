@@ -2,7 +2,7 @@
 #include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/contact/travel.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/sliding/floating_disc.h>
 #include <squeal/sliding/steady_sliding.h>

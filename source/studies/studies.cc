@@ -1,4 +1,3 @@
-#include <squeal/parameters/study.h>
 #include <squeal/studies/steps/scene.h>
 
 namespace Squeal

@@ -1,6 +1,5 @@
 #include "tracked_modes.h"
 
-#include <squeal/base/assignment.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/base/tasks.h>

@@ -1,4 +1,3 @@
-#include <squeal/base/assignment.h>
 #include <squeal/base/groups.h>
 #include <squeal/tracking/mode_links.h>
 

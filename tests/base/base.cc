@@ -1,9 +1,8 @@
-#include <squeal/base/assignment.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/base/progress.h>
-#include <squeal/base/real_solver.h>
+#include <squeal/base/choices.h>
 
 #include <gtest/gtest.h>
 

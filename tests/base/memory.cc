@@ -44,7 +44,7 @@ TEST(Memory, AvailableOfTheMachineAndItsGroups)
 
 namespace
 {
-  constexpr std::size_t bytes = 200'000'000;
+  constexpr std::size_t bytes = 400'000'000;
 
   std::unique_ptr<char[]> used_block(const std::size_t size)
   {

@@ -4,7 +4,7 @@
 #include <squeal/eigen/quadratic_modes.h>
 #include <squeal/linear_algebra/dense_eigenproblems.h>
 #include <squeal/linear_algebra/dense_lu.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 
 #include <gtest/gtest.h>
 

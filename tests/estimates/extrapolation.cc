@@ -1,4 +1,4 @@
-#include <squeal/estimates/extrapolation.h>
+#include <squeal/estimates/discretisation_error.h>
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,33 @@
-#include "estimates/given_modes.h"
+#include "solutions.h"
 
+#include <squeal/estimates/discretisation_error.h>
 #include <squeal/estimates/mode_pairing.h>
 
-#include <gtest/gtest.h>
+#include <Eigen/QR>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
 
 namespace
 {
+  const Complex i(0., 1.);
+
+  constexpr int n_values = 40;
+
+  ModesAtPoints modes(const std::vector<Complex> &lambda, const ComplexDenseMatrix &shapes)
+  {
+    const RowMap map = RowMap::even(n_values, MPI_COMM_WORLD);
+    return {lambda, distribute(shapes.real(), map), distribute(shapes.imag(), map)};
+  }
+
+  /// Orthonormal columns.
+  ComplexDenseMatrix orthonormal(const int k)
+  {
+    const MultiVector random = random_vectors(RowMap::even(n_values, MPI_COMM_WORLD), 2 * k, 7);
+    return Eigen::HouseholderQR<ComplexDenseMatrix>(from_halves(replicate(random))).householderQ() *
+           ComplexDenseMatrix::Identity(n_values, k);
+  }
+
   /// Columns i and j turned into each other by an angle.
   void turn(ComplexDenseMatrix &X, const int i, const int j, const double degrees)
   {
@@ -16,6 +35,15 @@ namespace
     const Eigen::VectorXcd x = X.col(i), y = X.col(j);
     X.col(i) = c * x + s * y;
     X.col(j) = c * y - s * x;
+  }
+
+  /// The first n columns mixed at random.
+  ComplexDenseMatrix mixed(const ComplexDenseMatrix &X, const int n)
+  {
+    const ComplexDenseMatrix random = orthonormal(n).topRows(n);
+    ComplexDenseMatrix       Y      = X;
+    Y.leftCols(n)                   = X.leftCols(n) * Eigen::HouseholderQR<ComplexDenseMatrix>(random).householderQ();
+    return Y;
   }
 
   std::vector<int> partners(const std::vector<PairedMode> &modes)
@@ -34,6 +62,15 @@ namespace
         result.push_back(i);
     return result;
   }
+
+  constexpr double share = 1. / 3.;
+
+  /// Modes of the same shapes on both meshes.
+  std::vector<DiscretisationError> errors(const std::vector<Complex> &coarse, const std::vector<Complex> &fine)
+  {
+    const ComplexDenseMatrix X = orthonormal(fine.size());
+    return discretisation_errors(modes(coarse, X), modes(fine, X), share, {});
+  }
 } // namespace
 
 TEST(ModePairing, FollowsShapesNotNumbers)
@@ -46,11 +83,12 @@ TEST(ModePairing, FollowsShapesNotNumbers)
   const ModePairing pairing  = pair_modes(modes({10. * i, 11. * i, 20. * i, 30. * i}, X), modes({9.9 * i, 10.2 * i, 19. * i, 29. * i}, Y));
   EXPECT_EQ(partners(pairing.coarse), (std::vector<int>{1, 0, 2, 3}));
   EXPECT_EQ(partners(pairing.fine), (std::vector<int>{1, 0, 2, 3}));
-  EXPECT_TRUE(marked(pairing.coarse).empty());
-  EXPECT_TRUE(marked(pairing.fine).empty());
   for (const auto *side : {&pairing.coarse, &pairing.fine})
-    for (const PairedMode &mode : *side)
-      EXPECT_NEAR(mode.overlap, 1., 1e-12);
+    {
+      EXPECT_TRUE(marked(*side).empty());
+      for (const PairedMode &mode : *side)
+        EXPECT_NEAR(mode.overlap, 1., 1e-12);
+    }
 }
 
 TEST(ModePairing, MarksTurnedModesAndNoOther)
@@ -73,32 +111,27 @@ TEST(ModePairing, MarksTurnedModesAndNoOther)
 TEST(ModePairing, FindsClustersOfManyModes)
 {
   // 12 modes mixed at random: none has a counterpart; the others have, also one with a small share of the cluster
-  const ComplexDenseMatrix X = orthonormal(15), mixture = orthonormal(12).topRows(12);
-  ComplexDenseMatrix       Y = X;
+  const ComplexDenseMatrix X = orthonormal(15);
+  ComplexDenseMatrix       Y = mixed(X, 12);
   std::vector<Complex>     lambda;
-  std::vector<int>         members;
-  Y.leftCols(12) = X.leftCols(12) * Eigen::HouseholderQR<ComplexDenseMatrix>(mixture).householderQ();
+  std::vector<int>         all(15);
   turn(Y, 11, 12, 20.);
   for (int k = 0; k < 15; ++k)
     lambda.push_back((100. + k) * i);
-  for (int k = 0; k < 12; ++k)
-    members.push_back(k);
+  std::iota(all.begin(), all.end(), 0);
   const ModePairing pairing = pair_modes(modes(lambda, Y), modes(lambda, X));
-  EXPECT_EQ(marked(pairing.coarse), members);
-  EXPECT_EQ(marked(pairing.fine), members);
-  for (int k = 0; k < 15; ++k)
-    EXPECT_EQ(pairing.coarse[k].partner, k);
+  for (const auto *side : {&pairing.coarse, &pairing.fine})
+    EXPECT_EQ(marked(*side), std::vector<int>(all.begin(), all.begin() + 12));
+  EXPECT_EQ(partners(pairing.coarse), all);
 }
 
 TEST(ModePairing, PairsClustersByTheirFrequenciesButForAShift)
 {
   // Five modes mixed at random, all of them higher by more than their distances from each other
-  const ComplexDenseMatrix X = orthonormal(7), mixture = orthonormal(5).topRows(5);
-  ComplexDenseMatrix       Y         = X;
-  Y.leftCols(5)                      = X.leftCols(5) * Eigen::HouseholderQR<ComplexDenseMatrix>(mixture).householderQ();
+  const ComplexDenseMatrix   X       = orthonormal(7);
   const std::vector<Complex> fine    = {3500. * i, 3510. * i + 5., 3510. * i - 5., 3520. * i, 3540. * i, 4000. * i, 5000. * i};
   const std::vector<Complex> coarse  = {3600. * i, 3609. * i - 4., 3609. * i + 4., 3621. * i, 3642. * i, 4100. * i, 5100. * i};
-  const ModePairing          pairing = pair_modes(modes(coarse, Y), modes(fine, X));
+  const ModePairing          pairing = pair_modes(modes(coarse, mixed(X, 5)), modes(fine, X));
   EXPECT_EQ(partners(pairing.coarse), (std::vector<int>{0, 2, 1, 3, 4, 5, 6}));
   EXPECT_EQ(marked(pairing.coarse), (std::vector<int>{0, 1, 2, 3, 4}));
 }
@@ -135,4 +168,79 @@ TEST(ModePairing, KeepsTheTwoModesOfAFlutterApart)
   EXPECT_EQ(partners(pairing.coarse), (std::vector<int>{1, 0}));
   EXPECT_TRUE(marked(pairing.coarse).empty());
   EXPECT_GT(pairing.coarse[0].overlap, 0.99);
+}
+
+TEST(DiscretisationError, IsAShareOfTheDifference)
+{
+  // f = f* (1 + c h²) and ξ = ξ* + d h² at h = 2 and 1: a third of the difference is the error
+  const double h[]    = {2., 1.};
+  const auto   lambda = [&](const int mesh) {
+    const double omega = 100. * (1. + 1e-3 * h[mesh] * h[mesh]), xi = 0.01 + 1e-3 * h[mesh] * h[mesh];
+    return std::vector<Complex>{omega * Complex(xi, 1.)};
+  };
+  const std::vector<DiscretisationError> found = errors(lambda(0), lambda(1));
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_TRUE(found[0].has_counterpart);
+  EXPECT_FALSE(found[0].in_cluster);
+  EXPECT_NEAR(found[0].overlap, 1., 1e-12);
+  EXPECT_NEAR(found[0].frequency, 1e-3 / 1.001, 1e-12);
+  EXPECT_NEAR(found[0].divergence, 1e-3, 1e-12);
+  EXPECT_EQ(found[0].verdict, Verdict::unstable);
+  EXPECT_TRUE(found[0].is_within(1e-3, 1.1e-3));
+  EXPECT_FALSE(found[0].is_within(1e-3, 0.9e-3));
+  EXPECT_FALSE(found[0].is_within(0.9e-3, 1.1e-3));
+}
+
+TEST(DiscretisationError, DecidesWhatGrowsBeyondIt)
+{
+  // R / ω: growing beyond the error, growing within it, decaying within it, decaying beyond it
+  const std::vector<DiscretisationError> found =
+    errors({0.010 * 100. + 100. * i, 200. * 0.020 + 200. * i, 300. * -0.020 + 300. * i, -4. + 400. * i},
+           {0.011 * 100. + 100. * i, 200. * 0.001 + 200. * i, 300. * -0.001 + 300. * i, -4.1 + 400. * i});
+  EXPECT_EQ(found[0].verdict, Verdict::unstable);
+  EXPECT_EQ(found[1].verdict, Verdict::undecided);
+  EXPECT_EQ(found[2].verdict, Verdict::undecided);
+  EXPECT_EQ(found[3].verdict, Verdict::stable);
+}
+
+TEST(DiscretisationError, NeutralModesThatMayMeetAreUndecided)
+{
+  // Distances: 1 from 4 on the coarse mesh; 1 from 1.5; 0.001 from 0.01, at which they could hardly grow
+  const std::vector<DiscretisationError> found = errors({104. * i, 100. * i, 201.5 * i, 200. * i, 300.01 * i, 300. * i},
+                                                        {101. * i, 100. * i, 201. * i, 200. * i, 300.001 * i, 300. * i});
+  for (const int j : {0, 1})
+    {
+      EXPECT_EQ(found[j].verdict, Verdict::undecided) << j;
+      EXPECT_NEAR(found[j].divergence, 0.5 / 100., 1e-4) << j;
+    }
+  for (const int j : {2, 3, 4, 5})
+    EXPECT_EQ(found[j].verdict, Verdict::stable) << j;
+}
+
+TEST(DiscretisationError, PartnersOfAFlutterShareTheLargestError)
+{
+  const std::vector<DiscretisationError> found = errors({1.2 + 100. * i, -1.0 + 100. * i}, {0.9 + 100. * i, -1.0 + 100. * i});
+  EXPECT_NEAR(found[0].divergence, 0.3 / 3. / 100., 1e-12);
+  EXPECT_NEAR(found[1].divergence, 0.3 / 3. / 100., 1e-12);
+  EXPECT_EQ(found[0].verdict, Verdict::unstable);
+  EXPECT_EQ(found[1].verdict, Verdict::stable);
+}
+
+TEST(DiscretisationError, ModesWithoutCounterpartAreUndecided)
+{
+  const ComplexDenseMatrix               X = orthonormal(3);
+  const std::vector<DiscretisationError> found =
+    discretisation_errors(modes({100. * i, 200. * i}, X.leftCols(2)), modes({99. * i, 198. * i, 1. + 290. * i}, X), share, {});
+  EXPECT_TRUE(found[1].has_counterpart);
+  EXPECT_FALSE(found[2].has_counterpart);
+  EXPECT_EQ(found[2].verdict, Verdict::undecided);
+  EXPECT_FALSE(found[2].is_within(1., 1.));
+}
+
+TEST(DiscretisationError, ErrorsOfTheSolverCount)
+{
+  const ComplexDenseMatrix X = orthonormal(1);
+  for (const double error : {1e-4, 1e-2})
+    EXPECT_EQ(discretisation_errors(modes({1. + 100. * i}, X), modes({1. + 100. * i}, X), share, {error})[0].verdict,
+              error < 1e-3 ? Verdict::unstable : Verdict::undecided);
 }

@@ -55,11 +55,9 @@ TEST(Mesher, ConfinesGmsh)
     const File file("script.geo", "Point(1) = {0, 0, 0};\n" + statement);
     return message<ForbiddenAction>([&] { mesh_of(file); });
   };
-  EXPECT_EQ(attempt("SystemCall \"true\";"), "starts another program");
-  EXPECT_EQ(attempt("NonBlockingSystemCall \"true\";"), "starts another program");
-  expect_mentions(attempt("Printf(\"x\") > \"trace\";"), {"trace`"});
-  expect_mentions(attempt("Save \"trace.msh\";"), {"trace.msh`"});
-  expect_mentions(attempt("CreateDir \"trace\";"), {"trace`"});
+  for (const char *statement : {"SystemCall \"true\";", "NonBlockingSystemCall \"true\";", "Printf(\"x\") > \"trace\";",
+                                "Save \"trace.msh\";", "CreateDir \"trace\";"})
+    expect_mentions(attempt(statement), {"starts a program, writes a file or opens a connection"});
 }
 
 TEST(Mesher, LetsGmshGoWhereAllowed)

@@ -3,8 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/multivector.h>
-#include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/weighted_gram.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <gtest/gtest.h>

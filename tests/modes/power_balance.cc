@@ -1,7 +1,7 @@
 #include "solutions.h"
 
 #include <squeal/base/conventions.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/modes/power_balance.h>
 
 #include <gtest/gtest.h>

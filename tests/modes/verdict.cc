@@ -1,4 +1,4 @@
-#include <squeal/modes/verdict.h>
+#include <squeal/modes/complex_modes.h>
 
 #include <gtest/gtest.h>
 

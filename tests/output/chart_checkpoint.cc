@@ -2,7 +2,7 @@
 #include "solutions.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/output/chart_checkpoint.h>
 #include <squeal/output/result_folder.h>
 

@@ -2,7 +2,6 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/output/result_folder.h>
-#include <squeal/output/run_record.h>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>

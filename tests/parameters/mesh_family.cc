@@ -1,6 +1,6 @@
 #include "geometry/scenes.h"
 
-#include <squeal/parameters/mesh_family.h>
+#include <squeal/parameters/geometry.h>
 
 using namespace Scenes;
 

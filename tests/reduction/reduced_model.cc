@@ -4,7 +4,7 @@
 #include <squeal/eigen/dense_quadratic.h>
 #include <squeal/eigen/symmetric_modes.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/reduction/reduced_model.h>
 
 #include <gtest/gtest.h>

@@ -68,13 +68,13 @@ TEST(Accuracy, ExtrapolatesEveryFamilyAndTakesTheBest)
       EXPECT_EQ(mode.in_cluster, k >= 3) << k;
       EXPECT_EQ(mode.numbers, (std::vector<int>(3, k))) << k;
       if (mode.in_cluster) // the finest mesh decides
-        EXPECT_NEAR(mode.frequency, 1.00025 * 1000. * (k + 1), 1e-9);
+        EXPECT_NEAR(mode.frequency.value, 1.00025 * 1000. * (k + 1), 1e-9);
       else
         {
-          EXPECT_NEAR(mode.frequencies->order, 2., 1e-4);
-          EXPECT_TRUE(mode.frequencies->is_trustworthy);
-          EXPECT_NEAR(mode.frequency, 1000. * (k + 1), 1e-6);
-          EXPECT_NEAR(mode.divergence, 0.01 * (k + 1), 1e-9);
+          EXPECT_NEAR(mode.frequency.sequence->order, 2., 1e-4);
+          EXPECT_TRUE(mode.frequency.sequence->is_trustworthy);
+          EXPECT_NEAR(mode.frequency.value, 1000. * (k + 1), 1e-6);
+          EXPECT_NEAR(mode.divergence.value, 0.01 * (k + 1), 1e-9);
         }
     }
   meshes.erase(meshes.begin() + 2, meshes.end());

@@ -1,5 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/studies/designs/design_check.h>
+#include <squeal/studies/designs/design_work.h>
 
 #include <gtest/gtest.h>
 

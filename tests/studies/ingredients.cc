@@ -121,10 +121,10 @@ TEST(IngredientEffects, TheLargestChangesCount)
 {
   const Effect result = effect({{{}, eigenvalue(1000., 0.1), eigenvalue(1002., 0.1), true, true},
                                 {{}, eigenvalue(2000., -1.), eigenvalue(1999., -0.7), false, false}});
-  EXPECT_NEAR(result.frequency(), 0.2, 1e-12);
-  EXPECT_EQ(result.largest_frequency(), &result.modes[0]);
-  EXPECT_NEAR(result.divergence(), 0.3, 1e-12);
-  EXPECT_EQ(result.largest_divergence(), &result.modes[1]);
+  EXPECT_NEAR(result.frequency().amount, 0.2, 1e-12);
+  EXPECT_EQ(result.frequency().mode, &result.modes[0]);
+  EXPECT_NEAR(result.divergence().amount, 0.3, 1e-12);
+  EXPECT_EQ(result.divergence().mode, &result.modes[1]);
   EXPECT_FALSE(result.changes_verdict());
   IngredientsParameters accuracy;
   accuracy.frequency_tolerance  = 0.1;
@@ -147,16 +147,16 @@ TEST(IngredientEffects, ModesWithoutCounterpartCount)
 {
   // A mode that leaves the band has moved at least to its end
   const Effect lost = effect({{{}, eigenvalue(4900., 0.), std::nullopt}});
-  EXPECT_NEAR(lost.frequency(), 100. * (5000. / 4900. - 1.), 1e-12);
+  EXPECT_NEAR(lost.frequency().amount, 100. * (5000. / 4900. - 1.), 1e-12);
   EXPECT_EQ(lost.n_lost(), 1u);
-  EXPECT_EQ(lost.divergence(), 0.);
+  EXPECT_EQ(lost.divergence().amount, 0.);
   EXPECT_FALSE(lost.changes_verdict());
   EXPECT_TRUE(effect({{{}, eigenvalue(4900., 0.2), std::nullopt, true}}).changes_verdict());
   EXPECT_TRUE(effect({{{}, std::nullopt, eigenvalue(4900., 0.2), false, true}}).changes_verdict());
   // One that lies beyond the end of a shorter band is not there to be compared
   Effect shorter   = lost;
   shorter.band_end = circular_frequency(2500.);
-  EXPECT_EQ(shorter.frequency(), 0.);
+  EXPECT_EQ(shorter.frequency().amount, 0.);
   EXPECT_EQ(shorter.n_lost(), 1u);
 }
 

@@ -1,7 +1,7 @@
 #include "matrices.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/replicate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
 

@@ -34,17 +34,16 @@ namespace
     }
 
     /// Damping in proportion to the friction coefficient.
-    OperatingPoint at(const double friction, const int line = 0) const
+    OperatingPoint at(const double friction) const
     {
-      OperatingPoint point{friction, damping.values(), line};
+      OperatingPoint point{friction, damping.values()};
       for (auto &[parameter, coefficients] : point.values)
         for (double &c : coefficients)
           c *= friction / 0.8;
       return point;
     }
 
-    std::vector<OperatingPoint> points(const std::vector<double> &friction_coefficients = {0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7,
-                                                                                           0.8}) const
+    std::vector<OperatingPoint> points(const std::vector<double> &friction_coefficients = {0., 0.2, 0.4, 0.6, 0.8}) const
     {
       std::vector<OperatingPoint> result;
       for (const double mu : friction_coefficients)
@@ -76,14 +75,14 @@ namespace
 
     std::optional<ChartPoint> find(const OperatingPoint &point) const override
     {
-      const auto found = results.find({point.line, point.friction_coefficient});
+      const auto found = results.find(point.friction_coefficient);
       return found == results.end() ? std::optional<ChartPoint>() : found->second;
     }
     void keep(const OperatingPoint &point, const ChartPoint &result) override
     {
       if (n_left-- == 0)
         throw Killed();
-      EXPECT_TRUE(results.emplace(std::make_pair(point.line, point.friction_coefficient), result).second) << "computed twice";
+      EXPECT_TRUE(results.emplace(point.friction_coefficient, result).second) << "computed twice";
     }
     std::vector<MultiVector> basis() const override
     {
@@ -94,9 +93,9 @@ namespace
       blocks.push_back(block);
     }
 
-    std::map<std::pair<int, double>, ChartPoint> results;
-    std::vector<MultiVector>                     blocks;
-    int                                          n_left = 1000000;
+    std::map<double, ChartPoint> results;
+    std::vector<MultiVector>     blocks;
+    int                          n_left = 1000000;
   };
 
   ErrorControlledSweep sweep(ChartModel                        &model,
@@ -107,6 +106,7 @@ namespace
     Progress progress;
     return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
   }
+
   /// A model that is accurate everywhere, with contact damping 0.8 c_b [N s/m] at most, in proportion to the friction coefficient.
   struct Predicted : Chart
   {
@@ -114,9 +114,7 @@ namespace
       : Chart(0.8 * c_b, 0., symmetric_pins)
       , accurate(model())
     {
-      for (int i = 0; i <= 16; ++i)
-        grid.push_back(0.05 * i);
-      EXPECT_TRUE(sweep(accurate, points(grid), {}).why_stopped.empty());
+      EXPECT_TRUE(sweep(accurate, points({0., 0.1, 0.2, 0.3}), {}).why_stopped.empty());
     }
 
     std::optional<double> predicted_zero(const ZeroSearch &search) const
@@ -126,43 +124,39 @@ namespace
 
     StabilityChart chart(const bool predicts) const
     {
-      ChartOptions options;
-      options.largest_circular_frequency = omega_max;
-      options.threshold_tolerance        = 1e-7;
-      return stability_chart(
-        grid, [&](const std::vector<double> &values) { return evaluate(accurate, points(values), MPI_COMM_WORLD); }, options,
-        predicts ? PredictZero([&](const ZeroSearch &search) { return predicted_zero(search); }) : PredictZero());
+      const ChartOptions options  = {omega_max, 1e-7};
+      const auto         modes_at = [&](const std::vector<double> &values) { return evaluate(accurate, points(values), MPI_COMM_WORLD); };
+      return stability_chart({0., 0.1, 0.2}, modes_at, options,
+                             predicts ? PredictZero([&](const ZeroSearch &search) { return predicted_zero(search); }) : PredictZero());
     }
 
-    ChartModel          accurate;
-    std::vector<double> grid;
+    ChartModel accurate;
   };
 } // namespace
 
 TEST(ErrorControlledSweep, AgreesWithFullOrder)
 {
-  for (const auto &[c_b, c_t] : {std::make_pair(0., 0.), {40., 0.}, {40., -10.}})
+  struct Accuracy
+  {
+    double c_b, c_t, tolerance;
+  };
+  for (const Accuracy &c : {Accuracy{0., 0., 1e-6}, {40., 0., 1e-8}, {40., -10., 1e-8}})
     {
-      const Chart                         chart(c_b, c_t);
-      const auto                          points = chart.points();
-      std::map<int, std::vector<Complex>> full;
-      for (const int i : {0, 2, 4, 6, 8})
-        full[i] = krylov(with_values(chart.system, points[i].values), points[i].friction_coefficient, 1e-11).lambda;
-      for (const double tolerance : {1e-6, 1e-8})
+      const Chart                 chart(c.c_b, c.c_t);
+      const auto                  points = chart.points();
+      ErrorControlledSweepOptions options;
+      options.tolerance = c.tolerance;
+      ChartModel model  = chart.model();
+      const auto result = sweep(model, points, options);
+      EXPECT_TRUE(result.why_stopped.empty());
+      EXPECT_LE(result.worst_error, c.tolerance);
+      EXPECT_LT(orthonormality_defect(*chart.system.mass, model.reduced().basis()), 1e-12);
+      for (const int i : {0, 2, 4})
         {
-          ErrorControlledSweepOptions options;
-          options.tolerance = tolerance;
-          ChartModel model  = chart.model();
-          const auto result = sweep(model, points, options);
-          EXPECT_TRUE(result.why_stopped.empty());
-          EXPECT_LE(result.worst_error, tolerance);
-          EXPECT_LT(orthonormality_defect(*chart.system.mass, model.reduced().basis()), 1e-12);
-          for (const auto &[i, lambda] : full)
-            {
-              ASSERT_TRUE(result.points[i].has_value());
-              EXPECT_LT(largest(distances(chart.in_band(*result.points[i]), lambda)), 2. * tolerance)
-                << "c_b " << c_b << ", mu " << points[i].friction_coefficient;
-            }
+          ASSERT_TRUE(result.points[i].has_value());
+          const auto full = krylov(with_values(chart.system, points[i].values), points[i].friction_coefficient, 1e-11).lambda;
+          EXPECT_LT(largest(distances(chart.in_band(*result.points[i]), full)), 2. * c.tolerance)
+            << "c_b " << c.c_b << ", mu " << points[i].friction_coefficient;
         }
     }
 }
@@ -182,21 +176,17 @@ TEST(ErrorControlledSweep, ThreadsChangeNothing)
     return result;
   };
   const std::vector<ChartPoint> one = by(1);
-  for (const unsigned int n : {2, 4, 16})
+  for (const unsigned int n : {2, 16})
     {
       const std::vector<ChartPoint> several = by(n);
       ASSERT_EQ(several.size(), one.size());
       for (std::size_t i = 0; i < one.size(); ++i)
         {
-          ASSERT_GT(one[i].lambda.size(), 0u);
-          ASSERT_EQ(several[i].lambda.size(), one[i].lambda.size());
+          EXPECT_LT(largest(distances(one[i].lambda, several[i].lambda)), 1e-12);
           EXPECT_EQ(several[i].friction_coefficient, points[i].friction_coefficient);
-          for (std::size_t j = 0; j < one[i].lambda.size(); ++j)
-            {
-              EXPECT_LT(std::abs(several[i].lambda[j] - one[i].lambda[j]), 1e-12 * std::abs(one[i].lambda[j]));
-              EXPECT_NEAR(several[i].errors[j], one[i].errors[j], 1e-12 + 1e-9 * one[i].errors[j]);
-              EXPECT_EQ(several[i].verdicts[j], one[i].verdicts[j]);
-            }
+          ASSERT_EQ(several[i].verdicts, one[i].verdicts);
+          for (std::size_t j = 0; j < one[i].errors.size(); ++j)
+            EXPECT_NEAR(several[i].errors[j], one[i].errors[j], 1e-12 + 1e-9 * one[i].errors[j]);
         }
     }
 }
@@ -209,7 +199,7 @@ TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
   MemoryStore                 whole;
   ChartModel                  model  = chart.model();
   const auto                  result = sweep(model, points, options, &whole);
-  for (const int n_before : {0, 1, 4, 8})
+  for (const int n_before : {0, 1, 4})
     {
       MemoryStore store;
       store.n_left      = n_before;
@@ -224,13 +214,9 @@ TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
         {
           ASSERT_TRUE(again.points[i] && result.points[i]);
           // The same to the last bit, but where sums over processes differ in rounding from run to run
-          if (chart.s.model.free_map().n_processes() == 1)
-            {
-              EXPECT_EQ(again.points[i]->lambda, result.points[i]->lambda) << "point " << i;
-              EXPECT_EQ(again.points[i]->errors, result.points[i]->errors) << "point " << i;
-            }
-          else
-            EXPECT_LT(largest(distances(again.points[i]->lambda, result.points[i]->lambda)), 1e-11) << "point " << i;
+          const bool is_alone = chart.s.model.free_map().n_processes() == 1;
+          EXPECT_LE(largest(distances(again.points[i]->lambda, result.points[i]->lambda)), is_alone ? 0. : 1e-11) << "point " << i;
+          EXPECT_TRUE(!is_alone || again.points[i]->errors == result.points[i]->errors) << "point " << i;
         }
     }
 }
@@ -250,49 +236,38 @@ TEST(ErrorControlledSweep, StopsAtWhatItProved)
   EXPECT_FALSE(result.points.back().has_value());
   EXPECT_LE(result.worst_error, options.tolerance);
   EXPECT_THROW(sweep(model, {}, options), std::exception);
-}
 
-// Errors that rounding makes up do not fall, however large the basis gets
-TEST(ErrorControlledSweep, StopsWhereRoundingMakesUpTheError)
-{
-  const Chart                       chart(0.);
-  const std::vector<OperatingPoint> points = {chart.at(0.8)};
-  ErrorControlledSweepOptions       options;
+  // Errors that rounding makes up do not fall, or the residuals leave no direction: not until the basis takes all of the space
   options.tolerance     = 1e-16;
   options.maximum_basis = static_cast<int>(chart.s.coupled.map().n());
-  ChartModel model      = chart.model();
-  const auto result     = sweep(model, points, options);
-  // Larger bases do not halve the error, or the residuals leave no direction: not until the basis takes all of the space
-  EXPECT_NE(result.why_stopped.find("rounding"), std::string::npos) << result.why_stopped;
-  EXPECT_LT(model.size(), options.maximum_basis);
+  ChartModel rounded    = chart.model();
+  const auto stopped    = sweep(rounded, {chart.at(0.8)}, options);
+  EXPECT_NE(stopped.why_stopped.find("rounding"), std::string::npos) << stopped.why_stopped;
+  EXPECT_LT(rounded.size(), options.maximum_basis);
 }
 
 TEST(PredictedZeros, FindTheSameThresholdsWithFewerPoints)
 {
-  for (const double c_b : {0., 40.})
-    {
-      const Predicted scene(c_b);
-      const auto      plain = scene.chart(false), predicted = scene.chart(true);
-      ASSERT_EQ(plain.thresholds.size(), predicted.thresholds.size());
-      EXPECT_GT(plain.thresholds.size(), 0u);
-      for (std::size_t i = 0; i < plain.thresholds.size(); ++i)
-        {
-          const Threshold &a = plain.thresholds[i], &b = predicted.thresholds[i];
-          EXPECT_NEAR(a.friction_coefficient, b.friction_coefficient, 1e-7);
-          EXPECT_EQ(a.event, b.event);
-          EXPECT_EQ(a.mechanism, b.mechanism);
-          EXPECT_EQ(a.branch, b.branch);
-        }
-      EXPECT_LT(predicted.points.size(), plain.points.size());
-    }
-}
-
-// The span of the modes at both ends knows λ there and its slope: what is left is of fourth order in the step
-TEST(PredictedZeros, ConvergeWithTheStep)
-{
-  const Predicted scene(0.);
+  const auto expect_fewer = [](const StabilityChart &predicted, const StabilityChart &plain) {
+    ASSERT_EQ(plain.thresholds.size(), predicted.thresholds.size());
+    EXPECT_GT(plain.thresholds.size(), 0u);
+    for (std::size_t i = 0; i < plain.thresholds.size(); ++i)
+      {
+        const Threshold &a = plain.thresholds[i], &b = predicted.thresholds[i];
+        EXPECT_NEAR(a.friction_coefficient, b.friction_coefficient, 1e-7);
+        EXPECT_EQ(a.event, b.event);
+        EXPECT_EQ(a.mechanism, b.mechanism);
+        EXPECT_EQ(a.branch, b.branch);
+      }
+    EXPECT_LT(predicted.points.size(), plain.points.size());
+  };
+  const Predicted damped(40.), scene(0.);
   const auto      chart = scene.chart(true);
-  const auto      onset = std::find_if(chart.thresholds.begin(), chart.thresholds.end(), [](const Threshold &t) {
+  expect_fewer(chart, scene.chart(false));
+  expect_fewer(damped.chart(true), damped.chart(false));
+
+  // The span of the modes at both ends knows λ there and its slope: what is left is of fourth order in the step
+  const auto onset = std::find_if(chart.thresholds.begin(), chart.thresholds.end(), [](const Threshold &t) {
     return t.mechanism == ThresholdMechanism::coalescence && t.friction_coefficient > 0.1;
   });
   ASSERT_NE(onset, chart.thresholds.end());

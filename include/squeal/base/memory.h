@@ -28,12 +28,13 @@ namespace Squeal
   double peak_resident_memory();
 
   /**
-   * Lets blocks of 32 MB and more go back to the system as soon as they are freed. SuperLU_dist, which comes with the packages of
-   * deal.II, tells the allocator to keep everything: a process would hold the sum of what its steps ever used. To be called once, first.
+   * Lets freed memory go back to the system where it is more than 256 MB at the end of the heap. SuperLU_dist, which comes with the packages
+   * of deal.II, tells the allocator to keep everything: a process would hold the sum of what its steps ever used. Large blocks are not mapped
+   * one by one, since clearing new pages for each temporary vector takes a tenth of a large run. To be called once, first.
    */
   void return_freed_blocks();
 
-  /// Gives freed memory in smaller blocks back to the system, too.
+  /// Gives all freed memory back to the system.
   void return_freed_memory();
 
   /// Gives freed memory back and begins a new peak; whether the system allows it.

@@ -48,12 +48,12 @@ namespace Squeal
    */
   struct CoupledSystem
   {
-    std::vector<Term>                    terms;
-    ParameterValues                      values;             ///< of all parameters, with μ = 0
-    std::shared_ptr<const SparseMatrix>  mass, stiffness;    ///< M_c and K_c, n × n: the symmetric terms without friction
-    double                               hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c (rounding.h) [rad²/s²]
-    std::shared_ptr<const LowRankFactor> friction_forces;    ///< A, n × n_c
-    std::shared_ptr<const SparseMatrix>  kernel;             ///< T_c, n_uncoupled × n
+    std::vector<Term>                   terms;
+    ParameterValues                     values;          ///< of all parameters, with μ = 0
+    std::shared_ptr<const SparseMatrix> mass, stiffness; ///< M_c and K_c, n × n: the symmetric terms without friction
+    double hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
+    std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
+    std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
 
     /// Distribution of the coupled dofs.
     const RowMap &map() const;
@@ -147,4 +147,23 @@ namespace Squeal
                                       const std::vector<std::complex<double>> &lambda,
                                       const MultiVector                       &real_part,
                                       const MultiVector                       &imaginary_part);
+
+  /// A coupled system that belongs to a family.
+  struct SystemMember
+  {
+    CoupledSystem           system; ///< with the fewest terms
+    std::vector<TermShares> shares; ///< what each of its terms is made of
+  };
+
+  /**
+   * The system of a family of terms: bodies coupled as couple() does, each term with its own part in the reactions. Its mass and
+   * stiffness, the parameter values with it, are those in the middle of the family.
+   */
+  CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
+
+  /**
+   * The member of a family of systems where the scales of terms have these @p values: terms of the same kind are summed. What is left
+   * free are the friction coefficient and the damping of the contact.
+   */
+  SystemMember member_of(const CoupledSystem &family, const ParameterValues &values);
 } // namespace Squeal

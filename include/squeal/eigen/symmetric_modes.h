@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/base/real_solver.h>
+#include <squeal/base/choices.h>
 #include <squeal/linear_algebra/factorization.h>
 #include <squeal/linear_algebra/multivector.h>
 
@@ -66,7 +66,7 @@ namespace Squeal
     /// ‖Kφ - ω²Mφ‖ / ‖Kφ‖ [-]; for rigid-body modes ‖Kφ‖ / (largest eigenvalue · ‖Mφ‖).
     std::vector<double> residuals;
 
-    /// Eigenvalues that rounding errors of K hide (linear_algebra/rounding.h), whatever the band: those of rigid-body motions.
+    /// Eigenvalues that rounding errors of K hide (unresolved_square()), whatever the band: those of rigid-body motions.
     int n_rigid_body = 0;
 
     /// Modes that exist in the band, by Sylvester's law of inertia; equals the number found.

@@ -24,9 +24,7 @@ namespace Squeal
   /// Those of the disc and the pins.
   std::vector<BodyFrame> body_frames(const Model &model);
 
-  /**
-   * Points at the same places of the bodies of another design, with the same masses; bodies that it does not have are left out. In the
-   * disc at the same angle, at the same parts of width and thickness; in a pin at the same parts of its bounding box.
-   */
+  /// Points at the same places of the bodies of another design, with the same masses; bodies that it does not have are left out. In the
+  /// disc at the same angle, at the same parts of width and thickness; in a pin at the same parts of its bounding box.
   CommonPoints carried_over(const CommonPoints &points, const std::vector<BodyFrame> &from, const std::vector<BodyFrame> &to);
 } // namespace Squeal

@@ -12,10 +12,8 @@
 
 namespace Squeal
 {
-  /**
-   * Points in the bodies of a scene at which displacements on different meshes and with different elements are compared:
-   * x_q with masses m_q [kg], so that Σ_q m_q |u(x_q)|² is the mass integral of |u|² over all bodies.
-   */
+  /// Points in the bodies of a scene at which displacements on different meshes and with different elements are compared: x_q with masses
+  /// m_q [kg], so that Σ_q m_q |u(x_q)|² is the mass integral of |u|² over all bodies.
   struct CommonPoints
   {
     struct Body
@@ -48,10 +46,8 @@ namespace Squeal
     cylindrical ///< radial, circumferential, z about the disc's axis: they follow a pin that stands at another angle
   };
 
-  /**
-   * The points of Gauss' rule in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest
-   * mesh serve all finer ones. The same on every process.
-   */
+  /// The points of Gauss' rule in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest mesh serve all finer ones. The same on every
+  /// process.
   CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int points_per_direction = 2);
 
   /**

@@ -2,7 +2,6 @@
 
 #include <squeal/modes/complex_modes.h>
 #include <squeal/modes/reduced_modes.h>
-#include <squeal/modes/verdict.h>
 #include <squeal/reduction/residual_products.h>
 
 #include <complex>

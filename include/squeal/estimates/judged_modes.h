@@ -2,7 +2,7 @@
 
 #include <squeal/estimates/conditioning.h>
 #include <squeal/modes/system_modes.h>
-#include <squeal/modes/verdict.h>
+#include <squeal/modes/complex_modes.h>
 
 #include <complex>
 #include <vector>
@@ -35,19 +35,15 @@ namespace Squeal
   /// Largest error of the modes that are not slow.
   double largest_error(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
-  /**
-   * Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much
-   * too small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
-   */
+  /// Relative errors of λ by which growth is judged. The largest of all counts for every mode, since that of a single one may be much too
+  /// small by chance; but a slow mode, of which cancellation in the stiffness takes many digits, has its own.
   std::vector<double> uncertainties(const CoupledSystem &system, const ComplexModes &modes, const Conditioning &conditioning);
 
   /// Decides which of @p modes grow, however they were found.
   JudgedModes judged_modes(const CoupledSystem &system, const SystemModes &frictionless, ComplexModes modes);
 
-  /**
-   * Complex modes of the system, up to the end of the band, by the solver that the parameters choose. Throws SolverError if none
-   * oscillates there.
-   */
+  /// Complex modes of the system, up to the end of the band, by the solver that the parameters choose. Throws SolverError if none
+  /// oscillates there.
   JudgedModes modes_with_friction(const CoupledSystem    &system,
                                   const SystemModes      &frictionless,
                                   double                  mu,

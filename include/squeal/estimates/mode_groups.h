@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/bases/mode_labels.h>
+#include <squeal/linear_algebra/dense.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/model/model.h>
 #include <squeal/modes/complex_modes.h>
@@ -53,4 +54,18 @@ namespace Squeal
   std::vector<std::string> friction_groups(const std::vector<double>               &disc_shares,
                                            const std::vector<std::complex<double>> &lambda,
                                            const std::vector<bool>                 &unstable);
+
+  /// Xᴴ M Y from the Gram matrix of [Re X, Im X] and [Re Y, Im Y].
+  ComplexDenseMatrix hermitian_products(const DenseMatrix &G);
+
+  /**
+   * cos² of the principal angles between the spans of two sets of vectors, ascending.
+   *
+   * @param A, B Gram matrices of both sets, Hermitian positive semidefinite
+   * @param C    products of the first with the second
+   */
+  Eigen::VectorXd squared_cosines(const ComplexDenseMatrix &A, const ComplexDenseMatrix &B, const ComplexDenseMatrix &C);
+
+  /// ‖Pψ‖² / ‖ψ‖² for the projection P on the span of vectors with Gram matrix A, of which C are the products with all ψ; B those of ψ.
+  Eigen::RowVectorXd shares_in_span(const ComplexDenseMatrix &A, const ComplexDenseMatrix &C, const ComplexDenseMatrix &B);
 } // namespace Squeal

@@ -18,11 +18,8 @@ namespace Squeal
     int    maximum_steps              = 30;
   };
 
-  /**
-   * The model from which a residual iteration starts: the real modes Φ_R, with
-   * their responses of first order to damping and, if there is @p friction, to
-   * friction, right and left. Its basis is M_c-orthonormal.
-   */
+  /// The model from which a residual iteration starts: the real modes Φ_R, with their responses of first order to damping and, if there is
+  /// @p friction, to friction, right and left. Its basis is M_c-orthonormal.
   ReducedModel starting_model(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, bool friction);
 
   /// Leaves what X has outside of the M-orthonormal basis of a model.
@@ -31,10 +28,8 @@ namespace Squeal
   /// Displacement residuals of the @p chosen modes, right and left, real and imaginary parts, each scaled to its mode: n × 4k.
   MultiVector residual_directions(const ResidualVectors &residuals, const ReducedModes &modes, const std::vector<int> &chosen);
 
-  /**
-   * M_c-orthonormal vectors by which the basis of @p model grows: principal axes
-   * of what @p directions have outside of it; nothing if they lie in the basis or there are none.
-   */
+  /// M_c-orthonormal vectors by which the basis of @p model grows: principal axes of what @p directions have outside of it; nothing if they
+  /// lie in the basis or there are none.
   std::optional<MultiVector> new_vectors(const CoupledSystem            &system,
                                          const ReducedModel             &model,
                                          const std::vector<MultiVector> &directions);

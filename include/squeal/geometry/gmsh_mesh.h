@@ -71,12 +71,9 @@ namespace Squeal
    */
   enum class MesherReply : char
   {
-    mesh           = 'm', ///< to_bytes() of a GmshMesh
-    failure        = 'f', ///< what Gmsh reports
-    out_of_memory  = 'o', ///< nothing follows
-    starts_program = 'p', ///< nothing follows
-    writes_file    = 'w', ///< name of the file, empty where it is not known
-    uses_network   = 'n'  ///< nothing follows
+    mesh          = 'm', ///< to_bytes() of a GmshMesh
+    failure       = 'f', ///< what Gmsh reports
+    out_of_memory = 'o'  ///< nothing follows
   };
 
   inline constexpr int mesher_reply_descriptor = 3;

@@ -16,7 +16,7 @@ namespace Squeal
     bool   is_confined; ///< no programs, no files, no network, where the system can do that
   };
 
-  /// A confined process tried what it may not: e.g. "starts another program".
+  /// A confined process tried what it may not.
   class ForbiddenAction : public std::runtime_error
   {
   public:

@@ -17,11 +17,9 @@ namespace Squeal
   /// Rows of a matrix from which on the fronts of its factors are large enough for several threads.
   constexpr int rows_of_large_matrices = 100000;
 
-  /**
-   * As long as it lives, the BLAS library has the threads of tasks where a matrix that is factorised has so many rows that they pay. Else
-   * parallel regions of OpenMP that begin on this thread have this thread alone: CHOLMOD has four for every front otherwise, whatever
-   * OMP_NUM_THREADS says, which wait for each other longer than they work.
-   */
+  /// As long as it lives, the BLAS library has the threads of tasks where a matrix that is factorised has so many rows that they pay. Else
+  /// parallel regions of OpenMP that begin on this thread have this thread alone: CHOLMOD has four for every front otherwise, whatever
+  /// OMP_NUM_THREADS says, which wait for each other longer than they work.
   class ThreadsOfFactorization
   {
   public:

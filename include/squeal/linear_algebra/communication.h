@@ -28,10 +28,8 @@ namespace Squeal
     return is_alone(communicator) ? value : dealii::Utilities::MPI::max(value, communicator);
   }
 
-  /**
-   * Replaces n numbers by those of process 0. Rounding may differ between processes where the same numbers are computed on
-   * all; decisions must be taken on the same bits.
-   */
+  /// Replaces n numbers by those of process 0. Rounding may differ between processes where the same numbers are computed on all; decisions
+  /// must be taken on the same bits.
   template <typename Number>
   void agree(const MPI_Comm communicator, Number *values, const std::size_t n)
   {

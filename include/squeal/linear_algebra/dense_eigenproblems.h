@@ -29,10 +29,8 @@ namespace Squeal
   };
   SingularValues singular_values(DenseMatrix A);
 
-  /**
-   * Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one of those that are wanted: A x = λ x,
-   * yᴴ A = λ yᴴ. With a value goes its conjugate.
-   */
+  /// Eigenvalues of a real square matrix A, and right and left eigenvectors of norm one of those that are wanted: A x = λ x, yᴴ A = λ yᴴ.
+  /// With a value goes its conjugate.
   struct DenseEigenpairs
   {
     std::vector<std::complex<double>> values;      ///< all of them

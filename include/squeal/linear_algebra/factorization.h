@@ -1,7 +1,7 @@
 #pragma once
 
-#include <squeal/base/factorization_library.h>
-#include <squeal/linear_algebra/linear_operator.h>
+#include <squeal/base/choices.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <memory>
@@ -29,11 +29,8 @@ namespace Squeal
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
-  /**
-   * LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws
-   * SolverError naming @p what if it is singular to working precision or the
-   * library cannot be used here.
-   */
+  /// LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws SolverError naming @p what if it is singular to working
+  /// precision or the library cannot be used here.
   std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
   /**

@@ -8,11 +8,8 @@
 
 namespace Squeal
 {
-  /**
-   * Vectors in bulk: n × k, distributed by rows, the columns of a process one
-   * after the other. A view refers to columns of another one; a copy of a view
-   * has columns of its own, and an assignment to a view changes what it refers to.
-   */
+  /// Vectors in bulk: n × k, distributed by rows, the columns of a process one after the other. A view refers to columns of another one; a
+  /// copy of a view has columns of its own, and an assignment to a view changes what it refers to.
   class MultiVector
   {
   public:
@@ -110,11 +107,8 @@ namespace Squeal
   /// XᵀY, k_X × k_Y, the same on every process.
   DenseMatrix gram(const MultiVector &X, const MultiVector &Y);
 
-  /**
-   * The small dense result of process 0, on all. Rounding of the same
-   * LAPACK call may differ between processes, with the alignment of memory for
-   * instance; eigenvectors of a multiple eigenvalue then differ altogether.
-   */
+  /// The small dense result of process 0, on all. Rounding of the same LAPACK call may differ between processes, with the alignment of
+  /// memory for instance; eigenvectors of a multiple eigenvalue then differ altogether.
   RealPairs agreed(MPI_Comm communicator, RealPairs pairs);
 
   /// Y = alpha X S + beta Y; X and Y must not share memory.
@@ -152,4 +146,29 @@ namespace Squeal
 
   /// Deterministic pseudo-random entries in [-1, 1], the same vectors however the rows are distributed.
   MultiVector random_vectors(const RowMap &map, int n_vectors, unsigned int seed = 1);
+
+  /// A linear map on distributed vectors, y = A x, for many vectors at once.
+  class LinearOperator
+  {
+  public:
+    virtual ~LinearOperator() = default;
+
+    /// Y = A X; X and Y have the same map and number of columns and do not alias.
+    virtual void apply(const MultiVector &X, MultiVector &Y) const = 0;
+
+    /// Distribution of the rows of Y, and of those of X where A is square.
+    virtual const RowMap &map() const = 0;
+  };
+
+  /// All rows of a short distributed X (contact nodes, not dofs) on every process.
+  DenseMatrix replicate(const MultiVector &X);
+
+  /// The rows of a replicated matrix that @p map owns here.
+  MultiVector distribute(const DenseMatrix &X, const RowMap &map);
+
+  /// All rows of X on process 0, in the order of their numbers; no rows on the others.
+  DenseMatrix gather(const MultiVector &X);
+
+  /// The rows of a matrix on process 0 that @p map owns here; @p X does not matter on the other processes.
+  MultiVector scatter(const DenseMatrix &X, const RowMap &map);
 } // namespace Squeal

@@ -16,10 +16,8 @@ namespace Squeal
     Matrix Q, R;
   };
 
-  /**
-   * By Cholesky factors of XᴴX, twice (CholeskyQR2: T. Fukaya et al., 2014), in a few products of blocks. Nothing where a
-   * column leaves less than 10⁻³ of itself beside those before it: squares of such parts drown in rounding errors.
-   */
+  /// By Cholesky factors of XᴴX, twice (CholeskyQR2: T. Fukaya et al., 2014), in a few products of blocks. Nothing where a column leaves
+  /// less than 10⁻³ of itself beside those before it: squares of such parts drown in rounding errors.
   template <typename Matrix>
   std::optional<OrthonormalBasis<Matrix>> basis_by_cholesky(const Matrix &X)
   {
@@ -45,10 +43,8 @@ namespace Squeal
     return qr.householderQ() * DenseMatrix::Identity(X.rows(), X.cols());
   }
 
-  /**
-   * By the Gram-Schmidt process where columns are few or hardly independent. @p is_independent decides on the norm of what is left of a
-   * column, as a part of that of the column.
-   */
+  /// By the Gram-Schmidt process where columns are few or hardly independent. @p is_independent decides on the norm of what is left of a
+  /// column, as a part of that of the column.
   template <typename Matrix, typename Predicate>
   OrthonormalBasis<Matrix> orthonormal_basis(const Matrix &X, const Predicate &is_independent)
   {

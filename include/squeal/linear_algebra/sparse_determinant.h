@@ -8,10 +8,8 @@
 
 namespace Squeal
 {
-  /**
-   * det(K + λ C + λ² M) of real sparse matrices at complex λ, from the pivots of
-   * a sparse complex LU factorisation for every λ (UMFPACK; one process).
-   */
+  /// det(K + λ C + λ² M) of real sparse matrices at complex λ, from the pivots of a sparse complex LU factorisation for every λ (UMFPACK;
+  /// one process).
   class SparseDeterminant
   {
   public:

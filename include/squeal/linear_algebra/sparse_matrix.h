@@ -1,9 +1,10 @@
 #pragma once
 
-#include <squeal/linear_algebra/linear_operator.h>
+#include <squeal/linear_algebra/multivector.h>
 
 #include <Eigen/SparseCore>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -153,12 +154,38 @@ namespace Squeal
     symmetric ///< the lower triangle is listed
   };
 
-  /**
-   * A in Matrix Market coordinate form with 17 significant digits, so that reading returns the same numbers: the whole text on
-   * process 0, nothing on the others. All processes must call.
-   */
+  /// A in Matrix Market coordinate form with 17 significant digits, so that reading returns the same numbers: the whole text on process 0,
+  /// nothing on the others. All processes must call.
   std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
 
   /// Rows of this process with the columns of all.
   SparseRows local_rows(const SparseMatrix &A);
+
+  /// Xᵀ A Y, with A times some columns of Y at a time: all of A Y would take as much memory as Y.
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A, const MultiVector &Y);
+
+  /// Xᵀ A X for a symmetric A, one half of it computed.
+  DenseMatrix weighted_gram(const MultiVector &X, const SparseMatrix &A);
+
+  /// Calls f(first, n) for blocks of columns so narrow that a copy of one takes little memory.
+  template <typename Function>
+  void for_column_blocks(const int n_columns, const Function &f)
+  {
+    constexpr int width = 32;
+    for (int first = 0; first < n_columns; first += width)
+      f(first, std::min(width, n_columns - first));
+  }
+
+  /// X ← X S for a square S.
+  void multiply_in_place(MultiVector &X, const DenseMatrix &S);
+
+  /**
+   * ω² [rad²/s²] up to which rounding errors of K hide the frequency of a motion, K φ = ω² M φ, whatever the band,
+   *
+   *   100 ε ρ,   ρ: geometric mean over the rows, weighted by mass, of Σ_j |K_ij| / Σ_j |M_ij|.
+   *
+   * φᵀKφ of a motion like that of a rigid body sums entries of K that cancel, of size ρ φᵀMφ; its error is some ε ρ at most. The
+   * mean is that of the heavy bodies: those that are light and stiff take no part in such a motion. All processes must call.
+   */
+  double unresolved_square(const SparseMatrix &K, const SparseMatrix &M);
 } // namespace Squeal

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/base/element.h>
+#include <squeal/base/choices.h>
 
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/lac/full_matrix.h>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/base/element.h>
+#include <squeal/base/choices.h>
 #include <squeal/geometry/hex_mesh.h>
 #include <squeal/linear_algebra/row_map.h>
 #include <squeal/parameters/materials.h>

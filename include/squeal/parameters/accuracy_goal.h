@@ -1,10 +1,32 @@
 #pragma once
 
-#include <squeal/base/element.h>
+#include <squeal/base/choices.h>
 #include <squeal/base/enum_table.h>
+#include <squeal/parameters/declarations.h>
+#include <squeal/parameters/geometry.h>
+
+#include <string>
+#include <vector>
 
 namespace Squeal
 {
+  /// Which meshes, elements and bases a study of accuracy compares (section `Accuracy study`).
+  struct AccuracyStudyParameters
+  {
+    std::vector<double>      factors         = {0.5, 1., 1.5}; ///< how many times as fine as the mesh of the scene [-]
+    std::vector<Element>     elements        = {Element::trilinear, Element::incompatible_modes, Element::quadratic};
+    std::vector<Outlines>    outlines        = {Outlines::inscribed, Outlines::true_area}; ///< of elements with straight edges
+    std::vector<std::string> bases           = {"real + 1st-ord. two-sided", "residual-grown"};
+    double                   grown_tolerance = 1e-4;   ///< of residual-grown bases [-]
+    double                   largest_dofs    = 150000; ///< of a mesh that is solved, clamped dofs included
+    double                   margin          = 0.1;    ///< by which bands are longer, so that no mode lacks its partner [-]
+
+    void declare(Declarations &declarations);
+
+    /// Throws ParameterError.
+    void check() const;
+  };
+
   struct Parameters;
 
   /// How accurate the user wants frequencies to be (`set Accuracy`).
@@ -34,10 +56,8 @@ namespace Squeal
   /// Those of a goal, which must be one.
   AccuracyLimits limits_of(AccuracyGoal goal);
 
-  /**
-   * Error of a goal's mesh over its difference from the coarser one that goes with it [-], somewhat more than what the default scene
-   * shows (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones.
-   */
+  /// Error of a goal's mesh over its difference from the coarser one that goes with it [-], somewhat more than what the default scene shows
+  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones.
   double error_by_difference(AccuracyGoal goal);
 
   /**
@@ -48,9 +68,7 @@ namespace Squeal
    */
   Parameters with_goal(const Parameters &given);
 
-  /**
-   * The same scene on the coarser mesh that the error of a goal is estimated with, in a band that reaches somewhat further, since
-   * frequencies on coarse meshes are higher. There must be a goal.
-   */
+  /// The same scene on the coarser mesh that the error of a goal is estimated with, in a band that reaches somewhat further, since
+  /// frequencies on coarse meshes are higher. There must be a goal.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <squeal/base/element.h>
 #include <squeal/base/enum_table.h>
-#include <squeal/base/factorization_library.h>
-#include <squeal/base/real_solver.h>
+#include <squeal/base/choices.h>
 #include <squeal/parameters/declarations.h>
 
 #include <string>

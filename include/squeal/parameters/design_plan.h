@@ -50,10 +50,8 @@ namespace Squeal
   /// The plan as a CSV file that Designs/Plan = file reads.
   std::string as_csv(const DesignPlan &plan);
 
-  /**
-   * The scene of a design, unchecked: @p parameters with the values of the variables. Throws ParameterError where there is no such
-   * parameter, naming the nearest, or where it refuses a value.
-   */
+  /// The scene of a design, unchecked: @p parameters with the values of the variables. Throws ParameterError where there is no such
+  /// parameter, naming the nearest, or where it refuses a value.
   Parameters with_design(const Parameters &parameters, const std::vector<std::string> &names, const std::vector<std::string> &values);
 
   /// The value that a variable has in a scene: that of the first of its parameters. Throws ParameterError as with_design() does.
@@ -64,4 +62,11 @@ namespace Squeal
 
   /// @p text with another k-th number, counted from one; digits of names are no numbers. Throws ParameterError if there are fewer.
   std::string with_number(const std::string &text, unsigned int k, const std::string &value);
+
+  /// Where the file of designs is: beside the parameter file, or in the current directory; empty where the designs come from none.
+  std::string designs_file(const Parameters &parameters);
+
+  /// The designs of the CSV file that Designs/File names: names of the variables in its first line, a design in each of the others. Throws
+  /// FileError if it cannot be read, ParameterError with the line if it is no comma-separated text in UTF-8.
+  DesignPlan read_design_file(const Parameters &parameters);
 } // namespace Squeal

@@ -4,6 +4,7 @@
 #include <squeal/parameters/declarations.h>
 #include <squeal/parameters/geometry_file.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -68,11 +69,9 @@ namespace Squeal
     /// Variables by which a script takes over these parameters, with their values as a script writes them.
     std::map<std::string, std::string> script_variables() const;
 
-    /**
-     * Which of script_variables() matter to the geometry: a script of Gmsh names those that it uses, a plan is extruded by
-     * those of thickness, height and layers, and contact nodes are paired in every mesh. Reads the file, without running
-     * it. Throws MeshError if there is none.
-     */
+    /// Which of script_variables() matter to the geometry: a script of Gmsh names those that it uses, a plan is extruded by those of
+    /// thickness, height and layers, and contact nodes are paired in every mesh. Reads the file, without running it. Throws MeshError if
+    /// there is none.
     std::set<std::string> used_variables() const;
 
     /// Whether the file is a plan that is extruded, not a solid. Reads the file. Throws MeshError if there is none.
@@ -86,4 +85,28 @@ namespace Squeal
     /// Throws ParameterError where values or their combination make no sense.
     void check() const;
   };
+
+  /// Nodes of the face of a pin that is filled by three blocks of k × k elements: 3 k (k + 1) + 1.
+  inline unsigned int nodes_of_pin_face(const unsigned int k)
+  {
+    return 3 * k * (k + 1) + 1;
+  }
+
+  /// The number k of elements on the edge of a block of a pin face with that many nodes, not rounded.
+  inline double blocks_of_pin_face(const double nodes)
+  {
+    return (std::sqrt(12. * nodes - 3.) - 3.) / 6.;
+  }
+
+  /// Throws ParameterError for a geometry whose mesh does not follow the element size and the numbers of layers, and MeshError if there is no such file.
+  void check_follows(const GeometryParameters &geometry);
+
+  /**
+   * The geometry with a mesh @p factor times as fine in every direction: elements of the size divided by it, layers times
+   * it, and pin faces of as many blocks, k × k elements each with 3 k (k + 1) + 1 nodes, and of as many rings; numbers are rounded, and one at
+   * least. Neighbouring graded layers and rings become as much more alike. A factor of 1 changes nothing.
+   *
+   * Throws as check_follows().
+   */
+  GeometryParameters refined(const GeometryParameters &geometry, double factor);
 } // namespace Squeal

@@ -29,10 +29,8 @@ namespace Squeal
     std::string onelab_name; ///< of DefineNumber[..., Name "..."]; empty if another value is set by its name
   };
 
-  /**
-   * What a Gmsh script says, without running it: the text of the script and of
-   * the scripts that it includes by literal names, comments left out.
-   */
+  /// What a Gmsh script says, without running it: the text of the script and of the scripts that it includes by literal names, comments
+  /// left out.
   class GeometryScript
   {
   public:
@@ -72,9 +70,7 @@ namespace Squeal
     std::string       name;  ///< with which the copy, or where there is none the geometry itself, is found again
   };
 
-  /**
-   * What to copy of a geometry, and where to. A file that is included from outside the geometry's own
-   * folder would not be found from the copy; then @p name is the geometry itself.
-   */
+  /// What to copy of a geometry, and where to. A file that is included from outside the geometry's own folder would not be found from the
+  /// copy; then @p name is the geometry itself.
   GeometryCopy copy_of(const std::string &geometry);
 } // namespace Squeal

@@ -19,10 +19,8 @@ namespace Squeal
     bool is_damped() const;
   };
 
-  /**
-   * Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³]. Their directions are those of the
-   * disc's axis (z): radial, tangential (circumferential) and axial.
-   */
+  /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³]. Their directions are those of the disc's axis
+  /// (z): radial, tangential (circumferential) and axial.
   struct Mount
   {
     std::string surface;
@@ -69,5 +67,26 @@ namespace Squeal
 
     /// Names of the surfaces that carry springs or dashpots.
     std::vector<std::string> mounted_surfaces() const;
+  };
+
+  /// Damping ratio of modes of one frequency.
+  struct ModalDampingRatio
+  {
+    double frequency; ///< [Hz]
+    double ratio;     ///< ζ [-]
+  };
+
+  /// Damping given mode by mode (section `Damping`). That of the materials is with the materials, that of the contact with the operation.
+  struct DampingParameters
+  {
+    std::vector<ModalDampingRatio> modal_ratios; ///< ascending frequencies; empty: none
+
+    /// ζ of a mode of @p frequency [Hz]: linear between the entries, constant beyond the first and last; 0 if there are none.
+    double modal_ratio(double frequency) const;
+
+    void declare(Declarations &declarations);
+
+    /// Throws ParameterError.
+    void check() const;
   };
 } // namespace Squeal

@@ -15,11 +15,8 @@ namespace Squeal
   template <>
   inline constexpr EnumName<Rotation> enum_table<Rotation>[] = {{Rotation::positive, "positive"}, {Rotation::negative, "negative"}};
 
-  /**
-   * Viscous contact damping along b, c_b [N s/m] per node: from the
-   * linearisation of R_t = μ R_n w/|w| it is μ |R_n0| / w_0 (consistent); the
-   * paper prints R_n0 / w_0 below its eq. (3) (published).
-   */
+  /// Viscous contact damping along b, c_b [N s/m] per node: from the linearisation of R_t = μ R_n w/|w| it is μ |R_n0| / w_0 (consistent);
+  /// the paper prints R_n0 / w_0 below its eq. (3) (published).
   enum class RadialDissipation
   {
     none,

@@ -1,16 +1,12 @@
 #pragma once
 
-#include <squeal/parameters/accuracy.h>
 #include <squeal/parameters/accuracy_goal.h>
 #include <squeal/parameters/analysis.h>
-#include <squeal/parameters/damping.h>
 #include <squeal/parameters/designs.h>
 #include <squeal/parameters/geometry.h>
-#include <squeal/parameters/ingredients.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
-#include <squeal/parameters/search.h>
 #include <squeal/parameters/sensitivity.h>
 #include <squeal/parameters/sliding.h>
 #include <squeal/parameters/study.h>
@@ -56,10 +52,8 @@ namespace Squeal
      */
     static Parameters read(const std::string &file, const std::vector<std::string> &overrides);
 
-    /**
-     * Gives the parameter of a path another value, from the one that it has, without checking how it goes with others. Throws
-     * ParameterError, naming @p where, if there is no such parameter or if it refuses the value.
-     */
+    /// Gives the parameter of a path another value, from the one that it has, without checking how it goes with others. Throws
+    /// ParameterError, naming @p where, if there is no such parameter or if it refuses the value.
     void set(const std::string &path, const std::string &where, const std::function<std::string(const std::string &)> &new_value);
 
     /// Every parameter with its value, and with its documentation and what it accepts, as a parameter file.

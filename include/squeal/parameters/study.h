@@ -34,10 +34,8 @@ namespace Squeal
     Reason (*why_unused)(const Parameters &);
   };
 
-  /**
-   * A question that a run may answer: its name, the parameters that it uses, what they must fulfil, and what answers it. Each stands in the
-   * file that answers it.
-   */
+  /// A question that a run may answer: its name, the parameters that it uses, what they must fulfil, and what answers it. Each stands in
+  /// the file that answers it.
   struct Study
   {
     const char *name;            ///< in `set Study = ...`

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/contact/system_family.h>
+#include <squeal/contact/coupled_system.h>
 #include <squeal/linear_algebra/multivector.h>
 
 #include <map>

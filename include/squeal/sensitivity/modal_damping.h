@@ -2,7 +2,7 @@
 
 #include <squeal/contact/coupled_system.h>
 #include <squeal/eigen/symmetric_modes.h>
-#include <squeal/parameters/damping.h>
+#include <squeal/parameters/materials.h>
 #include <squeal/sensitivity/eigenvalue_derivatives.h>
 
 #include <map>

@@ -1,19 +1,48 @@
 #pragma once
 
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/system/low_rank_factor.h>
 
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Squeal
 {
-  /**
-   * M ü + C u̇ + K u = f of the uncoupled bodies (left-hand side of eq. (4) of
-   * the paper) on the free dofs; rows distributed over the processes.
-   */
+  /// An n × m matrix F of few columns, kept either by its sparse transpose or in full.
+  class LowRankFactor
+  {
+  public:
+    /// @param transpose Fᵀ, m × n
+    explicit LowRankFactor(std::shared_ptr<const SparseMatrix> transpose);
+
+    /// @param columns F, n × m
+    explicit LowRankFactor(MultiVector columns);
+
+    /// m
+    int rank() const;
+
+    /// Fᵀ X, m × k, the same on every process.
+    DenseMatrix transpose_times(const MultiVector &X) const;
+
+    /// F Y for Y, m × k, the same on every process.
+    MultiVector operator*(const DenseMatrix &Y) const;
+
+    /// Columns [first, first + n) of F.
+    MultiVector columns(int first, int n) const;
+
+    /// Fᵀ; null if F is kept in full.
+    const std::shared_ptr<const SparseMatrix> &sparse_transpose() const;
+
+  private:
+    std::shared_ptr<const SparseMatrix> rows;
+    std::shared_ptr<const MultiVector>  full;
+  };
+
+  /// M ü + C u̇ + K u = f of the uncoupled bodies (left-hand side of eq. (4) of the paper) on the free dofs; rows distributed over the
+  /// processes.
   struct SecondOrderSystem
   {
     std::shared_ptr<const SparseMatrix> mass;      ///< M [kg]
@@ -75,10 +104,8 @@ namespace Squeal
     skew ///< Aᵀ = −A
   };
 
-  /**
-   * One term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named
-   * parameters p. A_k is sparse, or of low rank, L diag(d) Rᵀ with d from a list of parameters.
-   */
+  /// One term of Q(λ; p) = Σ_k θ_k(p) λ^(p_k) A_k, with a coefficient θ_k that depends on named parameters p. A_k is sparse, or of low
+  /// rank, L diag(d) Rᵀ with d from a list of parameters.
   struct Term
   {
     std::string                          name;      ///< for messages
@@ -157,18 +184,33 @@ namespace Squeal
   /// Terms that do not vanish and have λ to this power.
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /**
-   * M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null where there is no term. Throws SolverError
-   * naming a term that has no sparse form.
-   */
+  /// M, C and K of Q(λ) = λ² M + λ C + K as sparse matrices, null where there is no term. Throws SolverError naming a term that has no
+  /// sparse form.
   SecondOrderSystem sparse_matrices(const std::vector<Term> &terms, const ParameterValues &values);
 
   /// Σ ‖θ A‖_∞ ≥ ‖Σ θ A‖_∞ of the terms in a power of λ, all of which have a sparse form.
   double norm_bound(const std::vector<Term> &terms, const ParameterValues &values, int power);
 
-  /**
-   * The same sum at these values with as few terms as possible: of the sparse terms, one of each power and symmetry is
-   * left, with a coefficient of one. Terms that vanish are gone. Terms of low rank are not allowed.
-   */
+  /// The same sum at these values with as few terms as possible: of the sparse terms, one of each power and symmetry is left, with a
+  /// coefficient of one. Terms that vanish are gone. Terms of low rank are not allowed.
   std::vector<Term> merged(const std::vector<Term> &terms, const ParameterValues &values);
+
+  /// Terms that several systems have in common, the members of a family: they differ in coefficients only.
+  struct TermFamily
+  {
+    std::vector<Term>            terms;   ///< with coefficients of one, or a scale where members differ
+    ParameterValues              values;  ///< of the scales in the middle of the family: ones
+    std::vector<ParameterValues> members; ///< of the scales, for each member
+  };
+
+  /**
+   * The terms Σ θ_k A_k of a family with as few matrices as possible: those whose coefficients θ_k keep their ratios from member to
+   * member are summed, with the means of θ_k over the members. All terms must be sparse.
+   *
+   * @param members values of the parameters of the terms for each member, of one at least
+   */
+  TermFamily term_family(const std::vector<Term> &terms, const std::vector<ParameterValues> &members);
+
+  /// A term of a member as a sum of terms of its family: their numbers and factors.
+  using TermShares = std::vector<std::pair<std::size_t, double>>;
 } // namespace Squeal

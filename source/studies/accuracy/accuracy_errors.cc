@@ -3,20 +3,10 @@
 #include <squeal/estimates/mode_pairing.h>
 #include <squeal/studies/accuracy/accuracy.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-
 namespace Squeal
 {
   namespace
   {
-    /// A value with its sequence: of all meshes that have the mode.
-    struct Limit
-    {
-      std::optional<Extrapolation> sequence;
-      double                       value, uncertainty;
-    };
 
     Limit limit_of(const std::vector<double> &widths, const std::vector<double> &values, const double order, const bool in_cluster)
     {
@@ -33,7 +23,7 @@ namespace Squeal
                             const std::vector<ModePairing>        &pairings) // of every member but the last with that
     {
       const SolvedMesh   &finest = *members.back();
-      ConvergedMode       mode{finest.labels[number], false, {}, 0., 0., 0., 0., {}, {}};
+      ConvergedMode       mode{finest.labels[number], false, {}, {}, {}};
       std::vector<double> widths, frequencies, divergences;
       for (std::size_t k = 0; k < members.size(); ++k)
         {
@@ -47,15 +37,10 @@ namespace Squeal
           frequencies.push_back(q.frequency);
           divergences.push_back(q.divergence_rate);
         }
-      const double order          = 2. * degree_of(finest.mesh.element);
-      const Limit  frequency      = limit_of(widths, frequencies, order, mode.in_cluster);
-      const Limit  divergence     = limit_of(widths, divergences, order, mode.in_cluster);
-      mode.frequency              = frequency.value;
-      mode.frequency_uncertainty  = frequency.uncertainty;
-      mode.frequencies            = frequency.sequence;
-      mode.divergence             = divergence.value;
-      mode.divergence_uncertainty = divergence.uncertainty;
-      mode.divergences            = divergence.sequence;
+      const double order = 2. * degree_of(finest.mesh.element);
+      mode.frequency     = limit_of(widths, frequencies, order, mode.in_cluster);
+      mode.divergence    = limit_of(widths, divergences, order, mode.in_cluster);
+
       return mode;
     }
 
@@ -69,41 +54,18 @@ namespace Squeal
       for (std::size_t j = 0; j < members.back()->labels.size(); ++j)
         {
           family.modes.push_back(converged(j, members, pairings));
-          const ConvergedMode &mode = family.modes.back();
-          if (!mode.frequencies || mode.frequency > maximum_frequency)
+          const ConvergedMode &mode  = family.modes.back();
+          const Limit         &limit = mode.frequency;
+          if (!limit.sequence || limit.value > maximum_frequency)
             continue;
           const double finest = modal_quantities(members.back()->modes.lambda[j]).frequency;
-          family.error += std::pow((std::abs(finest - mode.frequency) + mode.frequency_uncertainty) / mode.frequency, 2);
+          family.error += std::pow((std::abs(finest - limit.value) + limit.uncertainty) / limit.value, 2);
           ++n;
         }
       family.error = n > 0 ? std::sqrt(family.error / n) : 1.;
       return family;
     }
-  } // namespace
 
-  std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, const double maximum_frequency)
-  {
-    std::map<std::string, std::vector<const SolvedMesh *>> members;
-    for (const SolvedMesh &mesh : meshes)
-      members[mesh.mesh.family()].push_back(&mesh);
-    std::vector<ConvergedFamily> families;
-    for (const auto &[name, of_family] : members)
-      if (of_family.size() > 1)
-        families.push_back(converged(name, of_family, maximum_frequency));
-    return families;
-  }
-
-  const ConvergedFamily &best_family(const std::vector<ConvergedFamily> &families)
-  {
-    if (families.empty())
-      throw SolverError("no element was solved on two meshes, so that nothing can be extrapolated", "study of accuracy",
-                        "give more Accuracy study/Mesh factors, smaller ones, or raise Accuracy study/Largest number of dofs");
-    return *std::min_element(families.begin(), families.end(),
-                             [](const ConvergedFamily &a, const ConvergedFamily &b) { return a.error < b.error; });
-  }
-
-  namespace
-  {
     ErrorKinds errors_of(const double value, const double full, const double reference, const double scale, const double algebraic)
     {
       return {std::abs(value - reference) / scale, std::abs(full - reference) / scale, std::abs(value - full) / scale, algebraic};
@@ -125,8 +87,8 @@ namespace Squeal
       const double          algebraic = method.algebraic_errors[pair.partner];
       mode.frequency                  = found.frequency;
       mode.divergence                 = found.divergence_rate;
-      mode.frequency_error            = errors_of(found.frequency, full.frequency, reference.frequency, reference.frequency, algebraic);
-      mode.divergence_error           = errors_of(found.divergence_rate, full.divergence_rate, reference.divergence, 1., algebraic);
+      mode.frequency_error  = errors_of(found.frequency, full.frequency, reference.frequency.value, reference.frequency.value, algebraic);
+      mode.divergence_error = errors_of(found.divergence_rate, full.divergence_rate, reference.divergence.value, 1., algebraic);
       return mode;
     }
 
@@ -140,7 +102,7 @@ namespace Squeal
       double         sum = 0.;
       for (std::size_t j = 0; j < reference.modes.size(); ++j)
         {
-          if (reference.modes[j].frequency > maximum_frequency)
+          if (reference.modes[j].frequency.value > maximum_frequency)
             continue;
           const ModeErrors mode = compared(reference.modes[j], pairing.fine[j], mesh, method);
           result.modes.push_back(mode);
@@ -169,6 +131,27 @@ namespace Squeal
                           std::none_of(methods.begin(), methods.end(), [&](const ComparedMethod &other) { return beats(other, method); });
     }
   } // namespace
+
+  std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, const double maximum_frequency)
+  {
+    std::map<std::string, std::vector<const SolvedMesh *>> members;
+    for (const SolvedMesh &mesh : meshes)
+      members[mesh.mesh.family()].push_back(&mesh);
+    std::vector<ConvergedFamily> families;
+    for (const auto &[name, of_family] : members)
+      if (of_family.size() > 1)
+        families.push_back(converged(name, of_family, maximum_frequency));
+    return families;
+  }
+
+  const ConvergedFamily &best_family(const std::vector<ConvergedFamily> &families)
+  {
+    if (families.empty())
+      throw SolverError("no element was solved on two meshes, so that nothing can be extrapolated", "study of accuracy",
+                        "give more Accuracy study/Mesh factors, smaller ones, or raise Accuracy study/Largest number of dofs");
+    return *std::min_element(families.begin(), families.end(),
+                             [](const ConvergedFamily &a, const ConvergedFamily &b) { return a.error < b.error; });
+  }
 
   std::vector<ComparedMethod> compare(const std::vector<SolvedMesh> &meshes,
                                       const ConvergedFamily         &reference,

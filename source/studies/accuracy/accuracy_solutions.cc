@@ -3,17 +3,12 @@
 #include <squeal/base/memory.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
-#include <squeal/modes/reduced_modes.h>
-#include <squeal/parameters/mesh_family.h>
+#include <squeal/parameters/geometry.h>
 #include <squeal/studies/accuracy/accuracy.h>
-#include <squeal/studies/steps/mesh_estimate.h>
+#include <squeal/studies/steps/mode_results.h>
 #include <squeal/studies/steps/reduction_sets.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
 
 namespace Squeal
 {
@@ -21,31 +16,14 @@ namespace Squeal
   {
     constexpr const char *full_order = "full order";
 
-    Cost operator+(const Cost &a, const Cost &b)
+    /// From now on measures the memory that work takes beside what other meshes have left, of all processes [byte].
+    std::function<double()> memory_meter(const MPI_Comm communicator, const double resident_before)
     {
-      return {a.seconds + b.seconds, a.cpu_seconds + b.cpu_seconds, std::max(a.peak_memory, b.peak_memory)};
+      const bool   has_peak       = reset_peak_memory();
+      const double left_by_others = resident_memory() - resident_before;
+      return
+        [=] { return dealii::Utilities::MPI::sum((has_peak ? peak_resident_memory() : resident_memory()) - left_by_others, communicator); };
     }
-
-    /// Memory that work takes beside what other meshes have left, of all processes [byte].
-    class MemoryMeter
-    {
-    public:
-      MemoryMeter(const MPI_Comm communicator, const double resident_before)
-        : communicator(communicator)
-        , has_peak(reset_peak_memory())
-        , left_by_others(resident_memory() - resident_before)
-      {}
-
-      double peak() const
-      {
-        return dealii::Utilities::MPI::sum((has_peak ? peak_resident_memory() : resident_memory()) - left_by_others, communicator);
-      }
-
-    private:
-      const MPI_Comm communicator;
-      const bool     has_peak;
-      const double   left_by_others;
-    };
 
     std::vector<double> algebraic_errors(const ComplexModes &modes)
     {
@@ -64,7 +42,12 @@ namespace Squeal
               frictionless.cpu_seconds - modes.factorisation.cpu_seconds - modes.solution.cpu_seconds, frictionless.peak_memory};
     }
 
-    ModesByMethod reduced(const BasisRecipe &recipe, ReductionSets &sets, const ComplexModes &full, const MemoryMeter &memory)
+    /// @p before: costs of what all bases rest on
+    ModesByMethod reduced(const BasisRecipe             &recipe,
+                          ReductionSets                 &sets,
+                          const ComplexModes            &full,
+                          const Cost                    &before,
+                          const std::function<double()> &memory)
     {
       const ReductionParameters &reduction = sets.run.parameters.reduction;
       if (recipe.is_connected())
@@ -75,14 +58,14 @@ namespace Squeal
       options.tolerance     = reduction.rank_tolerance;
       options.pod_tolerance = reduction.pod_tolerance;
       const Stopwatch    watch;
-      const ReducedBasis basis = reduced_basis(recipe, sets.ingredients(), options);
+      const ReducedBasis basis = reduced_basis(recipe, sets.ingredients, options);
       ReducedModel       model(sets.system);
       model.extend(*basis.vectors);
       const ReducedModes modes = reduced_modes(model, sets.plan.friction_coefficient, sets.plan.largest_circular_frequency, BandEnd::open);
       Cost               cost  = watch.cost();
-      const double       beforehand = sets.cost(recipe);
-      cost                          = cost + Cost{beforehand, beforehand, 0.};
-      cost.peak_memory              = memory.peak();
+      cost.seconds += before.seconds + sets.cost(recipe);
+      cost.cpu_seconds += before.cpu_seconds + sets.cost(recipe);
+      cost.peak_memory = std::max(before.peak_memory, memory());
 
       ModesByMethod result{recipe.name, basis.size(), cost, {}, {}};
       for (const ModeError &error : reduction_errors(sets.system, *sets.frictionless.inverse, model, modes, full))
@@ -121,14 +104,13 @@ namespace Squeal
       return result;
     }
 
-    /// @param resident_before memory of this process before the first mesh [byte]
-    /// @param points          of the first mesh, taken from it
+    /// @param resident_before memory of this process before the first mesh [byte] @param points          of the first mesh, taken from it
     SolvedMesh solved(const MeshAndElement &mesh, const double resident_before, std::optional<CommonPoints> &points, Run &run)
     {
-      const Parameters  parameters = with(mesh, run.parameters);
-      Progress          silent;
-      Run               part(parameters, run, silent);
-      const MemoryMeter memory(run.communicator, resident_before);
+      const Parameters parameters = with(mesh, run.parameters);
+      Progress         silent;
+      Run              part(parameters, run, silent);
+      const auto       memory = memory_meter(run.communicator, resident_before);
 
       Stopwatch watch;
       Scene     scene  = mesh_scene(part);
@@ -137,10 +119,10 @@ namespace Squeal
         throw MeshError(Squeal::text(n_dofs, " dofs, more than Accuracy study/Largest number of dofs"), mesh.text(), "raise that number");
       FrictionlessModes frictionless  = damped_modes(scene, part);
       Cost              to_real_modes = watch.cost();
-      to_real_modes.peak_memory       = memory.peak();
+      to_real_modes.peak_memory       = memory();
       const FrictionModes full        = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
       Cost                cost        = watch.cost();
-      cost.peak_memory                = memory.peak();
+      cost.peak_memory                = memory();
 
       if (!points)
         points = common_points(*scene.model, parameters.materials);
@@ -155,10 +137,8 @@ namespace Squeal
           ReductionSets       sets(plan, frictionless, frictionless.linearisation.coupled, part);
           for (const BasisRecipe *recipe : plan.recipes)
             {
-              const MemoryMeter of_basis(run.communicator, resident_before);
-              ModesByMethod     modes = reduced(*recipe, sets, full.modes, of_basis);
-              modes.cost              = modes.cost + before_modes(to_real_modes, frictionless);
-              result.methods.push_back(std::move(modes));
+              const auto of_basis = memory_meter(run.communicator, resident_before);
+              result.methods.push_back(reduced(*recipe, sets, full.modes, before_modes(to_real_modes, frictionless), of_basis));
             }
         }
       run.progress.finish(Squeal::text(n_dofs, " dofs, ", result.n_contact_nodes, " contact nodes, ", full.modes.lambda.size(), " modes, ",

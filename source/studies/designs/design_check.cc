@@ -1,13 +1,7 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/base/text.h>
-#include <squeal/studies/designs/design_check.h>
+#include <squeal/studies/designs/design_work.h>
 
 #include <deal.II/base/utilities.h>
-
-#include <algorithm>
-#include <map>
-#include <optional>
-#include <set>
 
 namespace Squeal
 {
@@ -31,15 +25,10 @@ namespace Squeal
                                                "Geometry/Meshing time limit",
                                                "Geometry/Meshing memory limit"};
 
-    std::string path_of(const std::string &name)
-    {
-      return dealii::Utilities::trim(name.substr(0, name.find('[')));
-    }
-
     /// Why a parameter changes nothing in a design; empty if it does. @p as_written: the design without what Accuracy changes in it.
     std::string why_unused(const std::string &name, const Parameters &design, const Parameters &as_written)
     {
-      const std::string path = path_of(name);
+      const std::string path = dealii::Utilities::trim(name.substr(0, name.find('[')));
       for (const char *numerical : of_the_solution)
         if (concerns(numerical, path))
           return "it says how designs are solved, not what they are";
@@ -67,11 +56,6 @@ namespace Squeal
             break;
         }
       return reason;
-    }
-
-    std::string where_of(const DesignPlan &plan, const std::size_t design)
-    {
-      return plan.where.empty() ? plan.where_names : plan.where[design];
     }
 
     void check_names(const Parameters &parameters, const std::vector<std::string> &names, const std::string &where)
@@ -149,7 +133,8 @@ namespace Squeal
               if (of_scene && of_scene->reason == alone->reason)
                 throw ParameterError(*of_scene);
               throw ParameterError(alone->reason,
-                                   where_of(plan, i) + ", design " + std::to_string(i + 1) + ", " + plan.names[v] + " = " + legible(value),
+                                   (plan.where.empty() ? plan.where_names : plan.where[i]) + ", design " + std::to_string(i + 1) + ", " +
+                                     plan.names[v] + " = " + legible(value),
                                    alone->change);
             }
         }

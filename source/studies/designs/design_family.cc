@@ -1,15 +1,9 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/text.h>
-#include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/orthonormal_basis.h>
-#include <squeal/studies/designs/design_family.h>
+#include <squeal/studies/designs/design_solution.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
-#include <sstream>
-#include <utility>
 
 namespace Squeal
 {
@@ -61,9 +55,10 @@ namespace Squeal
   }
 
   DesignFamily::DesignFamily(const std::vector<Parameters> &designs, Run &run)
-    : designs(designs)
+    : scene(mesh_scene(run))
+    , designs(designs)
     , run(run)
-    , scene(mesh_scene(run))
+
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
   {
     const BodyTerms              bodies = assemble_scene(scene, run);

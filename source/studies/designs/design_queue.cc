@@ -1,19 +1,13 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
-#include <squeal/base/progress.h>
-#include <squeal/base/text.h>
 #include <squeal/base/worker_process.h>
-#include <squeal/studies/designs/design_queue.h>
+#include <squeal/studies/designs/design_work.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <iterator>
-#include <memory>
-#include <thread>
 
 namespace Squeal
 {
@@ -22,7 +16,7 @@ namespace Squeal
   namespace
   {
     constexpr const char *key_file = "study.key";
-    constexpr const char *title    = "squeal designs 3\n"; ///< with the version of the format
+    constexpr const char *title    = "squeal designs 4\n"; ///< with the version of the format
 
     std::string content(const fs::path &file)
     {
@@ -98,22 +92,21 @@ namespace Squeal
     : folder(folder)
   {}
 
-  fs::path DesignStore::folder_of(const int design) const
+  fs::path DesignStore::file_of(const int design) const
   {
-    return folder / text("design-", design);
+    return folder / text("design-", design, ".result");
   }
 
   fs::path DesignStore::folder_of(const std::vector<int> &designs) const
   {
-    return designs.size() == 1 ? folder_of(designs.front()) : folder / text("designs-from-", designs.front());
+    return folder / text(designs.size() == 1 ? "design-" : "designs-from-", designs.front());
   }
 
   std::optional<DesignResult> DesignStore::find(const int design) const
   {
-    const fs::path file = folder_of(design) / result_file;
-    if (!fs::exists(file))
+    if (!fs::exists(file_of(design)))
       return {};
-    const std::string packed = content(file);
+    const std::string packed = content(file_of(design));
     return dealii::Utilities::unpack<DesignResult>(std::vector<char>(packed.begin(), packed.end()), false);
   }
 
@@ -124,15 +117,8 @@ namespace Squeal
 
   void DesignStore::keep(const DesignResult &result) const
   {
-    const fs::path          place  = folder_of(result.number);
     const std::vector<char> packed = dealii::Utilities::pack(result, false);
-    fs::create_directories(place);
-    replace_file(place / result_file, {packed.data(), packed.size()});
-  }
-
-  void DesignStore::remove() const
-  {
-    fs::remove_all(folder);
+    replace_file(file_of(result.number), {packed.data(), packed.size()});
   }
 
   void solve_side_by_side(const std::vector<std::vector<int>>             &batches,

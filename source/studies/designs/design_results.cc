@@ -5,7 +5,6 @@
 #include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -44,6 +43,17 @@ namespace Squeal
       };
     }
 
+    /// What all designs have of something, each with the number of its design.
+    template <typename Item>
+    std::vector<std::pair<int, Item>> of_all(const std::vector<DesignResult> &designs, std::vector<Item> DesignResult::*items)
+    {
+      std::vector<std::pair<int, Item>> result;
+      for (const DesignResult &design : designs)
+        for (const Item &item : design.*items)
+          result.emplace_back(design.number, item);
+      return result;
+    }
+
     Columns<DesignResult> variable_columns(const std::vector<std::string> &names)
     {
       Columns<DesignResult> columns = {{"design", "-", &DesignResult::number}};
@@ -71,16 +81,23 @@ namespace Squeal
       std::vector<std::string> values;
       for (std::size_t v = 0; v < names.size(); ++v)
         values.push_back(names[v] + " = " + row.values[v]);
-      const std::string limit = text(100. * weak_divergence, " %");
-      return text("design ", row.number, " (", boost::algorithm::join(values, "; "), "): ",
-                  row.weak_onset ?
-                    text("beyond ", limit, " from mu = ", row.weak_onset->friction_coefficient, " on (", row.weak_onset->label, ")") :
-                    "nowhere beyond " + limit,
+      return text("design ", row.number, " (", boost::algorithm::join(values, "; "), "): ", outcome_of(row),
+
                   row.worst ? text(", ", decimal_text(100. * row.worst->divergence_rate), " % at most (", row.worst->label, " at ",
                                    decimal_text(row.worst->frequency), " Hz)") :
                               ", no mode grows");
     }
   } // namespace
+
+  std::string outcome_of(const DesignResult &result)
+  {
+    if (result.outcome != DesignOutcome::solved)
+      return to_string(result.outcome) + ": " + result.reason;
+    const std::string limit = text(100. * weak_divergence, " %");
+    return result.weak_onset ?
+             text("beyond ", limit, " from mu = ", result.weak_onset->friction_coefficient, " on (", result.weak_onset->label, ")") :
+             "nowhere beyond " + limit;
+  }
 
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs)
   {
@@ -117,45 +134,31 @@ namespace Squeal
 
   Table design_threshold_table(const std::vector<DesignResult> &designs)
   {
-    struct Line
-    {
-      int             design;
-      DesignThreshold threshold;
-    };
-    std::vector<Line> lines;
-    for (const DesignResult &design : designs)
-      for (const DesignThreshold &threshold : design.thresholds)
-        lines.push_back({design.number, threshold});
-    const auto of = [](auto member) { return [member](const Line &line) { return Cell(line.threshold.*member); }; };
-    return Table(Columns<Line>{{"design", "-", &Line::design},
+    using Line    = std::pair<int, DesignThreshold>;
+    const auto of = [](auto member) { return [member](const Line &line) { return Cell(line.second.*member); }; };
+
+    return Table(Columns<Line>{{"design", "-", &Line::first},
                                {"mu", "-", of(&DesignThreshold::friction_coefficient), 6},
                                {"uncertainty", "-", of(&DesignThreshold::uncertainty), 1, true},
                                {"event", "", of(&DesignThreshold::event)},
                                {"mechanism", "", of(&DesignThreshold::mechanism)},
                                {"label", "", of(&DesignThreshold::label)},
-                               {"overlap with reference", "-", [](const Line &line) { return overlap_cell(line.threshold.overlap); }, 3},
+                               {"overlap with reference", "-", [](const Line &line) { return overlap_cell(line.second.overlap); }, 3},
                                {"label of partner", "", of(&DesignThreshold::partner)},
                                {"frequency", "Hz", of(&DesignThreshold::frequency), 3}},
-                 lines);
+                 of_all(designs, &DesignResult::thresholds));
   }
 
   Table design_mode_table(const std::vector<DesignResult> &designs)
   {
-    struct Line
-    {
-      int        design;
-      DesignMode mode;
-    };
-    std::vector<Line> lines;
-    for (const DesignResult &design : designs)
-      for (const DesignMode &mode : design.modes)
-        lines.push_back({design.number, mode});
-    const auto of      = [](auto member) { return [member](const Line &line) { return Cell(line.mode.*member); }; };
-    const auto percent = [](double DesignMode::*member) { return [member](const Line &line) { return Cell(100. * line.mode.*member); }; };
-    return Table(Columns<Line>{{"design", "-", &Line::design},
+    using Line         = std::pair<int, DesignMode>;
+    const auto of      = [](auto member) { return [member](const Line &line) { return Cell(line.second.*member); }; };
+    const auto percent = [](double DesignMode::*member) { return [member](const Line &line) { return Cell(100. * line.second.*member); }; };
+
+    return Table(Columns<Line>{{"design", "-", &Line::first},
                                {"label", "", of(&DesignMode::label)},
                                {"own label", "", of(&DesignMode::own_label)},
-                               {"overlap with reference", "-", [](const Line &line) { return overlap_cell(line.mode.overlap); }, 3},
+                               {"overlap with reference", "-", [](const Line &line) { return overlap_cell(line.second.overlap); }, 3},
                                {"frequency at smallest mu", "Hz", of(&DesignMode::first_frequency), 3},
                                {"largest mu", "-", of(&DesignMode::last_friction_coefficient), 4},
                                {"frequency", "Hz", of(&DesignMode::last_frequency), 3},
@@ -164,8 +167,8 @@ namespace Squeal
                                {"estimated error of lambda", "-", of(&DesignMode::last_error), 1, true},
                                {"verdict", "", of(&DesignMode::verdict)},
                                {"largest divergence rate", "%", percent(&DesignMode::largest_divergence_rate), 4},
-                               {"onset", "-", [](const Line &line) { return line.mode.onset ? Cell(*line.mode.onset) : Cell(); }, 6}},
-                 lines);
+                               {"onset", "-", [](const Line &line) { return line.second.onset ? Cell(*line.second.onset) : Cell(); }, 6}},
+                 of_all(designs, &DesignResult::modes));
   }
 
   Table quietest_designs(const std::vector<std::string> &names, const std::vector<DesignResult> &designs)

@@ -1,18 +1,35 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/base/text.h>
+#include <squeal/estimates/mode_pairing.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/designs/design_solution.h>
-#include <squeal/studies/sweep/sweep_charts.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
 #include <numeric>
 
 namespace Squeal
 {
   namespace
   {
+    /// The rows of the shapes that belong to bodies of @p chosen.
+    DenseMatrix rows_of(const ReferenceModes &reference, const CommonPoints &chosen)
+    {
+      DenseMatrix  result(3 * chosen.n(), reference.shapes.cols());
+      Eigen::Index from = 0, to = 0;
+      auto         next = chosen.bodies.begin();
+      for (const CommonPoints::Body &body : reference.points.bodies)
+        {
+          const auto n = static_cast<Eigen::Index>(3 * body.points.size());
+          if (next != chosen.bodies.end() && next->name == body.name)
+            {
+              result.middleRows(to, n) = reference.shapes.middleRows(from, n);
+              to += n;
+              ++next;
+            }
+          from += n;
+        }
+      return result;
+    }
+
     /// Names of the branches of a chart by the reference modes, found where each branch begins.
     std::vector<ReferenceName> names_of_branches(const SweepModel &model, const SweepChart &chart, const ReferenceModes &reference)
     {
@@ -125,13 +142,8 @@ namespace Squeal
       if (last.friction_coefficient < largest_friction_coefficient)
         return;
       largest_friction_coefficient = last.friction_coefficient;
-      result.n_unstable = result.n_undecided = 0;
-      for (std::size_t j = 0; j < last.lambda.size(); ++j)
-        if (model.is_in_band(last.lambda[j]))
-          {
-            result.n_unstable += last.verdicts[j] == Verdict::unstable;
-            result.n_undecided += last.verdicts[j] == Verdict::undecided;
-          }
+      result.n_unstable            = model.n_of(last, Verdict::unstable);
+      result.n_undecided           = model.n_of(last, Verdict::undecided);
     }
 
     /// Modes in the band at the first friction coefficient beside the real ones that inertia counts, those of a rigid body included.
@@ -160,6 +172,38 @@ namespace Squeal
     }
   } // namespace
 
+  ReferenceModes reference_modes(const FrictionlessModes &modes, const MaterialParameters &materials)
+  {
+    const Linearisation &linearisation = modes.linearisation;
+    const Model         &model         = *linearisation.scene->model;
+    constexpr int        per_cell      = 1; // its centre
+    ReferenceModes       result{body_frames(model), common_points(model, materials, per_cell), {}, {}, {}};
+    const auto           E = displacements_at(result.points, model, Directions::cylindrical);
+    result.shapes          = gather(*E * (*linearisation.coupled.kernel * *modes.real.vectors));
+    for (std::size_t j = 0; j < modes.labels.size(); ++j)
+      {
+        result.lambda.emplace_back(0., std::sqrt(std::max(0., modes.real.eigenvalues[j])));
+        result.names.push_back(to_string(modes.labels[j]));
+      }
+    return result;
+  }
+
+  std::vector<ReferenceName> names_by(const ReferenceModes &reference,
+                                      const Model          &model,
+                                      const SparseMatrix   &kernel,
+                                      const ComplexModes   &modes)
+  {
+    const CommonPoints         points = carried_over(reference.points, reference.frames, body_frames(model));
+    const auto                 E      = displacements_at(points, model, Directions::cylindrical);
+    const ModesAtPoints        here   = at_points(*E, kernel, modes);
+    const MultiVector          shapes = scatter(rows_of(reference, points), here.real_part.map());
+    const ModesAtPoints        there  = {reference.lambda, shapes, MultiVector(shapes.map(), shapes.n_columns())};
+    std::vector<ReferenceName> result;
+    for (const PairedMode &mode : pair_modes(there, here).fine)
+      result.push_back({mode.partner >= 0 ? reference.names[mode.partner] : "", mode.overlap, mode.in_cluster});
+    return result;
+  }
+
   Parameters sweep_of(const Parameters &design)
   {
     Parameters       result   = design;
@@ -179,7 +223,7 @@ namespace Squeal
     const Stopwatch            stopwatch;
     const DesignFamily::Member member     = family.solve(design);
     double                     largest_mu = 0.;
-    DesignResult               result     = begun_result(family.shared_scene());
+    DesignResult               result     = begun_result(family.scene);
     take_over(*member.model, member.chart, reference, largest_mu, result);
     compare_counts(*member.model, member.chart, member.n_counted, result);
     sort_thresholds(result);
@@ -204,7 +248,7 @@ namespace Squeal
     for (const ContactRegime &regime : plan.regimes)
       {
         SweepModel model(plan, regime, part);
-        evaluate_points(model, *store_of(model, checkpoint, "sweep"));
+        evaluate_points(model, store_of(model, checkpoint, "sweep").get());
         if (model.known.size() < regime.points.size())
           throw SolverError(
             text(regime.points.size() - model.known.size(), " of ", regime.points.size(), " friction coefficients miss the tolerance"),

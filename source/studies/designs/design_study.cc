@@ -1,21 +1,13 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/output/chart_checkpoint.h>
-#include <squeal/parameters/design_plan.h>
-#include <squeal/studies/designs/design_check.h>
-#include <squeal/studies/designs/design_solution.h>
 #include <squeal/studies/designs/design_work.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <new>
+#include <regex>
 #include <ostream>
-#include <set>
-#include <utility>
 
 namespace Squeal
 {
@@ -34,16 +26,16 @@ namespace Squeal
       std::set<int> result;
       for (const std::string &part : dealii::Utilities::split_string_list(list, ','))
         {
-          const auto          ends = dealii::Utilities::split_string_list(part, '-');
-          std::vector<double> numbers;
-          for (const std::string &end : ends)
-            if (const auto number = parse_number(end); number && *number == std::floor(*number) && *number >= 1. && *number <= n)
-              numbers.push_back(*number);
-          if (numbers.size() != ends.size() || ends.empty() || ends.size() > 2 || numbers.front() > numbers.back())
+          static const std::regex pattern(R"((\d{1,9})(?:\s*-\s*(\d{1,9}))?)");
+          std::smatch             ends;
+          const bool              is_range = std::regex_match(part, ends, pattern);
+          const int first = is_range ? std::stoi(ends[1]) : 0, last = is_range && ends[2].matched ? std::stoi(ends[2]) : first;
+          if (first < 1 || last < first || last > n)
             refuse(in_quotes(part) + " names no designs of this study");
-          for (int design = static_cast<int>(numbers.front()); design <= static_cast<int>(numbers.back()); ++design)
+          for (int design = first; design <= last; ++design)
             result.insert(design);
         }
+
       if (result.empty())
         refuse("the list names no design");
       return {result.begin(), result.end()};
@@ -61,19 +53,12 @@ namespace Squeal
       return work;
     }
 
-    /// Names the columns of a file that change nothing.
-    void note_unused(const Run &run, const DesignPlan &plan)
-    {
-      for (const UnusedParameter &variable : unused_variables(run.parameters, plan))
-        run.progress.note(text("  note: changes nothing in the designs: ", variable.path, " (", variable.why, ")"));
-    }
-
     /// Solves a design in this process, alone; @p folder keeps what is found of an unfinished one.
     DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference, const std::string &folder)
     {
       DesignResult    result = unfinished(run, work.plan, design);
       const Stopwatch stopwatch;
-      const auto      parameters = parameters_of(run, work.plan, design, result.reason);
+      const auto      parameters = parameters_of(run, work.plan, design, &result.reason);
       if (!parameters)
         {
           result.outcome = DesignOutcome::refused;
@@ -105,38 +90,40 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * Solves designs that share a mesh one after the other in this process, each by the basis that those before it have left. What
-     * the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
-     */
-    void solve_family_here(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
+    /// Solves a design, or several that share a mesh one after the other, each by the basis that those before it have left, for the study
+    /// of which this process is a part. What the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
+    void solve_part(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
     {
+      const auto alone = [&](const int design) {
+        return solve_here(run, work, design, reference, checkpoint_folder(store.folder_of({design}).string()));
+      };
       std::vector<Parameters> designs;
       for (const int design : work.designs)
-        {
-          std::string reason;
-          designs.push_back(sweep_of(*parameters_of(run, work.plan, design, reason)));
-        }
+        designs.push_back(sweep_of(*parameters_of(run, work.plan, design)));
       Run                         part(designs.front(), run, run.progress);
       std::optional<DesignFamily> family;
       try
         {
-          family.emplace(designs, part);
+          if (designs.size() > 1)
+            family.emplace(designs, part);
         }
+
       catch (const FileError &)
         {
           throw;
         }
       catch (const Error &)
+        {} // what is wrong each of them tells in its row
+      if (!family)
         {
-          // What is wrong each of them tells in its row
           for (const int design : work.designs)
             if (!store.find(design))
-              store.keep(solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string())));
+              store.keep(alone(design));
           return;
         }
+
       ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
-                                 design_key(run, family->shared_scene(), work.plan), run.communicator);
+                                 design_key(run, family->scene, work.plan), run.communicator);
       for (std::size_t i = 0; i < designs.size(); ++i)
         {
           const int                         design = work.designs[i];
@@ -160,7 +147,7 @@ namespace Squeal
           catch (const Error &error)
             {
               run.progress.note(text("  design ", design, " is solved alone: ", in_one_line(error)));
-              result = solve_here(run, work, design, reference, checkpoint_folder(store.folder_of(design).string()));
+              result = alone(design);
             }
           result.number = design;
           result.values = unfinished(run, work.plan, design).values;
@@ -175,11 +162,9 @@ namespace Squeal
     }
   } // namespace
 
-  /**
-   * `Study = geometry`: sweeps of many designs, each meshed anew, with their thresholds; modes named by those of the scene that they
-   * resemble. Each design is solved in a process of its own, which is this study of one design; designs that share a mesh are solved
-   * together, in a process that is this study of them.
-   */
+  /// `Study = geometry`: sweeps of many designs, each meshed anew, with their thresholds; modes named by those of the scene that they
+  /// resemble. Each design is solved in a process of its own, which is this study of one design; designs that share a mesh are solved
+  /// together, in a process that is this study of them.
   static void run_design_study(Scene &scene, Run &run)
   {
     const DesignWork           work = work_of(run);
@@ -187,27 +172,21 @@ namespace Squeal
     std::optional<DesignStore> store;
     const fs::path             above   = fs::path(run.folder().name()).parent_path();
     const bool                 is_part = fs::exists(above / DesignStore::reference_file); // of a study that has left its modes there
-    if (!is_part)
-      note_unused(run, work.plan);
-    if (is_part && work.designs.size() > 1)
+    if (is_part)
       {
-        solve_family_here(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
+        solve_part(run, work, design_reference(scene, run, above / DesignStore::reference_file), DesignStore(above));
         run.finish();
         return;
       }
+    for (const UnusedParameter &variable : unused_variables(run.parameters, work.plan))
+      run.progress.note(text("  note: changes nothing in the designs: ", variable.path, " (", variable.why, ")"));
+
     if (work.designs.size() == 1)
       {
         const ReferenceModes modes = design_reference(scene, run, above / DesignStore::reference_file);
         run.progress.begin(text("Design ", work.designs.front()));
         results.push_back(solve_here(run, work, work.designs.front(), modes, checkpoint_folder(run.folder().name())));
         run.progress.finish();
-        // For the study of which this is a part
-        if (is_part)
-          {
-            const std::vector<char> packed = dealii::Utilities::pack(results.front(), false);
-            run.folder().write(DesignStore::result_file,
-                               [&](std::ostream &stream) { stream.write(packed.data(), static_cast<std::streamsize>(packed.size())); });
-          }
       }
     else
       {
@@ -216,18 +195,14 @@ namespace Squeal
           run.progress.note(text("  an interrupted study goes on: ", n_known, " of ", work.designs.size(), " designs are known"));
         results = solve_all(scene, run, work, *store, run.options.again);
       }
-    if (!is_part)
-      for (const int design : work.designs)
-        {
-          std::string reason;
-          if (const auto parameters = parameters_of(run, work.plan, design, reason))
-            write_parameter_file(*parameters, text("designs/", design, ".prm"), run);
-        }
+    for (const int design : work.designs)
+      if (const auto parameters = parameters_of(run, work.plan, design))
+        write_parameter_file(*parameters, text("designs/", design, ".prm"), run);
 
     write_designs(work.plan.names, results, run);
     run.finish([&] {
       if (store && run.is_root)
-        store->remove();
+        fs::remove_all(store->folder);
     });
   }
 

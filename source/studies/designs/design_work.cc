@@ -5,23 +5,14 @@
 #include <squeal/base/version.h>
 #include <squeal/base/worker_process.h>
 #include <squeal/geometry/scene_size.h>
-#include <squeal/studies/designs/design_solution.h>
 #include <squeal/studies/designs/design_work.h>
-#include <squeal/studies/steps/parameter_usage.h>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
-#include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <ostream>
-#include <sstream>
-#include <thread>
-#include <utility>
 
 namespace Squeal
 {
@@ -53,11 +44,7 @@ namespace Squeal
     {
       if (run.parameters.designs.n_processes > 0)
         return run.parameters.designs.n_processes;
-      MPI_Comm machine;
-      int      n_here = 1;
-      MPI_Comm_split_type(run.communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-      MPI_Comm_size(machine, &n_here);
-      MPI_Comm_free(&machine);
+      const unsigned int n_here = n_processes_here(run.communicator);
       const unsigned int degree = degree_of(run.parameters.discretization.element);
       // The basis of a family is there twice when it grows
       const double bytes_of_basis = has_families ? 2. * sizeof(double) * usual_family_basis * scene.model->free_map().n() : 0.;
@@ -67,56 +54,28 @@ namespace Squeal
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));
     }
 
-    /// How a design went.
-    std::string outcome_of(const DesignResult &result)
-    {
-      if (result.outcome != DesignOutcome::solved)
-        return to_string(result.outcome) + ": " + result.reason;
-      const std::string limit = text(100. * weak_divergence, " %");
-      return result.weak_onset ?
-               text("beyond ", limit, " from mu = ", result.weak_onset->friction_coefficient, " on (", result.weak_onset->label, ")") :
-               "nowhere beyond " + limit;
-    }
-
     /// Designs of fewer than this are solved one by one: what they share costs more than it saves.
     constexpr std::size_t least_family = 4;
 
     /// Designs that one process solves at most, one after the other; results must not depend on how many processes there are.
     constexpr std::size_t largest_batch = 25;
 
-    /// What becomes of each design.
-    struct Schedule
-    {
-      std::vector<std::vector<int>> batches; ///< designs that one process solves
-      std::vector<DesignResult>     refused; ///< by their parameters: no process is needed to say so
-    };
-
-    /**
-     * Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the
-     * same number; the others alone.
-     */
-    Schedule schedule_of(const Run &run, const DesignWork &work)
+    /// Designs by the process that solves them: those that share a mesh and its matrices one after the other, in parts of nearly the same
+    /// number; the others alone. Those that are refused by their parameters need none.
+    std::vector<std::vector<int>> batches_of(const Run &run, const DesignWork &work)
     {
       std::map<std::string, std::vector<int>> families;
-      std::vector<std::vector<int>>           alone;
-      Schedule                                schedule;
-      auto &[result, refused] = schedule;
+      std::vector<std::vector<int>>           alone, result;
       for (const int design : work.designs)
-        {
-          DesignResult unsolved   = unfinished(run, work.plan, design);
-          const auto   parameters = parameters_of(run, work.plan, design, unsolved.reason);
-          if (!parameters)
-            {
-              unsolved.outcome = DesignOutcome::refused;
-              refused.push_back(std::move(unsolved));
-              continue;
-            }
-          const std::string key = family_key(sweep_of(*parameters));
-          if (key.empty())
-            alone.push_back({design});
-          else
-            families[key].push_back(design);
-        }
+        if (const auto parameters = parameters_of(run, work.plan, design))
+          {
+            const std::string key = family_key(sweep_of(*parameters));
+            if (key.empty())
+              alone.push_back({design});
+            else
+              families[key].push_back(design);
+          }
+
       for (const auto &[key, designs] : families)
         if (designs.size() < least_family)
           for (const int design : designs)
@@ -131,7 +90,7 @@ namespace Squeal
       std::sort(result.begin(), result.end());
       std::sort(alone.begin(), alone.end());
       result.insert(result.end(), alone.begin(), alone.end());
-      return schedule;
+      return result;
     }
   } // namespace
 
@@ -163,7 +122,7 @@ namespace Squeal
     return error.reason + "; where: " + error.where + "; change: " + error.change;
   }
 
-  std::optional<Parameters> parameters_of(const Run &run, const DesignPlan &plan, const int design, std::string &reason)
+  std::optional<Parameters> parameters_of(const Run &run, const DesignPlan &plan, const int design, std::string *reason)
   {
     try
       {
@@ -174,7 +133,8 @@ namespace Squeal
       }
     catch (const ParameterError &error)
       {
-        reason = in_one_line(error);
+        if (reason)
+          *reason = in_one_line(error);
         return {};
       }
   }
@@ -215,8 +175,8 @@ namespace Squeal
           }
       }
     run.progress.begin("Designs");
-    const auto [batches, refused] = schedule_of(run, work);
-    const std::size_t n_known     = store.n_known(work.designs);
+    const std::size_t                   n_known = store.n_known(work.designs);
+    const std::vector<std::vector<int>> batches = batches_of(run, work);
     MPI_Barrier(run.communicator);
     const int n_ranks = static_cast<int>(MPI::n_mpi_processes(run.communicator)),
               me      = static_cast<int>(MPI::this_mpi_process(run.communicator));
@@ -228,11 +188,17 @@ namespace Squeal
           mine.push_back(batches[i]);
           n_mine += std::count_if(batches[i].begin(), batches[i].end(), [&](const int design) { return !store.find(design); });
         }
-    std::vector<DesignResult> to_keep; // of this process
+    std::vector<DesignResult> refused; // by their parameters
     if (run.is_root)
-      std::copy_if(refused.begin(), refused.end(), std::back_inserter(to_keep),
-                   [&](const DesignResult &design) { return !store.find(design.number); });
-    n_mine += to_keep.size();
+      for (const int design : work.designs)
+        if (DesignResult result = unfinished(run, work.plan, design);
+            !store.find(design) && !parameters_of(run, work.plan, design, &result.reason))
+          {
+            result.outcome = DesignOutcome::refused;
+            refused.push_back(result);
+          }
+    n_mine += refused.size();
+
     const bool has_families   = std::any_of(batches.begin(), batches.end(), [](const std::vector<int> &batch) { return batch.size() > 1; });
     const unsigned int n_here = n_side_by_side(scene, run, has_families);
     std::size_t        n_done = 0;
@@ -245,7 +211,7 @@ namespace Squeal
                              n_left > 0 ? text(", ", n_left, " left, some ", std::ceil(seconds / 60.), " min") : ""));
       run.progress.update(text(n_known + n_done, " of ", n_known + n_mine, " designs"));
     };
-    for (const DesignResult &design : to_keep)
+    for (const DesignResult &design : refused)
       {
         store.keep(design);
         report(design);

@@ -1,12 +1,7 @@
-#include <squeal/base/assignment.h>
+#include <squeal/base/groups.h>
 #include <squeal/base/conventions.h>
 #include <squeal/estimates/mode_pairing.h>
 #include <squeal/studies/ingredients/ingredients.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <optional>
 
 namespace Squeal
 {
@@ -15,10 +10,8 @@ namespace Squeal
     /// |λ_1 − λ_2| / |λ_1| up to which modes of one name may be counterparts whatever their shapes [-].
     constexpr double same_name_within = 0.1;
 
-    /**
-     * Pairs modes without counterpart by shape that bear one name, nearest λ first: members of a doublet or of equal pins that a
-     * change turns among each other so much that one shape stands for both.
-     */
+    /// Pairs modes without counterpart by shape that bear one name, nearest λ first: members of a doublet or of equal pins that a change
+    /// turns among each other so much that one shape stands for both.
     void pair_by_name(std::vector<PairedMode> &pairs, const FrictionModes &first, const FrictionModes &second)
     {
       std::vector<int>  left_1, left_2;
@@ -34,23 +27,20 @@ namespace Squeal
       if (left_1.empty() || left_2.empty())
         return;
 
-      const bool is_wide = left_1.size() <= left_2.size();
-      const auto gain    = [&](const int i, const int j) {
+      // At least as many columns as rows; what none of the second is left for has no gain
+      const std::size_t n_columns = std::max(left_1.size(), left_2.size());
+      const auto        gain      = [&](const int row, const int column) {
+        if (column >= static_cast<int>(left_2.size()))
+          return 0.;
+        const int    i = left_1[row], j = left_2[column];
         const double distance = std::abs(second.modes.lambda[j] - first.modes.lambda[i]) / std::abs(first.modes.lambda[i]);
         const bool   same     = first.labels[i].family != ModeFamily::unnamed && first.labels[i].shape() == second.labels[j].shape();
         return same && distance < same_name_within ? 1. - distance : 0.;
       };
-      const auto &few = is_wide ? left_1 : left_2, &many = is_wide ? left_2 : left_1;
-      const auto  of = [&](const int row, const int column) {
-        return is_wide ? std::make_pair(few[row], many[column]) : std::make_pair(many[column], few[row]);
-      };
-      const std::vector<int> columns = best_assignment(few.size(), many.size(), [&](const int row, const int column) {
-        const auto [i, j] = of(row, column);
-        return gain(i, j);
-      });
-      for (std::size_t row = 0; row < few.size(); ++row)
-        if (const auto [i, j] = of(row, columns[row]); gain(i, j) > 0.)
-          pairs[i] = {j, 0., true};
+      const std::vector<int> columns = best_assignment(left_1.size(), n_columns, gain);
+      for (std::size_t row = 0; row < left_1.size(); ++row)
+        if (gain(static_cast<int>(row), columns[row]) > 0.)
+          pairs[left_1[row]] = {left_2[columns[row]], 0., true};
     }
 
     bool grows_strongly(const std::optional<std::complex<double>> &lambda, const bool unstable)
@@ -58,19 +48,27 @@ namespace Squeal
       return unstable && lambda && modal_quantities(*lambda).divergence_rate >= weak_divergence;
     }
 
-    /// The mode with the largest value of a quantity; null if there is none.
     template <typename Quantity>
-    const ModeChange *largest(const std::vector<ModeChange> &modes, const Quantity &quantity)
+    LargestChange largest(const std::vector<ModeChange> &modes, const Quantity &quantity)
     {
-      const ModeChange *result  = nullptr;
-      double            highest = -1.;
+      LargestChange result;
       for (const ModeChange &mode : modes)
-        if (const std::optional<double> value = quantity(mode); value && std::abs(*value) > highest)
-          {
-            highest = std::abs(*value);
-            result  = &mode;
-          }
+        if (const std::optional<double> value = quantity(mode); value && (!result.mode || std::abs(*value) > result.amount))
+          result = {std::abs(*value), &mode};
       return result;
+    }
+
+    /// Changes with a larger effect than this do not keep the accuracy.
+    constexpr double allowed = 1.;
+
+    /// The first change after @p number of the same ingredient that keeps the accuracy with a smaller effect.
+    std::optional<int> next_of_ingredient(const std::vector<CheaperChange> &changes, const int number)
+    {
+      const double bound = std::min(allowed, changes[number].severity);
+      for (std::size_t i = number + 1; i < changes.size(); ++i)
+        if (changes[i].ingredient == changes[number].ingredient && changes[i].severity < bound)
+          return static_cast<int>(i);
+      return std::nullopt;
     }
   } // namespace
 
@@ -93,28 +91,16 @@ namespace Squeal
            (grows_strongly(variant, unstable_variant) && !unstable_reference);
   }
 
-  const ModeChange *Effect::largest_frequency() const
+  LargestChange Effect::frequency() const
   {
     return largest(modes, [&](const ModeChange &mode) -> std::optional<double> {
       return mode.reference && mode.reference->imag() <= band_end ? std::make_optional(mode.frequency(band_end)) : std::nullopt;
     });
   }
 
-  const ModeChange *Effect::largest_divergence() const
+  LargestChange Effect::divergence() const
   {
     return largest(modes, [](const ModeChange &mode) { return mode.divergence(); });
-  }
-
-  double Effect::frequency() const
-  {
-    const ModeChange *mode = largest_frequency();
-    return mode == nullptr ? 0. : std::abs(mode->frequency(band_end));
-  }
-
-  double Effect::divergence() const
-  {
-    const ModeChange *mode = largest_divergence();
-    return mode == nullptr ? 0. : std::abs(*mode->divergence());
   }
 
   std::size_t Effect::n_unstable(const bool in_variant) const
@@ -138,7 +124,7 @@ namespace Squeal
   {
     if (changes_verdict())
       return std::numeric_limits<double>::infinity();
-    return std::max(frequency() / accuracy.frequency_tolerance, divergence() / accuracy.divergence_tolerance);
+    return std::max(frequency().amount / accuracy.frequency_tolerance, divergence().amount / accuracy.divergence_tolerance);
   }
 
   Effect effect_of(const SolvedModel &reference, const SolvedModel &variant)
@@ -170,22 +156,6 @@ namespace Squeal
         result.modes.push_back({second.labels[j], std::nullopt, second.modes.lambda[j], false, second.unstable[j]});
     return result;
   }
-
-  namespace
-  {
-    /// Changes with a larger effect than this do not keep the accuracy.
-    constexpr double allowed = 1.;
-
-    /// The first change after @p number of the same ingredient that keeps the accuracy with a smaller effect.
-    std::optional<int> next_of_ingredient(const std::vector<CheaperChange> &changes, const int number)
-    {
-      const double bound = std::min(allowed, changes[number].severity);
-      for (std::size_t i = number + 1; i < changes.size(); ++i)
-        if (changes[i].ingredient == changes[number].ingredient && changes[i].severity < bound)
-          return static_cast<int>(i);
-      return std::nullopt;
-    }
-  } // namespace
 
   ChangesTogether cheapest_changes(const std::vector<CheaperChange>                            &changes,
                                    const std::function<double(const std::vector<int> &chosen)> &severity_of)

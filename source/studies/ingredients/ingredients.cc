@@ -1,8 +1,4 @@
-#include <squeal/base/text.h>
 #include <squeal/studies/ingredients/ingredients.h>
-
-#include <algorithm>
-#include <type_traits>
 
 namespace Squeal
 {
@@ -15,35 +11,13 @@ namespace Squeal
 
     // What ingredients are called ------------------------------------------------
 
-    std::string slope_text(const double slope)
-    {
-      return slope == 0. ? "none" : exact_text(slope) + " s/m";
-    }
+    const auto on_or_off  = [](const bool is_on) -> std::string { return is_on ? "on" : "off"; };
+    const auto nothing    = [](const Parameters &) { return "none"; };
+    const auto modal_here = [](const Parameters &p) { return p.damping.modal_ratios.empty() ? "none" : "as given"; };
+    const auto slope_text = [](const double slope) { return slope == 0. ? "none" : exact_text(slope) + " s/m"; };
+    const auto hertz_text = [](const double frequency) { return exact_text(frequency) + " Hz"; };
 
-    bool has_rayleigh_damping(const Parameters &p)
-    {
-      return p.materials.disc.is_damped() || p.materials.pin.is_damped();
-    }
-
-    std::string modal_here(const Parameters &p)
-    {
-      return p.damping.modal_ratios.empty() ? "none" : "as given";
-    }
-
-    std::string on_or_off(const bool is_on)
-    {
-      return is_on ? "on" : "off";
-    }
-
-    std::string hertz_text(const double frequency)
-    {
-      return exact_text(frequency) + " Hz";
-    }
-
-    std::string nothing(const Parameters &)
-    {
-      return "none";
-    }
+    const auto has_rayleigh_damping = [](const Parameters &p) { return p.materials.disc.is_damped() || p.materials.pin.is_damped(); };
 
     // Why a scene cannot have them -----------------------------------------------
 
@@ -113,30 +87,12 @@ namespace Squeal
 
   const std::vector<Ingredient> &ingredients()
   {
-    const auto dissipation = [](auto &p) -> auto &
-    {
-      return p.operation.radial_dissipation;
-    };
-    const auto state = [](auto &p) -> auto &
-    {
-      return p.sliding.state;
-    };
-    const auto rotation = [](auto &p) -> auto &
-    {
-      return p.operation.rotating_disc;
-    };
-    const auto element = [](auto &p) -> auto &
-    {
-      return p.discretization.element;
-    };
-    const auto outlines = [](auto &p) -> auto &
-    {
-      return p.geometry.outlines;
-    };
-    const auto solver = [](auto &p) -> auto &
-    {
-      return p.solvers.complex_solver;
-    };
+    const auto dissipation = [](auto &p) -> decltype(auto) { return (p.operation.radial_dissipation); };
+    const auto state       = [](auto &p) -> decltype(auto) { return (p.sliding.state); };
+    const auto rotation    = [](auto &p) -> decltype(auto) { return (p.operation.rotating_disc); };
+    const auto element     = [](auto &p) -> decltype(auto) { return (p.discretization.element); };
+    const auto outlines    = [](auto &p) -> decltype(auto) { return (p.geometry.outlines); };
+    const auto solver      = [](auto &p) -> decltype(auto) { return (p.solvers.complex_solver); };
 
     static const std::vector<Ingredient> table = {
       // ------------------------------------------------------------------- contact

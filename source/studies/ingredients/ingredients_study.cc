@@ -1,16 +1,136 @@
+#include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/parameter_file.h>
 #include <squeal/studies/ingredients/ingredients.h>
 #include <squeal/studies/steps/parameter_usage.h>
 
-#include <limits>
-#include <set>
 #include <ostream>
 
 namespace Squeal
 {
   namespace
   {
+    /// A column that only has values where the change was made.
+    template <typename Value>
+    Column<IngredientResult> where_made(const std::string &name, const std::string &unit, const Value &value, const int digits = 3)
+    {
+      return {name, unit, [value](const IngredientResult &row) { return row.obstacle.empty() ? Cell(value(row)) : Cell(); }, digits};
+    }
+
+    /// Smaller changes are rounding, or the tolerances of solvers [%].
+    constexpr double no_change = 1e-6;
+
+    std::string amount(const double change)
+    {
+      return change < no_change ? "0" : decimal_text(change, 3);
+    }
+
+    std::string label_of(const LargestChange &change)
+    {
+      return change.amount < no_change ? "" : to_string(change.mode->label) + (change.mode->variant ? "" : " (lost)");
+    }
+
+    /// Modes of the results one after the other, each with its result.
+    struct IngredientMode
+    {
+      const IngredientResult *result;
+      const ModeChange       *mode;
+    };
+
+    Column<IngredientMode> modal_column(const std::string                  &name,
+                                        const std::string                  &unit,
+                                        std::optional<std::complex<double>> ModeChange::*lambda,
+                                        double ModalQuantities::*quantity,
+                                        const double             factor)
+    {
+      return {name, unit, [=](const IngredientMode &row) {
+                const auto &value = row.mode->*lambda;
+                return value ? Cell(factor * (modal_quantities(*value).*quantity)) : Cell();
+              }};
+    }
+
+    /// One row for each change: what was changed, its largest effects, the verdict, what it costs beside the reference; fewer columns for the screen.
+    Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, const bool is_short)
+    {
+      using Row            = IngredientResult;
+      const double total   = reference.costs.sum(&Cost::cpu_seconds);
+      const auto   name    = [is_short](const char *full, const char *brief) { return is_short ? brief : full; };
+      Columns<Row> columns = {
+        {"ingredient", "", &Row::name},
+        {"here", "", &Row::here},
+        {"tried", "", [=](const Row &row) { return row.obstacle.empty() || !is_short ? row.tried : "-"; }},
+        where_made(name("change of frequency", "frequency"), "%", [](const Row &row) { return row.effect.frequency().amount; }),
+        where_made(name("mode of that change", "mode"), "", [](const Row &row) { return label_of(row.effect.frequency()); }),
+        where_made(
+          name("change of divergence rate", "divergence"), name("percentage points", "points"),
+          [](const Row &row) { return row.effect.divergence().amount; }, is_short ? 4 : 3),
+        where_made(name("mode of that change of divergence rate", "mode"), "",
+                   [](const Row &row) { return label_of(row.effect.divergence()); })};
+      const auto add = [&](const Column<Row> &column) { columns.push_back(column); };
+      if (is_short)
+        {
+          add(where_made("unstable", "",
+                         [](const Row &row) { return text(row.effect.n_unstable(false), " -> ", row.effect.n_unstable(true)); }));
+          add(where_made("verdict", "", [](const Row &row) { return row.effect.changes_verdict() ? "changes" : "same"; }));
+        }
+      else
+        {
+          add(where_made("modes without counterpart", "-", [](const Row &row) { return row.effect.n_lost(); }));
+          add(where_made("unstable modes here", "-", [](const Row &row) { return row.effect.n_unstable(false); }));
+          add(where_made("unstable modes tried", "-", [](const Row &row) { return row.effect.n_unstable(true); }));
+          add(where_made("verdict changed", "-", [](const Row &row) { return row.effect.changes_verdict(); }));
+          add(where_made("wall time", "s", [](const Row &row) { return row.costs.sum(&Cost::seconds); }));
+          add(where_made("processor time", "s", [](const Row &row) { return row.costs.sum(&Cost::cpu_seconds); }));
+          add(where_made("dofs", "-", [](const Row &row) { return row.n_dofs; }));
+        }
+      add(where_made(
+        name("cost beside the reference", "cost"), "-", [total](const Row &row) { return row.costs.sum(&Cost::cpu_seconds) / total; },
+        is_short ? 2 : 3));
+      if (!is_short)
+        add({"not tried because", "", &Row::obstacle});
+      return Table(columns, results);
+    }
+
+    /// Every mode of every variant beside that of the reference.
+    Table ingredient_mode_table(const std::vector<IngredientResult> &results)
+    {
+      std::vector<IngredientMode> rows;
+      for (const IngredientResult &result : results)
+        for (const ModeChange &mode : result.effect.modes)
+          rows.push_back({&result, &mode});
+      using C = ModeChange;
+      using Q = ModalQuantities;
+      return Table(
+        Columns<IngredientMode>{
+          {"ingredient", "", [](const IngredientMode &row) { return row.result->name; }},
+          {"tried", "", [](const IngredientMode &row) { return row.result->tried; }},
+          {"label", "", [](const IngredientMode &row) { return row.mode->label; }},
+          modal_column("frequency here", "Hz", &C::reference, &Q::frequency, 1.),
+          modal_column("frequency tried", "Hz", &C::variant, &Q::frequency, 1.),
+          modal_column("divergence rate here", "%", &C::reference, &Q::divergence_rate, 100.),
+          modal_column("divergence rate tried", "%", &C::variant, &Q::divergence_rate, 100.),
+          {"change of frequency", "%",
+           [](const IngredientMode &row) {
+             return row.mode->reference && row.mode->variant ? Cell(row.mode->frequency(row.result->effect.band_end)) : Cell();
+           }},
+          {"change of divergence rate", "percentage points", [](const IngredientMode &row) { return row.mode->divergence(); }},
+          {"unstable here", "-", [](const IngredientMode &row) { return row.mode->unstable_reference; }},
+          {"unstable tried", "-", [](const IngredientMode &row) { return row.mode->unstable_variant; }},
+          {"overlap of shapes", "-",
+           [](const IngredientMode &row) { return row.mode->variant && row.mode->reference ? Cell(row.mode->overlap) : Cell(); }},
+          {"in cluster", "-", [](const IngredientMode &row) { return row.mode->in_cluster; }}},
+        rows);
+    }
+
+    /// "0.12 % in frequency (A0-4 +) and 0.003 percentage points in divergence rate (F1)"
+    std::string largest_changes(const Effect &effect)
+    {
+      const auto of = [](const std::string &label) { return label.empty() ? "" : " (" + label + ")"; };
+      return text(amount(effect.frequency().amount), " % in frequency", of(label_of(effect.frequency())), ", ",
+                  amount(effect.divergence().amount), " percentage points in divergence rate", of(label_of(effect.divergence())),
+                  effect.changes_verdict() ? "; the verdict changes" : "");
+    }
+
     /// Solvers count as faster where the processor time of the whole model falls at least to this part [-].
     constexpr double clearly_faster = 0.95;
 
@@ -195,11 +315,9 @@ namespace Squeal
     }
   } // namespace
 
-  /**
-   * `Study = ingredients`: the scene as it is given, and with each part of the model switched on, off, or over to something else by
-   * itself: what changes in every mode and in the verdict, and what it costs. Ends with the cheapest model that keeps the verdict
-   * and the accuracy asked for, as a parameter file.
-   */
+  /// `Study = ingredients`: the scene as it is given, and with each part of the model switched on, off, or over to something else by
+  /// itself: what changes in every mode and in the verdict, and what it costs. Ends with the cheapest model that keeps the verdict and the
+  /// accuracy asked for, as a parameter file.
   static void run_ingredients_study(Scene &scene, Run &run)
   {
     const Parameters    &p         = run.parameters;

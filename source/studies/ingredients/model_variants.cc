@@ -3,8 +3,6 @@
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/eigenvalue_estimates.h>
 #include <squeal/linear_algebra/communication.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/reduction/reduced_model.h>
 #include <squeal/studies/ingredients/ingredients.h>
 
 namespace Squeal
@@ -27,13 +25,6 @@ namespace Squeal
       for (Cost StepCosts::*step : {&StepCosts::mesh, &StepCosts::assembly, &StepCosts::sliding, &StepCosts::modes, &StepCosts::friction})
         for (double Cost::*quantity : {&Cost::seconds, &Cost::cpu_seconds})
           Squeal::agree(communicator, &(costs.*step.*quantity), 1);
-    }
-
-    void assemble(Scene &scene, StepCosts &costs, Run &run)
-    {
-      const Stopwatch watch;
-      assemble_scene(scene, run);
-      costs.assembly = watch.cost();
     }
 
     /// The state of steady sliding; nothing where the load is shared equally.
@@ -96,7 +87,7 @@ namespace Squeal
     const auto scene = std::make_shared<Scene>(std::move(meshed));
     result.scene     = scene;
 
-    assemble(*scene, result.costs, run);
+    timed(result.costs.assembly, [&] { return assemble_scene(*scene, run); });
     const Linearisation linearisation = linearise(*scene, sliding_state(*scene, result.costs, run), run.parameters.operation);
     result.frictionless               = timed(result.costs.modes, [&] { return frictionless_modes(linearisation, run); });
     solve_with_friction(result, result.frictionless, "", run);
@@ -124,7 +115,7 @@ namespace Squeal
     if (variation.departure == Departure::mesh)
       {
         const auto scene = std::make_shared<Scene>(timed(result.costs.mesh, [&] { return mesh_scene(run); }));
-        assemble(*scene, result.costs, run);
+        timed(result.costs.assembly, [&] { return assemble_scene(*scene, run); });
         result.scene = scene;
       }
     if (variation.departure == Departure::contact && parameters.sliding.state == ContactState::steady_sliding)

@@ -1,18 +1,11 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/file_writing.h>
-#include <squeal/output/chart_checkpoint.h>
-#include <squeal/studies/designs/design_check.h>
 #include <squeal/studies/designs/design_work.h>
-#include <squeal/studies/steps/friction_modes.h>
 
 #include <nlopt.hpp>
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
 #include <numeric>
-#include <optional>
 #include <ostream>
 
 namespace Squeal
@@ -91,12 +84,6 @@ namespace Squeal
         return true;
       }
 
-      void forget() const
-      {
-        if (run.is_root)
-          store.remove();
-      }
-
       Scene                            &scene;
       Run                              &run;
       const std::vector<DesignVariable> variables;
@@ -119,9 +106,8 @@ namespace Squeal
         // Other processes read the designs from a file: a study of these, without the values that it would refuse and nobody solves
         const fs::path file   = store.folder / "designs.csv";
         DesignPlan     listed = plan;
-        std::string    reason;
         for (std::size_t i = 0; i < plan.designs.size(); ++i)
-          if (!parameters_of(run, plan, static_cast<int>(i + 1), reason))
+          if (!parameters_of(run, plan, static_cast<int>(i + 1)))
             listed.designs[i].assign(plan.names.size(), "");
         if (run.is_root)
           replace_file(file, as_csv(listed));
@@ -141,10 +127,8 @@ namespace Squeal
       std::string          end;
     };
 
-    /**
-     * Runs a method from a start until it asks for a point that is not known. A method does the same each time, so that it goes on as
-     * soon as the point is solved, and several methods can have their points solved side by side.
-     */
+    /// Runs a method from a start until it asks for a point that is not known. A method does the same each time, so that it goes on as soon
+    /// as the point is solved, and several methods can have their points solved side by side.
     NextStep next_step(const Point &start, const Evaluations &evaluations)
     {
       const SearchParameters                    &parameters = evaluations.run.parameters.search;
@@ -214,10 +198,10 @@ namespace Squeal
     struct FullOrder
     {
       double          friction_coefficient;
-      std::size_t     n_modes = 0, n_unstable = 0;
-      ModalQuantities leading{}; ///< the mode that grows most, or is damped least
+      std::size_t     n_modes, n_unstable;
+      ModalQuantities leading; ///< the mode that grows most, or is damped least
       std::string     label;
-      double          residual = 0.; ///< largest
+      double          residual; ///< largest
     };
 
     FullOrder at_full_order(const Parameters &design, const double mu, Run &run)
@@ -227,25 +211,23 @@ namespace Squeal
       parameters.study                          = &stability_study;
       parameters.solvers.complex_solver         = ComplexSolver::krylov;
       parameters.operation.friction_coefficient = mu;
-      Progress          silent;
-      Run               part(parameters, run, silent);
-      Scene             scene        = mesh_scene(part);
-      FrictionlessModes frictionless = frictionless_modes(linearised_scene(scene, part), part);
-      add_modal_damping(frictionless, parameters);
-      const FrictionModes friction = friction_modes(frictionless, mu, part);
-      FullOrder           result{mu, friction.modes.lambda.size(), friction.n_unstable(), {}, {}, 0.};
-      bool                is_first = true;
-      for (std::size_t j = 0; j < friction.modes.lambda.size(); ++j)
-        {
-          const ModalQuantities quantities = modal_quantities(friction.modes.lambda[j]);
-          if (is_first || quantities.divergence_rate > result.leading.divergence_rate)
-            {
-              result.leading = quantities;
-              result.label   = to_string(friction.labels[j]);
-            }
-          is_first        = false;
-          result.residual = std::max(result.residual, friction.modes.residuals[j]);
-        }
+      Progress                silent;
+      Run                     part(parameters, run, silent);
+      Scene                   scene        = mesh_scene(part);
+      const FrictionlessModes frictionless = damped_modes(scene, part);
+      const FrictionModes     friction     = friction_modes(frictionless, mu, part);
+      const auto             &lambda       = friction.modes.lambda;
+      const auto             &residuals    = friction.modes.residuals;
+      const auto              leading      = std::max_element(lambda.begin(), lambda.end(), [](const auto &a, const auto &b) {
+        return modal_quantities(a).divergence_rate < modal_quantities(b).divergence_rate;
+      });
+      const FullOrder         result{mu,
+                             lambda.size(),
+                             friction.n_unstable(),
+                             modal_quantities(*leading),
+                             to_string(friction.labels[leading - lambda.begin()]),
+                             *std::max_element(residuals.begin(), residuals.end())};
+
       run.progress.finish(text("mu = ", mu, ": ", result.n_modes, " modes, ", result.n_unstable, " unstable, ",
                                decimal_text(100. * result.leading.divergence_rate), " % at most (", result.label, ")"));
       return result;
@@ -294,10 +276,8 @@ namespace Squeal
     }
   } // namespace
 
-  /**
-   * `Study = search`: a design in the ranges of the variables that squeals as late or as little as can be found with a budget of designs:
-   * samples, then a method without derivatives from the best two of them, and the best of all at full order.
-   */
+  /// `Study = search`: a design in the ranges of the variables that squeals as late or as little as can be found with a budget of designs:
+  /// samples, then a method without derivatives from the best two of them, and the best of all at full order.
   static void run_search_study(Scene &scene, Run &run)
   {
     const Parameters       &parameters = run.parameters;
@@ -319,8 +299,7 @@ namespace Squeal
     const DesignResult &winner =
       *std::min_element(evaluations.results.begin(), evaluations.results.end(),
                         [&](const DesignResult &a, const DesignResult &b) { return objective(a, parameters) < objective(b, parameters); });
-    std::string reason;
-    const auto  design = parameters_of(run, evaluations.plan, winner.number, reason);
+    const auto design = parameters_of(run, evaluations.plan, winner.number);
     if (!design || winner.outcome != DesignOutcome::solved)
       throw SolverError("no design of the search could be solved: " + winner.reason, "search", "choose other ranges in Designs/Variables");
     std::vector<FullOrder> checked = {at_full_order(*design, parameters.sweep.friction_coefficients.last, run)};
@@ -338,7 +317,10 @@ namespace Squeal
     run.store_table("search", search_table(evaluations, points.size()));
     run.write_table("full_order", full_order_table(checked));
     write_parameter_file(*design, "best.prm", run);
-    run.finish([&] { evaluations.forget(); });
+    run.finish([&] {
+      if (run.is_root)
+        fs::remove_all(evaluations.store.folder);
+    });
   }
 
   extern const Study search_study = [] {

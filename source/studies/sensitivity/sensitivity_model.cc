@@ -1,11 +1,5 @@
 #include <squeal/linear_algebra/multivector.h>
-#include <squeal/linear_algebra/replicate.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/sliding/steady_sliding.h>
-#include <squeal/studies/sensitivity/sensitivity_model.h>
-
-#include <algorithm>
-#include <cmath>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 
 namespace Squeal
 {
@@ -17,10 +11,9 @@ namespace Squeal
     /// Least friction coefficient, and slope [s/m], that steps are related to.
     constexpr double least_of_operation = 1e-2;
 
-    /**
-     * f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. A disc that only its drive keeps from turning has the moment of
-     * friction on its inertia, which changes as well: but torsion of a body of revolution moves no contact node along its normal.
-     */
+    /// f' = −K' u + μ (P_t')ᵀ r of reaction_rates() for each parameter, n × parameters. A disc that only its drive keeps from turning has
+    /// the moment of friction on its inertia, which changes as well: but torsion of a body of revolution moves no contact node along its
+    /// normal.
     MultiVector force_rates(const SlidingModel                      &sliding,
                             const SlidingState                      &state,
                             const double                             mu,

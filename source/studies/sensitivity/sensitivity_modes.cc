@@ -2,9 +2,6 @@
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/tracking/mode_links.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace Squeal
@@ -36,11 +33,10 @@ namespace Squeal
             result.modes.push_back(j);
             result.kind = Differentiated::cluster;
           }
-      if (result.kind == Differentiated::cluster)
-        return result;
       // Vectors have unit M-norms
-      if (2. * std::abs(point.lambda[mode]) <= coalescing_condition * std::abs(D))
+      if (result.kind == Differentiated::cluster || 2. * std::abs(point.lambda[mode]) <= coalescing_condition * std::abs(D))
         return result;
+
       int    partner  = -1;
       double parallel = 0.;
       for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
@@ -49,44 +45,20 @@ namespace Squeal
             partner  = j;
             parallel = overlap;
           }
-      if (partner < 0)
-        return result;
-      return {{mode, partner}, Differentiated::pair};
+      return partner < 0 ? result : ModeGroup{{mode, partner}, Differentiated::pair};
     }
 
     /// Growing modes of the band by divergence rate; where there are none, all by divergence rate.
     std::vector<int> modes_of_interest(const SweepModel &model, const ChartPoint &point, const std::size_t most)
     {
-      std::vector<int> growing, all;
-      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
-        if (model.is_in_band(point.lambda[j]))
-          {
-            all.push_back(j);
-            if (point.verdicts[j] == Verdict::unstable)
-              growing.push_back(j);
-          }
-      std::vector<int> &result = growing.empty() ? all : growing;
+      std::vector<int> result = model.in_band(point);
+      if (model.n_of(point, Verdict::unstable) > 0)
+        result.erase(std::remove_if(result.begin(), result.end(), [&](const int j) { return point.verdicts[j] != Verdict::unstable; }),
+                     result.end());
       std::stable_sort(result.begin(), result.end(), [&](const int a, const int b) {
         return modal_quantities(point.lambda[a]).divergence_rate > modal_quantities(point.lambda[b]).divergence_rate;
       });
       result.resize(std::min(result.size(), most));
-      return result;
-    }
-
-    std::vector<ModeLabel> labels_of(const SweepModel &model, const ChartPoint &point, const std::vector<int> &modes)
-    {
-      std::vector<int>    all;
-      std::vector<double> growth;
-      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
-        if (model.is_in_band(point.lambda[j]))
-          {
-            all.push_back(j);
-            growth.push_back(point.verdicts[j] == Verdict::unstable ? point.lambda[j].real() : 0.);
-          }
-      std::vector<ModeLabel> labels = model.labels(point, all), result;
-      mark_doublets(labels, growth);
-      for (const int mode : modes)
-        result.push_back(labels[std::find(all.begin(), all.end(), mode) - all.begin()]);
       return result;
     }
 
@@ -167,12 +139,15 @@ namespace Squeal
       {
         const ChartPoint       point = sweep.evaluate(SensitivityModel::main_line, {run.parameters.operation.friction_coefficient}).front();
         const std::vector<int> modes = result.empty() ? modes_of_interest(sweep, point, wanted.modes) : nearest_modes(point, result);
+        const std::vector<int> band  = sweep.in_band(point);
+        const auto             labels = sweep.labels_in_band(point);
         std::vector<ModeSensitivity> now;
         for (const int mode : modes)
-          now.push_back(sensitivity_of(model, point, mode));
-        const auto labels = labels_of(sweep, point, modes);
-        for (std::size_t m = 0; m < modes.size(); ++m)
-          now[m].label = labels[m];
+          {
+            now.push_back(sensitivity_of(model, point, mode));
+            now.back().label = labels[std::find(band.begin(), band.end(), mode) - band.begin()];
+          }
+
         const double change = result.empty() ? std::numeric_limits<double>::infinity() : compare(now, result, model.parameters);
         result              = std::move(now);
         run.progress.update(text("change ", change));

@@ -1,10 +1,7 @@
-#include <squeal/model/elasticity.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/contact/travel.h>
 #include <squeal/sensitivity/mesh_motions.h>
-#include <squeal/studies/sensitivity/sensitivity_model.h>
-
-#include <algorithm>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 
 namespace Squeal
 {
@@ -59,6 +56,41 @@ namespace Squeal
               result.derivative.push_back(after[k]);
               result.derivative.back().matrix = add(0.5 / h, *after[k].matrix, -0.5 / h, *before[k].matrix);
             }
+      return result;
+    }
+
+    /// Largest motion of a node by a step, over the radius of the disc.
+    constexpr double motion_step = 3e-6;
+
+    /// The bodies and all contact nodes on a mesh whose nodes have moved.
+    struct MovedScene
+    {
+      BodyTerms        bodies;
+      ContactInterface interface;
+    };
+
+    /// The matrix without entries that are zero: where no node moves, nothing changes.
+    std::shared_ptr<const SparseMatrix> without_zeros(const SparseMatrix &A)
+    {
+      return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int i, SparseMatrix::Row &row) {
+        A.get_row(i, row);
+        row.erase(std::remove_if(row.begin(), row.end(), [](const auto &entry) { return entry.second == 0.; }), row.end());
+      });
+    }
+
+    MovedScene moved_scene(const Scene &scene, const MeshMotion &motion, const double change, const Run &run)
+    {
+      const Parameters &parameters = run.parameters;
+      const Model       model(moved(scene.mesh, motion, change), parameters.discretization.element, run.communicator);
+      MovedScene        result{body_terms(model, parameters.materials),
+                        pair_contact_nodes(model, parameters.operation.rotation, parameters.geometry.pairing_tolerance)};
+      if (parameters.operation.rotating_disc)
+        add_rotation(result.bodies, model, parameters.operation.angular_velocity());
+      for (std::size_t c = 0; c < result.interface.size(); ++c)
+        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node.dofs != scene.interface[c].disc_node.dofs ||
+            result.interface[c].pin_node.dofs != scene.interface[c].pin_node.dofs)
+          throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
+                          "set Sensitivity/Geometry = none");
       return result;
     }
   } // namespace
@@ -125,44 +157,6 @@ namespace Squeal
       result.push_back({"Operation/Friction slope", "", "s/m", operation.friction_slope, {}, {}, &OperationParameters::friction_slope});
     return result;
   }
-
-  namespace
-  {
-    /// Largest motion of a node by a step, over the radius of the disc.
-    constexpr double motion_step = 3e-6;
-
-    /// The bodies and all contact nodes on a mesh whose nodes have moved.
-    struct MovedScene
-    {
-      BodyTerms        bodies;
-      ContactInterface interface;
-    };
-
-    /// The matrix without entries that are zero: where no node moves, nothing changes.
-    std::shared_ptr<const SparseMatrix> without_zeros(const SparseMatrix &A)
-    {
-      return std::make_shared<SparseMatrix>(A.rows(), A.columns(), [&](const int i, SparseMatrix::Row &row) {
-        A.get_row(i, row);
-        row.erase(std::remove_if(row.begin(), row.end(), [](const auto &entry) { return entry.second == 0.; }), row.end());
-      });
-    }
-
-    MovedScene moved_scene(const Scene &scene, const MeshMotion &motion, const double change, const Run &run)
-    {
-      const Parameters &parameters = run.parameters;
-      const Model       model(moved(scene.mesh, motion, change), parameters.discretization.element, run.communicator);
-      MovedScene        result{body_terms(model, parameters.materials),
-                        pair_contact_nodes(model, parameters.operation.rotation, parameters.geometry.pairing_tolerance)};
-      if (parameters.operation.rotating_disc)
-        add_rotation(result.bodies, model, parameters.operation.angular_velocity());
-      for (std::size_t c = 0; c < result.interface.size(); ++c)
-        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node.dofs != scene.interface[c].disc_node.dofs ||
-            result.interface[c].pin_node.dofs != scene.interface[c].pin_node.dofs)
-          throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
-                          "set Sensitivity/Geometry = none");
-      return result;
-    }
-  } // namespace
 
   std::vector<SensitivityParameter> geometry_sensitivity_parameters(const Scene &scene, const BodyTerms &bodies, Run &run)
   {

@@ -1,33 +1,171 @@
 #include <squeal/base/conventions.h>
-#include <squeal/studies/sensitivity/sensitivity_tables.h>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
 
-#include <algorithm>
-#include <complex>
-#include <optional>
 #include <ostream>
 
 namespace Squeal
 {
   namespace
   {
+    using Complex = std::complex<double>;
+
+    constexpr double one_percent = 0.01;
+
+    /// What one per cent of a parameter, or a unit of it, changes of a mode.
+    struct SensitivityRow
+    {
+      int                         mode; ///< from 0
+      const ModeSensitivity      *of;
+      const SensitivityParameter *parameter;
+      Complex                     derivative; ///< dλ/dp
+      std::optional<Complex>      change;     ///< by the last growth of the basis
+
+      double growth_per_percent() const
+      {
+        return one_percent * parameter->value * derivative.real();
+      }
+
+      /// 100 dξ, ξ = R/ω.
+      double divergence_per_percent() const
+      {
+        const Complex &lambda = of->lambda;
+        return 100. * one_percent * parameter->value * (derivative.real() - lambda.real() / lambda.imag() * derivative.imag()) /
+               lambda.imag();
+      }
+
+      double frequency_per_percent() const
+      {
+        return hertz(one_percent * parameter->value * derivative.imag());
+      }
+    };
+
+    std::vector<SensitivityRow> rows_of(const ModeSensitivity &mode, const int number, const std::vector<SensitivityParameter> &parameters)
+    {
+      std::vector<SensitivityRow> rows;
+      for (std::size_t p = 0; p < parameters.size(); ++p)
+        rows.push_back(
+          {number, &mode, &parameters[p], mode.derivatives[p], mode.changes.empty() ? std::nullopt : std::make_optional(mode.changes[p])});
+      return rows;
+    }
+
+    /// One row for each mode and parameter.
+    Table mode_sensitivity_table(const std::vector<ModeSensitivity> &modes, const std::vector<SensitivityParameter> &parameters)
+    {
+      using Row = SensitivityRow;
+      std::vector<Row> rows;
+      for (std::size_t m = 0; m < modes.size(); ++m)
+        for (const Row &row : rows_of(modes[m], static_cast<int>(m), parameters))
+          rows.push_back(row);
+      // Nothing per cent of a parameter that is zero
+      const auto percent = [](double (Row::*value)() const) {
+        return [value](const Row &row) { return row.parameter->value != 0. ? Cell((row.*value)()) : Cell(); };
+      };
+      return Table(
+        Columns<Row>{{"mode", "-", [](const Row &row) { return row.mode + 1; }},
+                     {"label", "", [](const Row &row) { return row.of->label; }},
+                     {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.of->lambda).frequency; }},
+                     {"growth rate", "1/s", [](const Row &row) { return row.of->lambda.real(); }},
+                     {"divergence rate", "%", [](const Row &row) { return 100. * modal_quantities(row.of->lambda).divergence_rate; }},
+                     {"parameter", "", [](const Row &row) { return row.parameter->path; }},
+                     {"only of", "", [](const Row &row) { return row.parameter->body; }},
+                     {"value", "", [](const Row &row) { return row.parameter->value; }},
+                     {"unit", "", [](const Row &row) { return row.parameter->unit; }},
+                     {"growth rate per 1 %", "1/s", percent(&Row::growth_per_percent)},
+                     {"divergence rate per 1 %", "percentage points", percent(&Row::divergence_per_percent)},
+                     {"frequency per 1 %", "Hz", percent(&Row::frequency_per_percent)},
+                     {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
+                     {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }},
+                     {"estimated error of the growth rate per unit", "1/s",
+                      [](const Row &row) { return row.change ? Cell(std::abs(row.change->real())) : Cell(); }},
+                     {"estimated error of the frequency per unit", "Hz",
+                      [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
+                     {"derivative of", "", [](const Row &row) { return row.of->kind; }}},
+        rows);
+    }
+
+    /// One row for each threshold and parameter; one for a threshold without derivatives.
+    Table threshold_sensitivity_table(const std::vector<ThresholdSensitivity> &thresholds,
+                                      const SweepChart                        &chart,
+                                      const std::vector<SensitivityParameter> &parameters)
+    {
+      struct Row
+      {
+        const ThresholdSensitivity *of;
+        const SensitivityParameter &parameter;
+        std::size_t                 number; ///< of the parameter
+
+        bool has_value() const
+        {
+          return of->obstacle.empty();
+        }
+      };
+      std::vector<Row> rows;
+      for (const ThresholdSensitivity &threshold : thresholds)
+        for (std::size_t p = 0; p < (threshold.obstacle.empty() ? parameters.size() : 1); ++p)
+          // With respect to itself there is none
+          if (parameters[p].operation != &OperationParameters::friction_coefficient)
+            rows.push_back({&threshold, parameters[p], p});
+      const auto of_threshold = [](const auto &value) { return [value](const Row &row) { return Cell(value(*row.of->threshold)); }; };
+      const auto known = [](const auto &value) { return [value](const Row &row) { return row.has_value() ? Cell(value(row)) : Cell(); }; };
+      const auto percent = [](const auto &value) {
+        return [value](const Row &row) { return row.has_value() && row.parameter.value != 0. ? Cell(value(row)) : Cell(); };
+      };
+      const auto label = [&](const int branch) { return branch >= 0 ? Cell(chart.labels[branch]) : Cell(); };
+      return Table(Columns<Row>{{"mu", "-", of_threshold([](const Threshold &t) { return t.friction_coefficient; })},
+                                {"event", "", of_threshold([](const Threshold &t) { return t.event; })},
+                                {"label", "", of_threshold([=](const Threshold &t) { return label(t.branch); })},
+                                {"label of partner", "", of_threshold([=](const Threshold &t) { return label(t.partner); })},
+                                {"frequency", "Hz", of_threshold([](const Threshold &t) { return modal_quantities(t.lambda).frequency; })},
+                                {"parameter", "", known([](const Row &row) { return row.parameter.path; })},
+                                {"only of", "", known([](const Row &row) { return row.parameter.body; })},
+                                {"value", "", known([](const Row &row) { return row.parameter.value; })},
+                                {"unit", "", known([](const Row &row) { return row.parameter.unit; })},
+                                {"mu per 1 %", "-", percent([](const Row &row) {
+                                   return one_percent * row.parameter.value * row.of->derivatives[row.number];
+                                 })},
+                                {"mu per unit", "-", known([](const Row &row) { return row.of->derivatives[row.number]; })},
+                                {"estimated error per unit", "-", known([](const Row &row) { return row.of->errors[row.number]; })},
+                                {"derivative of", "",
+                                 [](const Row &row) {
+                                   return !row.has_value() ? "none" :
+                                          row.of->threshold->mechanism == ThresholdMechanism::zero_growth ?
+                                                             "growth rate" :
+                                                             "squared difference of the pair";
+                                 }},
+                                {"remark", "", [](const Row &row) { return row.of->obstacle; }}},
+                   rows);
+    }
+
+    /// Parameters by how far one per cent of them changes the divergence rate of a mode; at most @p most rows, 0: all. Single pins apart on request.
+    Table ranking_table(const ModeSensitivity                   &mode,
+                        const std::vector<SensitivityParameter> &parameters,
+                        const bool                               with_single_pins,
+                        const std::size_t                        most)
+    {
+      using Row             = SensitivityRow;
+      std::vector<Row> rows = rows_of(mode, 0, parameters);
+      rows.erase(
+        std::remove_if(rows.begin(), rows.end(),
+                       [&](const Row &row) { return row.parameter->value == 0. || (!with_single_pins && !row.parameter->body.empty()); }),
+        rows.end());
+      std::stable_sort(rows.begin(), rows.end(), [](const Row &a, const Row &b) {
+        return std::abs(a.divergence_per_percent()) > std::abs(b.divergence_per_percent());
+      });
+      if (most > 0 && rows.size() > most)
+        rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(most), rows.end());
+      Columns<Row> columns = {{"parameter", "", [](const Row &row) { return row.parameter->path; }}};
+      if (with_single_pins)
+        columns.push_back({"only of", "", [](const Row &row) { return row.parameter->body; }});
+      columns.push_back({"value", "", [](const Row &row) { return row.parameter->value; }, 4, true});
+      columns.push_back({"unit", "", [](const Row &row) { return row.parameter->unit; }});
+      columns.push_back({"divergence rate per 1 %", "percentage points", [](const Row &row) { return row.divergence_per_percent(); }, 6});
+      columns.push_back({"growth rate per 1 %", "1/s", [](const Row &row) { return row.growth_per_percent(); }, 4});
+      columns.push_back({"frequency per 1 %", "Hz", [](const Row &row) { return row.frequency_per_percent(); }, 4});
+      return Table(columns, rows);
+    }
+
     /// Rows of the ranking on the screen.
     constexpr std::size_t n_shown_parameters = 12;
-
-    /// Keeps nothing: a study of sensitivities begins anew when it is interrupted.
-    class ForgetfulStore : public ChartStore
-    {
-    public:
-      std::optional<ChartPoint> find(const OperatingPoint &) const override
-      {
-        return {};
-      }
-      void                     keep(const OperatingPoint &, const ChartPoint &) override {}
-      std::vector<MultiVector> basis() const override
-      {
-        return {};
-      }
-      void keep(const MultiVector &) override {}
-    };
 
     /// Friction coefficients of the sweep where thresholds are wanted, with that of the operation among them.
     SweepLine line_of(const Parameters &parameters)
@@ -56,15 +194,6 @@ namespace Squeal
       run.screen << '\n';
     }
 
-    void note_obstacles(const std::vector<ThresholdSensitivity> &thresholds, Run &run)
-    {
-      const auto n = std::count_if(thresholds.begin(), thresholds.end(),
-                                   [](const ThresholdSensitivity &threshold) { return !threshold.obstacle.empty(); });
-      if (n > 0)
-        run.progress.note(
-          text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
-    }
-
     /// Of the modal damping that the coupled system of a sweep has; nothing without it.
     std::optional<ModalDampingDerivatives> modal_damping_derivatives(const SweepModel &sweep, const DampingParameters &damping)
     {
@@ -77,9 +206,7 @@ namespace Squeal
     }
   } // namespace
 
-  /**
-   * `Study = sensitivity`: derivatives of λ and of the thresholds with respect to every continuous parameter, from right and left vectors.
-   */
+  /// `Study = sensitivity`: derivatives of λ and of the thresholds with respect to every continuous parameter, from right and left vectors.
   static void run_sensitivity_study(Scene &scene, Run &run)
   {
     const Parameters                 &p          = run.parameters;
@@ -96,9 +223,8 @@ namespace Squeal
     if (plan.regimes.size() > 1)
       run.progress.note(text("  note: thresholds are those with the contact set at mu = ", exact_text(mu), "; there are ",
                              plan.regimes.size(), " over the range"));
-    SweepModel     sweep(plan, *regime, run);
-    ForgetfulStore store;
-    evaluate_points(sweep, store);
+    SweepModel sweep(plan, *regime, run);
+    evaluate_points(sweep, nullptr);
     std::optional<SweepChart> chart;
     if (p.sensitivity.thresholds)
       {
@@ -106,7 +232,7 @@ namespace Squeal
         for (const int i : regime->on_line(0))
           if (sweep.known.count({0, regime->points[i].friction_coefficient}) > 0)
             grid.push_back(regime->points[i].friction_coefficient);
-        chart = follow_branches(sweep, 0, grid, &store);
+        chart = follow_branches(sweep, 0, grid, nullptr);
       }
 
     SensitivityModel                   model{sweep, bodies, parameters, modal_damping_derivatives(sweep, p.damping)};
@@ -117,7 +243,10 @@ namespace Squeal
     if (chart)
       {
         const std::vector<ThresholdSensitivity> thresholds = threshold_sensitivities(model, *chart, run);
-        note_obstacles(thresholds, run);
+        if (const auto n = std::count_if(thresholds.begin(), thresholds.end(), [](const auto &found) { return !found.obstacle.empty(); });
+            n > 0)
+          run.progress.note(
+            text("  note: ", n, " of ", thresholds.size(), " thresholds have no derivatives, see sensitivities_thresholds.csv"));
         run.store_table("sensitivities_thresholds", threshold_sensitivity_table(thresholds, *chart, parameters));
       }
     run.finish();

@@ -1,10 +1,6 @@
 #include <squeal/studies/sensitivity/sensitivity_results.h>
 #include <squeal/tracking/mode_links.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-
 namespace Squeal
 {
   namespace
@@ -93,10 +89,7 @@ namespace Squeal
       }
 
       /// Where the modes were looked at last.
-      const std::vector<ThresholdSample> &samples() const
-      {
-        return last_samples;
-      }
+      std::vector<ThresholdSample> samples;
 
     private:
       /// Distance to the next event of either branch, and to the ends of the chart.
@@ -126,7 +119,7 @@ namespace Squeal
             result.obstacle = "its modes mix with others nearby";
             return nullptr;
           }
-        last_samples.push_back({mu, *to});
+        samples.push_back({mu, *to});
         return &there;
       }
 
@@ -141,11 +134,11 @@ namespace Squeal
 
       void at_zero_growth()
       {
-        last_samples.clear();
+        samples.clear();
         const ChartPoint *point = sample(threshold.friction_coefficient);
         if (point == nullptr)
           return;
-        const int                 mode     = last_samples.back().modes.front();
+        const int                 mode     = samples.back().modes.front();
         const SensitivityProducts products = model.products(*point, {mode});
         std::vector<double>       rates;
         for (const ComplexDenseMatrix &N : products.N)
@@ -158,7 +151,7 @@ namespace Squeal
       void at_coalescence()
       {
         const double mu = threshold.friction_coefficient;
-        last_samples.clear();
+        samples.clear();
         if (!(step > 3. * threshold.uncertainty))
           {
             result.obstacle = "another event of its modes is too close";
@@ -171,7 +164,7 @@ namespace Squeal
               const ChartPoint *point = sample(mu + side * distance * step);
               if (point == nullptr)
                 return;
-              const SensitivityProducts products = model.products(*point, last_samples.back().modes);
+              const SensitivityProducts products = model.products(*point, samples.back().modes);
               for (std::size_t p = 0; p < means.size(); ++p)
                 means[p][distance - 1] += 0.5 * squared_difference_derivative(products.N[p], products.D, products.lambda);
             }
@@ -185,13 +178,12 @@ namespace Squeal
           }
       }
 
-      SensitivityModel            &model;
-      const StabilityChart        &chart;
-      const Threshold             &threshold;
-      const std::vector<int>       branches;
-      double                       step; ///< of the friction coefficient
-      ThresholdSensitivity         result;
-      std::vector<ThresholdSample> last_samples;
+      SensitivityModel      &model;
+      const StabilityChart  &chart;
+      const Threshold       &threshold;
+      const std::vector<int> branches;
+      double                 step; ///< of the friction coefficient
+      ThresholdSensitivity   result;
     };
   } // namespace
 
@@ -215,10 +207,10 @@ namespace Squeal
     std::vector<ThresholdSensitivity>             result = find("threshold ");
     std::vector<std::vector<ChartModel::ModesAt>> groups;
     for (const ThresholdDerivatives &threshold : thresholds)
-      if (!threshold.samples().empty())
+      if (!threshold.samples.empty())
         {
           groups.emplace_back();
-          for (const ThresholdSample &sample : threshold.samples())
+          for (const ThresholdSample &sample : threshold.samples)
             groups.back().push_back(
               model.modes_at(sweep.known.at({SensitivityModel::main_line, sample.friction_coefficient}), sample.modes));
         }

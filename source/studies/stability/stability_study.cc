@@ -1,19 +1,198 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/studies/steps/friction_modes.h>
-#include <squeal/studies/steps/mesh_estimate.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/studies/steps/mode_results.h>
 
-#include <algorithm>
-#include <cmath>
-#include <iomanip>
+#include <boost/range/irange.hpp>
+
 #include <ostream>
 
 namespace Squeal
 {
   namespace
   {
+    /// Component modes below ω² = @p largest_eigenvalue: component, contact, label, frequency, residual.
+    Table component_table(const FrictionlessModes &modes, const double largest_eigenvalue)
+    {
+      using Row = ListedComponentMode;
+      return Table(Columns<Row>{{"component", "", &Row::component},
+                                {"contact", "", &Row::contact},
+                                {"label", "", &Row::label},
+                                {"frequency", "Hz", [](const Row &row) { return row.frequency(); }, 2},
+                                {"residual", "-", [](const Row &row) { return row.set->residuals[row.number]; }, 1, true}},
+                   listed_component_modes(modes, largest_eigenvalue));
+    }
+
+    /// Real coupled modes: label, share, frequency, residual.
+    Table real_table(const FrictionlessModes &modes)
+    {
+      return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
+                                {"share", "-", [&](const int j) { return modes.labels[j].participation; }, 3},
+                                {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
+                                {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
+                   boost::irange<int>(0, modes.labels.size()));
+    }
+
+    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
+    Column<int> column_of(const FrictionModes &friction,
+                          const std::string   &name,
+                          const std::string   &unit,
+                          double ModalQuantities::*quantity,
+                          const int                digits)
+    {
+      const double factor = unit == "%" ? 100. : 1.;
+      return {name, unit,
+              [&friction, quantity, factor](const int j) { return factor * (modal_quantities(friction.modes.lambda[j]).*quantity); },
+              digits};
+    }
+
+    /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are unstable, how they
+    /// travel, estimates where there are any, and columns @p more by the numbers of the modes.
+    Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves, const Columns<int> &more)
+    {
+      const ComplexModes &modes = friction.modes;
+      const auto          wave  = [&waves](double WaveShares::*share) {
+        return [&waves, share](const int j) { return waves[j] ? std::make_optional(*waves[j].*share) : std::nullopt; };
+      };
+      Columns<int> columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
+                              {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
+                              column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
+                              column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
+                              column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                              column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
+                              {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
+                              {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
+                              {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }},
+                              {"wave with rotation", "-", wave(&WaveShares::positive), 3},
+                              {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
+      if (!modes.estimated_errors.empty())
+        columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
+      if (more.empty()) // else the error of the mesh is in the verdict
+        columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
+      columns.insert(columns.end(), more.begin(), more.end());
+      return Table(columns, boost::irange<int>(0, friction.labels.size()));
+    }
+
+    /// Columns that estimated errors of the mesh add to complex_table(): those, whether they are within @p limits, and the verdict.
+    Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyLimits &limits)
+    {
+      const auto known = [&errors](const double DiscretisationError::*error) {
+        return [&errors, error](const int j) {
+          return errors[j].has_counterpart ? std::make_optional(100. * (errors[j].*error)) : std::nullopt;
+        };
+      };
+      return {{"estimated frequency error by the mesh", "%", known(&DiscretisationError::frequency), 1, true},
+              {"estimated divergence rate error by the mesh", "%", known(&DiscretisationError::divergence), 1, true},
+              {"in a cluster", "-", [&errors](const int j) { return errors[j].in_cluster; }},
+              {"converged", "-", [&errors, limits](const int j) { return errors[j].is_within(limits.frequency, limits.divergence); }},
+              {"verdict", "", [&errors](const int j) { return to_string(errors[j].verdict); }}};
+    }
+
+    /// The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest
+    /// rows.
+    Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
+    {
+      std::vector<int> growing;
+      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
+        if (friction.unstable[j])
+          growing.push_back(static_cast<int>(j));
+      const auto rate = [&](const int j) { return modal_quantities(friction.modes.lambda[j]).divergence_rate; };
+      std::stable_sort(growing.begin(), growing.end(), [&](const int a, const int b) { return rate(a) > rate(b); });
+      growing.resize(std::min(growing.size(), n_largest));
+      return Table(Columns<int>{{"unstable mode", "", [&](const int j) { return friction.labels[j]; }},
+                                column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
+                                column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
+                                column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
+                                {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3}},
+                   growing);
+    }
+
+    /// What a body of a mode adds to its divergence rate [-].
+    struct PowerRow
+    {
+      int                   mode;
+      std::string           body;
+      std::optional<double> friction, into_disc, into_pin, radial, sliding; ///< of pins
+      double                damping;                                        ///< of the material or of the modes
+
+      double sum() const
+      {
+        return friction.value_or(0.) + radial.value_or(0.) + sliding.value_or(0.) + damping;
+      }
+    };
+
+    std::vector<PowerRow> rows_of(const int mode, const PowerBalance &balance, const Linearisation &linearisation)
+    {
+      const std::vector<std::string> &names = linearisation.scene->model->component_names();
+      std::vector<PowerRow>           rows{{mode, names.front(), {}, {}, {}, {}, {}, balance.bodies.front()}};
+      for (std::size_t pin = 1; pin < names.size(); ++pin)
+        rows.push_back({mode, names[pin], 0., 0., 0., 0., 0., balance.bodies[pin]});
+      for (std::size_t node = 0; node < linearisation.interface.size(); ++node)
+        {
+          PowerRow &row = rows[linearisation.interface[node].pin];
+          *row.into_disc += balance.into_disc[node];
+          *row.into_pin += balance.into_pins[node];
+          *row.friction += balance.into_disc[node] + balance.into_pins[node];
+          *row.radial += balance.radial_damping[node];
+          *row.sliding += balance.sliding_damping[node];
+        }
+      if (balance.modal_damping != 0.)
+        rows.push_back({mode, "all (modal damping)", {}, {}, {}, {}, {}, balance.modal_damping});
+      return rows;
+    }
+
+    /// The balances of all growing modes; how far the largest is from adding up to ξ goes to the run record.
+    PowerBalances power_balances(const Linearisation &linearisation, const FrictionModes &friction, Run &run)
+    {
+      const Scene  &scene = *linearisation.scene;
+      PowerBalances result;
+      double        imbalance = 0.;
+      for (std::size_t j = 0; j < friction.labels.size(); ++j)
+        if (friction.unstable[j])
+          {
+            const int                  column = static_cast<int>(j);
+            const std::complex<double> lambda = friction.modes.lambda[j];
+            const PowerBalance         balance =
+              power_balance(scene.system, *scene.model, linearisation.coupled, linearisation.interface, linearisation.damping,
+                            run.parameters.operation.friction_coefficient, lambda, view(*friction.modes.real_part, column, 1),
+                            view(*friction.modes.imaginary_part, column, 1));
+            imbalance      = std::max(imbalance, std::abs(balance.sum() - modal_quantities(lambda).divergence_rate));
+            result[column] = balance;
+          }
+      if (!result.empty())
+        run.measure("largest difference of a divergence rate from what its powers add up to [-]", imbalance);
+      return result;
+    }
+
+    /// `energy.csv`: of each growing mode what disc and pins, friction and damping add to its divergence rate. Nothing without a growing mode.
+    void write_power_table(const Linearisation &linearisation, const FrictionModes &friction, const PowerBalances &balances, Run &run)
+    {
+      if (balances.empty())
+        return;
+      std::vector<PowerRow> rows;
+      for (const auto &[mode, balance] : balances)
+        for (const PowerRow &row : rows_of(mode, balance, linearisation))
+          rows.push_back(row);
+      const auto part = [](std::optional<double> PowerRow::*share) {
+        return [share](const PowerRow &row) { return row.*share ? std::make_optional(100. * *(row.*share)) : std::nullopt; };
+      };
+      const auto              quantity = [&](const PowerRow &row) { return modal_quantities(friction.modes.lambda[row.mode]); };
+      const Columns<PowerRow> columns  = {
+         {"mode", "-", [](const PowerRow &row) { return row.mode + 1; }},
+         {"label", "", [&](const PowerRow &row) { return friction.labels[row.mode]; }},
+         {"frequency", "Hz", [&](const PowerRow &row) { return quantity(row).frequency; }},
+         {"divergence rate", "%", [&](const PowerRow &row) { return 100. * quantity(row).divergence_rate; }},
+         {"body", "", &PowerRow::body},
+         {"all of it", "%", [](const PowerRow &row) { return 100. * row.sum(); }},
+         {"friction", "%", part(&PowerRow::friction)},
+         {"friction into the disc", "%", part(&PowerRow::into_disc)},
+         {"friction into the pin", "%", part(&PowerRow::into_pin)},
+         {"radial dissipation", "%", part(&PowerRow::radial)},
+         {"slope of friction", "%", part(&PowerRow::sliding)},
+         {"damping", "%", [](const PowerRow &row) { return 100. * row.damping; }}};
+      run.store_table("energy", Table(columns, rows));
+    }
+
     /// Unstable modes that the screen shows.
     constexpr std::size_t n_shown_modes = 20;
 
@@ -119,29 +298,22 @@ namespace Squeal
     }
   } // namespace
 
-  /// Frees the points, cells and faces of a mesh, but not their names.
-  static void release(HexMesh &mesh)
-  {
-    mesh.points         = std::vector<HexMesh::Point>();
-    mesh.hexahedra      = std::vector<HexMesh::Hexahedron>();
-    mesh.quadrilaterals = std::vector<HexMesh::Quadrilateral>();
-  }
-
-  /**
-   * `Study = stability`: component modes, real coupled modes and complex modes
-   * at one friction coefficient, about equal shares of the load or about steady
-   * sliding, with their tables and mode shapes; with an accuracy asked for, their errors by the mesh. A dry run makes, checks and
-   * counts the mesh, and writes nothing.
-   */
+  /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, about equal shares of the load
+  /// or about steady sliding, with their tables and mode shapes; with an accuracy asked for, their errors by the mesh. A dry run makes,
+  /// checks and counts the mesh, and writes nothing.
   static void run_stability_study(Scene &scene, Run &run)
   {
     const Parameters          &parameters = run.parameters;
     const OperationParameters &operation  = parameters.operation;
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    // Process 0 writes the mesh; the others have their parts in the model
-    if (!run.is_root)
-      release(scene.mesh);
+    // Process 0 writes the mesh; the others have their parts in the model, and need no more than names
+    if (HexMesh names; !run.is_root)
+      {
+        names.volume_names = scene.mesh.volume_names;
+        scene.mesh         = names;
+      }
+
     const std::optional<CoarserSolution> coarser       = solve_on_coarser_mesh(run);
     const FrictionlessModes              frictionless  = damped_modes(scene, run);
     const FrictionModes                  friction      = friction_modes(frictionless, operation.friction_coefficient, run);

@@ -1,10 +1,6 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/text.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/steps/friction_modes.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace Squeal
@@ -14,41 +10,6 @@ namespace Squeal
     /// Modes with a larger R/ω grow by more than e^(2π) within a period: divergence with a slow oscillation, no sound [-].
     constexpr double fastest_oscillating_divergence = 1.;
 
-    /// Growth rates of the unstable modes [1/s]; zero for the others.
-    std::vector<double> growth_rates(const FrictionModes &friction)
-    {
-      std::vector<double> result;
-      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
-        result.push_back(friction.unstable[j] ? friction.modes.lambda[j].real() : 0.);
-      return result;
-    }
-  } // namespace
-
-  FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes)
-  {
-    FrictionModes result{std::move(modes), {}, {}};
-    result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
-    mark_doublets(result.labels, growth_rates(result));
-    return result;
-  }
-
-  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run)
-  {
-    const Parameters &parameters = run.parameters;
-    run.progress.begin("Complex modes");
-    FrictionModes       result = named_modes(frictionless, modes_with_friction(frictionless.linearisation.coupled, frictionless, mu,
-                                                                               circular_frequency(parameters.discretization.maximum_frequency),
-                                                                               parameters.solvers, run.progress));
-    const ComplexModes &found  = result.modes;
-    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
-                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
-                                           found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
-                                           found.summary));
-    return result;
-  }
-
-  namespace
-  {
     /// Summary of the unstable modes, led by the one that grows fastest among those that oscillate.
     std::string squeal(const FrictionModes &friction, const double mu)
     {
@@ -79,6 +40,32 @@ namespace Squeal
       return result;
     }
   } // namespace
+
+  FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes)
+  {
+    FrictionModes result{std::move(modes), {}, {}};
+    result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
+    std::vector<double> growth; // zero for modes that do not grow
+    for (std::size_t j = 0; j < result.unstable.size(); ++j)
+      growth.push_back(result.unstable[j] ? result.modes.lambda[j].real() : 0.);
+    mark_doublets(result.labels, growth);
+    return result;
+  }
+
+  FrictionModes friction_modes(const FrictionlessModes &frictionless, const double mu, Run &run)
+  {
+    const Parameters &parameters = run.parameters;
+    run.progress.begin("Complex modes");
+    FrictionModes       result = named_modes(frictionless, modes_with_friction(frictionless.linearisation.coupled, frictionless, mu,
+                                                                               circular_frequency(parameters.discretization.maximum_frequency),
+                                                                               parameters.solvers, run.progress));
+    const ComplexModes &found  = result.modes;
+    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
+                                           found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
+                                           found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
+                                           found.summary));
+    return result;
+  }
 
   std::vector<std::string> verdict(const FrictionModes &friction, const double mu, const double maximum_frequency)
   {

@@ -1,11 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/rigid_body.h>
-#include <squeal/linear_algebra/weighted_gram.h>
-#include <squeal/studies/steps/frictionless_modes.h>
-
-#include <algorithm>
-#include <cmath>
+#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/studies/steps/friction_modes.h>
 
 namespace Squeal
 {
@@ -35,10 +31,8 @@ namespace Squeal
                       " Hz. Raise Mounts/Elastic mounts, or leave the directions out if the body is meant to be free"));
     }
 
-    /**
-     * Refuses a speed beyond a critical one, at which K − Ω² ρ N has negative eigenvalues: the disc cannot keep its shape in the fixed
-     * frame, and no Cholesky factor exists.
-     */
+    /// Refuses a speed beyond a critical one, at which K − Ω² ρ N has negative eigenvalues: the disc cannot keep its shape in the fixed
+    /// frame, and no Cholesky factor exists.
     void check_speed(const CoupledSystem &coupled, const Parameters &parameters)
     {
       if (!parameters.operation.rotating_disc || !parameters.has_friction())
@@ -49,6 +43,35 @@ namespace Squeal
         throw ParameterError(text("at ", exact_text(parameters.operation.rotation_speed), " rad/s the disc turns beyond a critical speed: ",
                                   n + n_null, n + n_null == 1 ? " motion has" : " motions have", " no positive stiffness"),
                              "parameter Operation/Rotation speed", "lower it, or set Operation/Gyroscopic forces = false");
+    }
+
+    /// Modes of the disc and of the pins alone, as a step of the run.
+    void find_component_modes(const Linearisation &linearisation, FrictionlessModes &result, Run &run)
+    {
+      const Scene &scene     = *linearisation.scene;
+      const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
+      run.progress.begin("Component modes");
+      const auto modes = [&](const Component component, const ContactBoundary boundary, const double band, const char *name) {
+        const bool            is_disc = component == Component::disc;
+        SymmetricModesOptions options =
+          real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : 0.);
+        // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
+        options.by_parts = !is_disc;
+        run.progress.update(name);
+        return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,
+                               band * band * omega_max * omega_max, options);
+      };
+      result.pins_free    = modes(Component::pins, ContactBoundary::free, 1., "modes of the free pins");
+      result.pins_sliding = modes(Component::pins, ContactBoundary::sliding, label_band, "modes of the sliding pins");
+      result.disc         = modes(Component::disc, ContactBoundary::free, label_band, "modes of the disc");
+
+      const auto n_in_band = [&](const ComponentModes &modes) { return Squeal::n_in_band(modes.eigenvalues, omega_max * omega_max); };
+      const auto n_disc = n_in_band(result.disc), n_free = n_in_band(result.pins_free), n_sliding = n_in_band(result.pins_sliding);
+      run.count("disc modes", n_disc);
+      run.count("free pin modes", n_free);
+      run.count("sliding pin modes", n_sliding);
+      run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
+                               run.parameters.discretization.maximum_frequency, " Hz"));
     }
   } // namespace
 
@@ -115,38 +138,6 @@ namespace Squeal
   {
     return Squeal::identify(references(), shape_shares(real_part, imaginary_part));
   }
-
-  namespace
-  {
-    /// Modes of the disc and of the pins alone, as a step of the run.
-    void find_component_modes(const Linearisation &linearisation, FrictionlessModes &result, Run &run)
-    {
-      const Scene &scene     = *linearisation.scene;
-      const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
-      run.progress.begin("Component modes");
-      const auto modes = [&](const Component component, const ContactBoundary boundary, const double band, const char *name) {
-        const bool            is_disc = component == Component::disc;
-        SymmetricModesOptions options =
-          real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : 0.);
-        // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
-        options.by_parts = !is_disc;
-        run.progress.update(name);
-        return component_modes(*scene.model, scene.interface, linearisation.interface, scene.system, component, boundary,
-                               band * band * omega_max * omega_max, options);
-      };
-      result.pins_free    = modes(Component::pins, ContactBoundary::free, 1., "modes of the free pins");
-      result.pins_sliding = modes(Component::pins, ContactBoundary::sliding, label_band, "modes of the sliding pins");
-      result.disc         = modes(Component::disc, ContactBoundary::free, label_band, "modes of the disc");
-
-      const auto n_in_band = [&](const ComponentModes &modes) { return Squeal::n_in_band(modes.eigenvalues, omega_max * omega_max); };
-      const auto n_disc = n_in_band(result.disc), n_free = n_in_band(result.pins_free), n_sliding = n_in_band(result.pins_sliding);
-      run.count("disc modes", n_disc);
-      run.count("free pin modes", n_free);
-      run.count("sliding pin modes", n_sliding);
-      run.progress.finish(text("disc ", n_disc, ", pins free ", n_free, ", pins sliding ", n_sliding, " below ",
-                               run.parameters.discretization.maximum_frequency, " Hz"));
-    }
-  } // namespace
 
   FrictionlessModes frictionless_modes(const Linearisation &linearisation, Run &run, const double margin)
   {

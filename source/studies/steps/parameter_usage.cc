@@ -2,49 +2,29 @@
 
 #include <boost/algorithm/string.hpp>
 
-#include <algorithm>
-#include <optional>
-
 namespace Squeal
 {
   namespace
   {
     // --------------------------------------------------------------------- rules
 
-    Reason no_damping(const Parameters &p)
-    {
-      return unless(p.has_friction(), "the frictionless problem has no damping");
-    }
-
-    Reason no_friction(const Parameters &p)
-    {
-      return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless");
-    }
-
-    Reason no_krylov(const Parameters &p)
-    {
-      return unless(p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
-    }
-
-    Reason no_iteration(const Parameters &p)
-    {
-      return unless(p.solves_by(ComplexSolver::residual_iteration), "of the solver residual iteration");
-    }
-
-    Reason no_steady_sliding(const Parameters &p)
-    {
-      return unless(p.needs_steady_sliding(), "Steady sliding/Contact state = equal load");
-    }
-
-    Reason no_complex_shapes(const Parameters &p)
-    {
+    const auto no_damping        = [](const Parameters &p) { return unless(p.has_friction(), "the frictionless problem has no damping"); };
+    const auto no_krylov         = [](const Parameters &p) { return unless(p.solves_by(ComplexSolver::krylov), "of the solver Krylov"); };
+    const auto no_complex_shapes = [](const Parameters &p) {
       return unless(p.output.fields != FieldSelection::none, "Output/Mode shapes = none");
-    }
-
-    Reason no_frames(const Parameters &p)
-    {
+    };
+    const auto no_friction = [](const Parameters &p) {
+      return unless(p.has_friction() || p.needs_steady_sliding(), "the problem is frictionless");
+    };
+    const auto no_iteration = [](const Parameters &p) {
+      return unless(p.solves_by(ComplexSolver::residual_iteration), "of the solver residual iteration");
+    };
+    const auto no_steady_sliding = [](const Parameters &p) {
+      return unless(p.needs_steady_sliding(), "Steady sliding/Contact state = equal load");
+    };
+    const auto no_frames = [](const Parameters &p) {
       return p.output.animation_frames == 0 ? "Output/Animation frames = 0" : no_complex_shapes(p);
-    }
+    };
 
     /// What holds for all studies that have no rule of their own.
     const std::vector<UsageRule> &general_rules()

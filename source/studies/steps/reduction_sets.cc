@@ -1,15 +1,11 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/rigid_body.h>
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/modes/krylov_modes.h>
 #include <squeal/studies/steps/parameter_usage.h>
 #include <squeal/studies/steps/reduction_sets.h>
 
 #include <boost/algorithm/string/join.hpp>
-
-#include <algorithm>
-#include <functional>
 
 namespace Squeal
 {
@@ -60,15 +56,15 @@ namespace Squeal
       return measures(p, [source](const BasisRecipe &recipe) { return recipe.rests_on(source); });
     }
 
-    Reason no_snapshots(const Parameters &p)
-    {
+    const auto no_snapshots = [](const Parameters &p) {
       return unless(measures(p, BasisSource::snapshots), "the basis POD is not measured");
-    }
-
-    Reason no_krylov_for_bases(const Parameters &p)
-    {
+    };
+    const auto no_krylov_for_bases = [](const Parameters &p) {
       return unless(measures(p, BasisSource::snapshots) || p.solves_by(ComplexSolver::krylov), "of the solver Krylov");
-    }
+    };
+
+    /// Numbers of component modes are searched for up to this multiple of the end of the band [-].
+    constexpr double furthest_band = 16.;
   } // namespace
 
   bool ReductionPlan::rests_on(const BasisSource source) const
@@ -121,12 +117,6 @@ namespace Squeal
              }}};
   }
 
-  namespace
-  {
-    /// Numbers of component modes are searched for up to this multiple of the end of the band [-].
-    constexpr double furthest_band = 16.;
-  } // namespace
-
   ReductionSets::ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run)
     : plan(plan)
     , frictionless(frictionless)
@@ -136,11 +126,11 @@ namespace Squeal
     , linearisation(frictionless.linearisation)
     , disc_shift(stabilizing_shift(*scene.model, scene.system, plan.largest_circular_frequency))
   {
-    available.uncoupled            = &scene.system;
-    available.contact              = &linearisation.contact;
-    available.coupled              = &system;
-    available.inverse              = frictionless.inverse.get();
-    available.friction_coefficient = plan.friction_coefficient;
+    ingredients.uncoupled            = &scene.system;
+    ingredients.contact              = &linearisation.contact;
+    ingredients.coupled              = &system;
+    ingredients.inverse              = frictionless.inverse.get();
+    ingredients.friction_coefficient = plan.friction_coefficient;
     charge_coupled_factor();
     take_real_modes(0.);
     compute_static_modes();
@@ -166,27 +156,18 @@ namespace Squeal
   {
     seconds[charge.source] = charge.seconds;
     const auto is_same     = [&](const Charge &other) { return other.source == charge.source && other.variant == charge.variant; };
-    if (plan.rests_on(charge.source) && std::none_of(charged.begin(), charged.end(), is_same))
-      charged.push_back(charge);
+    if (plan.rests_on(charge.source) && std::none_of(charges.begin(), charges.end(), is_same))
+      charges.push_back(charge);
   }
 
-  template <typename Function>
-  auto ReductionSets::timed(const BasisSource source, const std::string &variant, Function &&function)
+  int ReductionSets::keep(Charge charge, MultiVector set)
   {
-    const Stopwatch watch;
-    auto            result = function();
-    Charge          charge{source, variant, {}, {}, {}, watch.cost().cpu_seconds};
-    if constexpr (std::is_same_v<decltype(result), MultiVector>)
-      charge.n_vectors = result.n_columns();
+    const int n      = set.n_columns();
+    charge.n_vectors = n;
     book(charge);
-    return result;
-  }
-
-  int ReductionSets::keep(const BasisSource source, std::unique_ptr<MultiVector> set)
-  {
-    vectors[source]        = std::move(set);
-    available.sets[source] = vectors[source].get();
-    return vectors[source]->n_columns();
+    vectors[charge.source]          = std::make_unique<MultiVector>(std::move(set));
+    ingredients.sets[charge.source] = vectors[charge.source].get();
+    return n;
   }
 
   // ------------------------------------------------------------- for all bases
@@ -208,7 +189,7 @@ namespace Squeal
         const SymmetricModes &real = frictionless.real;
         const int             n    = real.vectors->n_columns();
         book({BasisSource::real, "", n, run.parameters.discretization.maximum_frequency, n, frictionless.solution.cpu_seconds});
-        available.sets[BasisSource::real] = real.vectors.get();
+        ingredients.sets[BasisSource::real] = real.vectors.get();
         return;
       }
     run.progress.begin("Real modes for bases");
@@ -222,8 +203,9 @@ namespace Squeal
     if (modes.eigenvalues.empty())
       throw SolverError("no mode of the coupled system lies below " + text(frequency) + " Hz", "parameter Reduction/Coupled frequency",
                         "raise it, or give 0 for the modes of the band");
-    const int n = keep(BasisSource::real, std::make_unique<MultiVector>(*modes.vectors));
-    book({BasisSource::real, exact_text(frequency) + " Hz", n, frequency, n, seconds});
+    const int n =
+      keep({BasisSource::real, exact_text(frequency) + " Hz", {}, frequency, modes.vectors->n_columns(), seconds}, *modes.vectors);
+
     run.progress.finish(text(n, " below ", frequency, " Hz"));
   }
 
@@ -231,9 +213,10 @@ namespace Squeal
   {
     run.progress.begin("Static modes");
     const FactorizationLibrary library = run.parameters.solvers.library;
-    response                           = timed(BasisSource::uncoupled_factor, "", [&] {
-      return std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
-    });
+    const Stopwatch            of_factor;
+    response = std::make_unique<InertiaRelief>(static_response(*scene.model, scene.system, plan.largest_circular_frequency, library));
+    book({BasisSource::uncoupled_factor, "", {}, {}, {}, of_factor.cost().cpu_seconds});
+
     static_modes = std::make_unique<StaticModes>(*scene.model, linearisation.interface, linearisation.contact, scene.system, *response,
                                                  plan.largest_circular_frequency, library);
     const StaticModes &modes = *static_modes;
@@ -251,29 +234,28 @@ namespace Squeal
           const int       n = set().n_columns();
           book({source, "", n, {}, {}, watch.cost().cpu_seconds});
         }
-    available.static_modes = static_modes.get();
+    ingredients.static_modes = static_modes.get();
     run.progress.finish(text(linearisation.interface.size(), " contact nodes"));
   }
 
   void ReductionSets::compute_snapshots()
   {
     run.progress.begin("Snapshots");
-    const std::vector<double> &values = run.parameters.reduction.snapshots;
-    MultiVector                set    = timed(BasisSource::snapshots, "", [&] {
-      std::vector<ComplexModes>        modes;
-      std::vector<const MultiVector *> parts;
-      for (const double value : values)
-        {
-          run.progress.update(text("mu = ", value));
-          modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
-                                                         plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
-                                                         run.progress, frictionless.real.vectors.get()));
-          for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
-            parts.push_back(part.get());
-        }
-      return join(parts);
-    });
-    const int                  n      = keep(BasisSource::snapshots, std::make_unique<MultiVector>(std::move(set)));
+    const std::vector<double>       &values = run.parameters.reduction.snapshots;
+    const Stopwatch                  watch;
+    std::vector<ComplexModes>        modes;
+    std::vector<const MultiVector *> parts;
+    for (const double value : values)
+      {
+        run.progress.update(text("mu = ", value));
+        modes.push_back(krylov_modes(linearisation.coupled, *frictionless.inverse, frictionless.shift, value,
+                                     plan.largest_circular_frequency, frictionless.real.eigenvalues.size(), run.parameters.solvers,
+                                     run.progress, frictionless.real.vectors.get()));
+        for (const auto &part : {modes.back().real_part, modes.back().imaginary_part})
+          parts.push_back(part.get());
+      }
+    MultiVector set = join(parts);
+    const int   n   = keep({BasisSource::snapshots, "", {}, {}, {}, watch.cost().cpu_seconds}, std::move(set));
     run.progress.finish(text(n, " vectors from ", values.size(), " friction coefficients"));
   }
 
@@ -286,14 +268,10 @@ namespace Squeal
     std::map<BasisSource, int> n;
     const auto compute_if = [&](const bool is_used, const BasisSource source, const Component component, const ContactBoundary boundary,
                                 const int count) {
-      if (!is_used)
-        return;
-      ChargedModes modes   = lowest_modes(component, boundary, frequency, count);
-      modes.charge.source  = source;
-      modes.charge.variant = truncation.text();
-      book(modes.charge);
-      n[source] = keep(source, std::move(modes.vectors));
+      if (is_used)
+        n[source] = keep_lowest({source, truncation.text(), {}, {}, {}}, component, boundary, frequency, count);
     };
+
     // The disc has as many sliding as free modes in a basis (Table 3)
     using Source      = BasisSource;
     const bool slides = plan.rests_on(Source::disc_sliding);
@@ -315,19 +293,19 @@ namespace Squeal
     iteration.largest_circular_frequency = plan.largest_circular_frequency;
     iteration.tolerance                  = tolerance;
     iteration.maximum_basis              = run.parameters.solvers.maximum_basis;
-    MultiVector basis                    = timed(BasisSource::residuals, exact_text(tolerance), [&] {
-      return MultiVector(
-                           grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)
-                             .model.basis());
-    });
-    const int   n                        = keep(BasisSource::residuals, std::make_unique<MultiVector>(std::move(basis)));
+    const Stopwatch watch;
+    MultiVector     basis =
+      grow_residual_basis(system, *frictionless.inverse, *frictionless.real.vectors, {plan.friction_coefficient}, iteration, run.progress)
+        .model.basis();
+    const int n = keep({BasisSource::residuals, exact_text(tolerance), {}, {}, {}, watch.cost().cpu_seconds}, std::move(basis));
     run.progress.finish(text(n, " vectors for an estimated error of ", tolerance));
   }
 
-  ReductionSets::ChargedModes ReductionSets::lowest_modes(const Component       component,
-                                                          const ContactBoundary boundary,
-                                                          const double          frequency,
-                                                          const int             count) const
+  int ReductionSets::keep_lowest(Charge                charge,
+                                 const Component       component,
+                                 const ContactBoundary boundary,
+                                 const double          frequency,
+                                 const int             count)
   {
     const bool            is_disc = component == Component::disc;
     const std::string     what    = std::string("modes of the ") + (is_disc ? "disc" : "pins") + " for reduced bases";
@@ -345,9 +323,21 @@ namespace Squeal
     if (n_solved == 0)
       throw SolverError(what + ": none lies below " + text(frequency) + " Hz", "parameter Reduction/Component modes",
                         "raise the truncation frequency");
-    const int    n       = count > 0 ? count : n_solved;
-    auto         vectors = std::make_unique<MultiVector>(*T * view(*modes.vectors, 0, n));
-    const double seconds = watch.cost().cpu_seconds;
-    return {std::move(vectors), {BasisSource::disc_free, "", n, hertz(std::sqrt(end)), n_solved, seconds}};
+    MultiVector set    = *T * view(*modes.vectors, 0, count > 0 ? count : n_solved);
+    charge.seconds     = watch.cost().cpu_seconds;
+    charge.end_of_band = hertz(std::sqrt(end));
+    charge.n_solved    = n_solved;
+    return keep(charge, std::move(set));
+  }
+
+  Table ReductionSets::cost_table() const
+  {
+    return Table(Columns<Charge>{{"set", "", [](const Charge &charge) { return to_string(charge.source); }},
+                                 {"variant", "", &Charge::variant},
+                                 {"vectors", "-", &Charge::n_vectors},
+                                 {"end of the band", "Hz", &Charge::end_of_band, 1},
+                                 {"modes in the band", "-", &Charge::n_solved},
+                                 {"time", "s", &Charge::seconds, 2}},
+                 charges);
   }
 } // namespace Squeal

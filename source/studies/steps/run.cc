@@ -1,6 +1,6 @@
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
-#include <squeal/parameters/design_file.h>
+#include <squeal/parameters/design_plan.h>
 #include <squeal/studies/steps/run.h>
 
 #include <deal.II/base/mpi.h>
@@ -11,18 +11,15 @@
 
 namespace Squeal
 {
-  namespace
+  unsigned int n_processes_here(const MPI_Comm communicator)
   {
-    unsigned int n_processes_here(const MPI_Comm communicator)
-    {
-      MPI_Comm machine;
-      int      result = 1;
-      MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
-      MPI_Comm_size(machine, &result);
-      MPI_Comm_free(&machine);
-      return result;
-    }
-  } // namespace
+    MPI_Comm machine;
+    int      result = 1;
+    MPI_Comm_split_type(communicator, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+    MPI_Comm_size(machine, &result);
+    MPI_Comm_free(&machine);
+    return result;
+  }
 
   Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
     : RunContext{parameters, communicator, progress, screen, options.dry_run, dealii::Utilities::MPI::this_mpi_process(communicator) == 0,

@@ -1,25 +1,17 @@
-#include <squeal/model/elasticity.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/scene_size.h>
-#include <squeal/bases/rigid_body.h>
 #include <squeal/contact/travel.h>
 #include <squeal/geometry/generate_mesh.h>
 #include <squeal/geometry/mesh_check.h>
-#include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/studies/steps/scene.h>
-#include <squeal/studies/steps/scene_summary.h>
-
-#include <algorithm>
 
 namespace Squeal
 {
   namespace
   {
-    /**
-     * Poisson's ratio from which trilinear elements lock: bending frequencies of pins on the default mesh are 1.4 % higher
-     * beside those of quadratic elements than at 0.25, at 0.499 it is 3.6 %.
-     */
+    /// Poisson's ratio from which trilinear elements lock: bending frequencies of pins on the default mesh are 1.4 % higher beside those of
+    /// quadratic elements than at 0.25, at 0.499 it is 3.6 %.
     constexpr double locking_poisson_ratio = 0.47;
 
     void warn_of_locking(Run &run)
@@ -43,10 +35,6 @@ namespace Squeal
       return sum(summands);
     }
 
-    bool is_free_disc(const Scene &scene, const SecondOrderSystem &system, const Parameters &parameters)
-    {
-      return stabilizing_shift(*scene.model, system, circular_frequency(parameters.discretization.maximum_frequency)) > 0.;
-    }
   } // namespace
 
   Scene mesh_scene(Run &run)
@@ -99,7 +87,8 @@ namespace Squeal
     BodyTerms         bodies     = body_terms(*scene.model, parameters.materials);
     if (parameters.operation.rotating_disc && parameters.has_friction())
       {
-        if (is_free_disc(scene, sparse_matrices(bodies.terms, bodies.values), parameters))
+        const double omega_max = circular_frequency(parameters.discretization.maximum_frequency);
+        if (stabilizing_shift(*scene.model, sparse_matrices(bodies.terms, bodies.values), omega_max) > 0.)
           throw ParameterError("the disc is free or held softly: its motions as a rigid body are not stable in the fixed frame",
                                "parameter Operation/Gyroscopic forces",
                                "hold the disc by Mounts/Elastic mounts, or set Operation/Gyroscopic forces = false");

@@ -1,15 +1,10 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/memory.h>
-#include <squeal/geometry/hex_mesh.h>
 #include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/scene_size.h>
-#include <squeal/studies/steps/scene_summary.h>
+#include <squeal/studies/steps/scene.h>
 
 #include <deal.II/base/bounding_box.h>
-
-#include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace Squeal
 {

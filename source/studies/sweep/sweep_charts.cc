@@ -1,11 +1,6 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/text.h>
 #include <squeal/base/version.h>
 #include <squeal/studies/sweep/sweep_charts.h>
-
-#include <algorithm>
-#include <set>
-#include <sstream>
 
 namespace Squeal
 {
@@ -28,13 +23,9 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * Adds to the basis what the modes of all thresholds lack on both sides, and forgets the results
-     * there: they were found without it.
-     *
-     * @param chart without refinements
-     */
-    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid, ChartStore &store)
+    /// Adds to the basis what the modes of all thresholds of a chart without refinements lack on both sides, and forgets the results there:
+    /// they were found without it.
+    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid, ChartStore *store)
     {
       // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
       std::map<int, std::set<int>> modes_at; // by point of the chart
@@ -51,14 +42,15 @@ namespace Squeal
         sets.push_back({model.plan.point(line, grid[i], model.regime.closed), &chart.points[i], {modes.begin(), modes.end()}});
       if (sets.empty())
         return;
-      if (auto earlier = store.basis(); !earlier.empty())
+      if (auto earlier = store ? store->basis() : std::vector<MultiVector>(); !earlier.empty())
         model.reduced->extend(std::move(earlier.front()));
       else
         {
           auto vectors = model.reduced->new_vectors(sets);
           if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
             return;
-          store.keep(*vectors);
+          if (store)
+            store->keep(*vectors);
           model.reduced->extend(*std::move(vectors));
         }
       for (const ChartModel::ModesAt &set : sets)
@@ -166,8 +158,8 @@ namespace Squeal
     // tell between which modes there are thresholds; which of them are uncertain is not asked, for that hangs on rounding.
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
-    if (store != nullptr)
-      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, *store);
+    if (!model.reduced->reduced().is_restricted())
+      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
     const auto at = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
     SweepChart result{stability_chart(grid, evaluate, options, zero_predictor(*model.reduced, at, run.communicator)), {}, {}, {}};
     const StabilityChart &chart  = result.chart;

@@ -1,11 +1,7 @@
 #include <squeal/base/conventions.h>
-#include <squeal/linear_algebra/weighted_gram.h>
-#include <squeal/studies/steps/friction_modes.h>
-#include <squeal/studies/sweep/sweep_model.h>
+#include <squeal/linear_algebra/sparse_matrix.h>
+#include <squeal/studies/sweep/sweep_charts.h>
 #include <squeal/tracking/mode_links.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace Squeal
 {
@@ -19,6 +15,43 @@ namespace Squeal
         for (const double c : coefficients)
           sum += std::abs(c);
       return sum;
+    }
+
+    /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
+    std::vector<int> training(const ContactRegime &regime)
+    {
+      const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
+                                                     [](const OperatingPoint &a, const OperatingPoint &b) { return a.line < b.line; });
+      std::vector<int> result;
+      for (const int line : {first->line, last->line})
+        {
+          const auto numbers = regime.on_line(line);
+          for (const int place : ends_and_quarters(static_cast<int>(numbers.size())))
+            if (std::find(result.begin(), result.end(), numbers[place]) == result.end())
+              result.push_back(numbers[place]);
+        }
+      return result;
+    }
+
+    /// The modes of a point in the band, at full order, and their products by the reduced model.
+    std::pair<ComplexModes, ModalProducts> modes_in_band(const SweepModel &model, const ChartPoint &point)
+    {
+      const std::vector<int> numbers = model.in_band(point);
+      ComplexModes           result;
+      for (const int j : numbers)
+        {
+          result.lambda.push_back(point.lambda[j]);
+          result.energy_residuals.push_back(point.right_residuals[j]);
+          result.estimated_errors.push_back(point.errors[j]);
+        }
+
+      auto [re, im]         = model.shapes(point, numbers);
+      result.real_part      = std::make_shared<MultiVector>(std::move(re));
+      result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
+
+      const ReducedModel &reduced = model.reduced->reduced();
+      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::all, numbers), reduced.size()));
+      return {result, {X.transpose() * reduced.stiffness() * X, X.transpose() * reduced.mass() * X}};
     }
   } // namespace
 
@@ -133,6 +166,32 @@ namespace Squeal
     return identify(frictionless.references(), shape_shares(point, modes));
   }
 
+  std::vector<int> SweepModel::in_band(const ChartPoint &point) const
+  {
+    std::vector<int> result;
+    for (std::size_t j = 0; j < point.lambda.size(); ++j)
+      if (is_in_band(point.lambda[j]))
+        result.push_back(static_cast<int>(j));
+    return result;
+  }
+
+  int SweepModel::n_of(const ChartPoint &point, const Verdict verdict) const
+  {
+    const std::vector<int> modes = in_band(point);
+    return std::count_if(modes.begin(), modes.end(), [&](const int j) { return point.verdicts[j] == verdict; });
+  }
+
+  std::vector<ModeLabel> SweepModel::labels_in_band(const ChartPoint &point) const
+  {
+    const std::vector<int> modes  = in_band(point);
+    std::vector<ModeLabel> result = labels(point, modes);
+    std::vector<double>    growth;
+    for (const int j : modes)
+      growth.push_back(point.verdicts[j] == Verdict::unstable ? point.lambda[j].real() : 0.);
+    mark_doublets(result, growth);
+    return result;
+  }
+
   Linearisation SweepModel::linearisation_at(const double friction_coefficient) const
   {
     Linearisation result = frictionless.linearisation;
@@ -140,48 +199,7 @@ namespace Squeal
     return result;
   }
 
-  namespace
-  {
-    /// Ends, middle and quarters of the outer lines: what lies between is evaluated later.
-    std::vector<int> training(const ContactRegime &regime)
-    {
-      const auto [first, last] = std::minmax_element(regime.points.begin(), regime.points.end(),
-                                                     [](const OperatingPoint &a, const OperatingPoint &b) { return a.line < b.line; });
-      std::vector<int> result;
-      for (const int line : {first->line, last->line})
-        {
-          const auto numbers = regime.on_line(line);
-          for (const int place : ends_and_quarters(static_cast<int>(numbers.size())))
-            if (std::find(result.begin(), result.end(), numbers[place]) == result.end())
-              result.push_back(numbers[place]);
-        }
-      return result;
-    }
-
-    /// The modes of a point in the band, at full order, and their products by the reduced model.
-    std::pair<ComplexModes, ModalProducts> modes_in_band(const SweepModel &model, const ChartPoint &point)
-    {
-      ComplexModes     result;
-      std::vector<int> numbers;
-      for (int j = 0; j < static_cast<int>(point.lambda.size()); ++j)
-        if (model.is_in_band(point.lambda[j]))
-          {
-            numbers.push_back(j);
-            result.lambda.push_back(point.lambda[j]);
-            result.energy_residuals.push_back(point.right_residuals[j]);
-            result.estimated_errors.push_back(point.errors[j]);
-          }
-      auto [re, im]         = model.shapes(point, numbers);
-      result.real_part      = std::make_shared<MultiVector>(std::move(re));
-      result.imaginary_part = std::make_shared<MultiVector>(std::move(im));
-
-      const ReducedModel &reduced = model.reduced->reduced();
-      const DenseMatrix   X       = halves(with_rows(point.right(Eigen::all, numbers), reduced.size()));
-      return {result, {X.transpose() * reduced.stiffness() * X, X.transpose() * reduced.mass() * X}};
-    }
-  } // namespace
-
-  void evaluate_points(SweepModel &model, ChartStore &store)
+  void evaluate_points(SweepModel &model, ChartStore *store)
   {
     Run                               &run    = model.run;
     const std::vector<OperatingPoint> &points = model.regime.points;
@@ -190,7 +208,7 @@ namespace Squeal
     options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
     run.progress.begin("Sweep");
     const ErrorControlledSweep sweep =
-      error_controlled_sweep(*model.reduced, points, training(model.regime), options, &store, run.communicator, run.progress);
+      error_controlled_sweep(*model.reduced, points, training(model.regime), options, store, run.communicator, run.progress);
     for (std::size_t i = 0; i < points.size(); ++i)
       if (sweep.points[i])
         model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);

@@ -1,6 +1,4 @@
-#include <squeal/studies/sweep/sweep_plan.h>
-
-#include <algorithm>
+#include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
 {

@@ -1,22 +1,181 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
-#include <squeal/output/table.h>
+#include <squeal/studies/steps/mode_results.h>
 #include <squeal/studies/steps/parameter_usage.h>
-#include <squeal/studies/sweep/sweep_results.h>
-#include <squeal/tracking/branches.h>
-#include <squeal/tracking/error_controlled_sweep.h>
+#include <squeal/studies/sweep/sweep_charts.h>
 #include <squeal/tracking/mode_links.h>
 
-#include <algorithm>
-#include <functional>
 #include <ostream>
-#include <tuple>
-#include <vector>
 
 namespace Squeal
 {
   namespace
   {
+    /// What is known about stability at one friction coefficient and one load or speed.
+    struct MapCell
+    {
+      double                         friction_coefficient; ///< [-]
+      double                         value;                ///< load [N] or speed [rad/s]
+      std::size_t                    n_open;               ///< contact nodes that are lifted
+      std::optional<ModalQuantities> leading;              ///< of the most unstable mode; nothing where none was computed
+      ModeLabel                      label;                ///< of that mode
+      int                            n_unstable  = 0;
+      int                            n_undecided = 0;  ///< modes whose growth is undecided
+      double                         error       = 0.; ///< largest estimated |δλ| / |λ| [-]
+    };
+
+    /// A mode of the band at one of the friction coefficients of the complex plane.
+    struct PlaneMode
+    {
+      double               friction_coefficient; ///< [-]
+      RadialDissipation    dissipation;
+      std::complex<double> lambda; ///< [rad/s]
+      ModeLabel            label;
+      double               error; ///< estimated |δλ| / |λ| [-]
+      Verdict              verdict;
+    };
+
+    /// Number of modes at one friction coefficient by the sweep and by the argument principle.
+    struct CountAt
+    {
+      double       friction_coefficient;
+      int          n_found; ///< in the rectangle
+      ContourCount count;
+    };
+
+    /// Label of the branch that a mode resembles most, at the point of the chart nearest to its own.
+    ModeLabel nearest_label(const SweepChart &main, const ChartPoint &point, const int mode)
+    {
+      const auto &points   = main.chart.points;
+      const auto  distance = [&](const ChartPoint &other) { return std::abs(other.friction_coefficient - point.friction_coefficient); };
+      const auto  nearest =
+        std::min_element(points.begin(), points.end(), [&](const ChartPoint &a, const ChartPoint &b) { return distance(a) < distance(b); });
+      const int branch = similar_branch(main.chart, static_cast<int>(nearest - points.begin()), point, mode, false);
+      return branch >= 0 ? main.labels[branch] : ModeLabel();
+    }
+
+    /// The modes of a line at one of the chosen friction coefficients, which may miss the tolerance.
+    ChartPoint modes_at(SweepModel &model, const double mu, const int line = 0)
+    {
+      const bool       is_new    = model.known.count({line, mu}) == 0;
+      const ChartPoint point     = model.evaluate(line, {mu}).front();
+      const double     tolerance = model.run.parameters.sweep.tolerance, error = model.reduced->largest_error(point);
+      if (is_new && !(error <= tolerance))
+        model.run.progress.note(text("  note: at mu = ", mu, line > 0 ? " without radial dissipation" : "",
+                                     " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
+      return point;
+    }
+
+    /// Appends the points of the map in a contact set; modes are named after the branches of the chart @p main, unless it is null.
+    void append_map_cells(const SweepModel &model, const SweepChart *main, std::vector<MapCell> &cells)
+    {
+      for (const OperatingPoint &operating : model.regime.points)
+        {
+          const SweepLine &line = model.plan.lines[operating.line];
+          if (line.kind != SweepLine::Kind::map)
+            continue;
+          cells.push_back(
+            {operating.friction_coefficient, line.value, model.plan.scene.interface.size() - model.regime.closed.size(), {}, {}});
+          const auto found = model.known.find({operating.line, operating.friction_coefficient});
+          if (found == model.known.end())
+            continue;
+          MapCell          &cell  = cells.back();
+          const ChartPoint &point = found->second;
+          if (const int mode = leading_mode(point, model.largest_circular_frequency); mode >= 0)
+            {
+              cell.leading = modal_quantities(point.lambda[mode]);
+              if (main)
+                cell.label = nearest_label(*main, point, mode);
+            }
+          cell.n_unstable  = model.n_of(point, Verdict::unstable);
+          cell.n_undecided = model.n_of(point, Verdict::undecided);
+
+          cell.error = model.reduced->largest_error(point);
+        }
+    }
+
+    /// Appends the modes of the band at the friction coefficients of the complex plane that belong to the contact set, on the main line and
+    /// on that without radial dissipation, from the basis as it is then: charts do not change.
+    void append_plane_modes(SweepModel &model, std::vector<PlaneMode> &modes)
+    {
+      for (const double mu : model.run.parameters.sweep.complex_plane())
+        for (std::size_t line = 0; line < model.plan.lines.size(); ++line)
+          {
+            if (model.plan.lines[line].kind == SweepLine::Kind::map || model.plan.closed_at(mu) != model.regime.closed)
+              continue;
+            const ChartPoint             point   = modes_at(model, mu, static_cast<int>(line));
+            const std::vector<int>       in_band = model.in_band(point);
+            const std::vector<ModeLabel> labels  = model.labels_in_band(point);
+
+            for (std::size_t k = 0; k < in_band.size(); ++k)
+              {
+                const int j = in_band[k];
+                modes.push_back({mu, model.plan.lines[line].operation.radial_dissipation, point.lambda[j], labels[k], point.errors[j],
+                                 point.verdicts[j]});
+              }
+          }
+    }
+
+    /// Counts the modes at the friction coefficients that the parameters choose, where they belong to the contact set.
+    void append_counts(SweepModel &model, std::vector<CountAt> &counts)
+    {
+      Run         &run       = model.run;
+      const double omega_max = model.largest_circular_frequency;
+      for (const double mu : run.parameters.sweep.counts)
+        {
+          if (model.plan.closed_at(mu) != model.regime.closed)
+            continue;
+          run.progress.begin("Argument principle");
+          const CoupledSystem system  = model.linearisation_at(mu).coupled;
+          const auto          options = contour_of_band(system, model.frictionless, omega_max, run.parameters.solvers);
+          const ContourCount  count   = count_by_contour(system, {mu}, options, run.progress).front();
+          const ChartPoint    point   = modes_at(model, mu);
+          const int           n_found = std::count_if(point.lambda.begin(), point.lambda.end(), [&](const std::complex<double> &lambda) {
+            return lambda.imag() >= options.lowest_frequency && lambda.imag() <= omega_max &&
+                   std::abs(lambda.real()) <= options.largest_growth;
+          });
+          counts.push_back({mu, n_found, count});
+          run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at mu = ", mu, ", ", count.n_points, " points"));
+          if (count.n_modes != n_found)
+            run.progress.note(text("  note: at mu = ", mu, " the sweep has ", n_found, " modes where ", count.n_modes, " were counted"));
+        }
+    }
+
+    /// Writes fields of the leading modes at the friction coefficients that the parameters choose, where they belong to the contact set.
+    void write_leading_modes(SweepModel &model)
+    {
+      Run        &run    = model.run;
+      const auto &wanted = run.parameters.sweep.mode_shapes;
+      if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
+        return;
+      const Scene &scene = model.plan.scene;
+      FieldWriter  writer(*scene.model, scene.interface, model.regime.closed, run.folder());
+      run.progress.begin("Mode shapes");
+      int n_written = 0;
+      for (const double mu : wanted)
+        {
+          if (model.plan.closed_at(mu) != model.regime.closed)
+            continue;
+          const ChartPoint point = modes_at(model, mu);
+          const int        mode  = leading_mode(point, model.largest_circular_frequency);
+          if (mode < 0 || verdict_of(point.lambda[mode]) != Verdict::unstable)
+            {
+              run.progress.note(text("  no mode grows at mu = ", mu, ": no mode shape is written"));
+              continue;
+            }
+          const auto [re, im] = model.shapes(point, {mode});
+          const auto label    = model.labels(point, {mode}).front();
+          const auto name     = text("mu_", mu, "_", file_text(label));
+          ModeField  field    = mode_field(model.linearisation_at(mu), name, point.lambda[mode], re, im);
+          field.title         = mode_title(label, point.lambda[mode]);
+          writer.write_mode(field);
+          if (run.parameters.output.animation_frames > 0)
+            writer.write_animation(field, animation_options(run.parameters.output));
+          ++n_written;
+        }
+      run.progress.finish(text(n_written, " leading modes"));
+    }
+
     /// Throws ParameterError where nothing depends on what a map varies.
     void check_map(const Parameters &parameters)
     {
@@ -51,62 +210,6 @@ namespace Squeal
 
     // ------------------------------------------------------------------ tables
 
-    /// Every mode of the band at every point of a chart, refined ones included: its branch, λ, residuals, error, verdict and whether λ grows.
-    Table branch_table(const SweepChart &line, const double largest_circular_frequency)
-    {
-      struct Row : ModalQuantities
-      {
-        const ChartPoint &point;
-        int               mode; ///< of the point
-        int               branch;
-        ModeLabel         label;
-        bool              is_refinement;
-      };
-      const StabilityChart &chart = line.chart;
-      std::vector<Row>      rows;
-      for (std::size_t i = 0; i < chart.points.size(); ++i)
-        for (std::size_t b = 0; b < chart.branches.size(); ++b)
-          {
-            const ChartPoint &point = chart.points[i];
-            const int         j     = chart.branches[b].modes[i];
-            if (j >= 0 && point.lambda[j].imag() <= largest_circular_frequency)
-              rows.push_back(
-                {modal_quantities(point.lambda[j]), point, j, static_cast<int>(b + 1), line.labels[b], chart.is_refinement[i]});
-          }
-      return Table(
-        Columns<Row>{{"mu", "-", [](const Row &row) { return row.point.friction_coefficient; }, 6},
-                     {"branch", "-", &Row::branch},
-                     {"label", "", &Row::label},
-                     {"frequency", "Hz", &Row::frequency, 3},
-                     {"growth rate", "1/s", &Row::growth_rate, 4},
-                     {"divergence rate", "%", [](const Row &row) { return 100. * row.divergence_rate; }, 4},
-                     {"eps_res right", "-", [](const Row &row) { return row.point.right_residuals[row.mode]; }, 1, true},
-                     {"eps_res left", "-", [](const Row &row) { return row.point.left_residuals[row.mode]; }, 1, true},
-                     {"estimated error of lambda", "-", [](const Row &row) { return row.point.errors[row.mode]; }, 1, true},
-                     {"verdict", "", [](const Row &row) { return row.point.verdicts[row.mode]; }},
-                     {"refinement", "-", &Row::is_refinement},
-                     {"growing", "-", [](const Row &row) { return verdict_of(row.point.lambda[row.mode]) == Verdict::unstable; }}},
-        rows);
-    }
-
-    /// Where branches begin or cease to grow.
-    Table threshold_table(const SweepChart &line)
-    {
-      using Row                = Threshold;
-      const auto partner       = [](const Row &row) { return row.partner >= 0 ? Cell(row.partner + 1) : Cell(); };
-      const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Cell(line.labels[row.partner]) : Cell(); };
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
-                                {"uncertainty", "-", &Row::uncertainty, 1, true},
-                                {"event", "", &Row::event},
-                                {"mechanism", "", &Row::mechanism},
-                                {"branch", "-", [](const Row &row) { return row.branch + 1; }},
-                                {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
-                                {"partner", "-", partner},
-                                {"label of partner", "", partner_label},
-                                {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.lambda).frequency; }, 3}},
-                   line.chart.thresholds);
-    }
-
     /// Where squeal begins, and from where on it is more than weak.
     Table onset_table(const std::vector<SquealOnset> &onsets)
     {
@@ -118,30 +221,6 @@ namespace Squeal
                                 {"label", "", &Row::label},
                                 {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.onset.lambda).frequency; }, 3}},
                    onsets);
-    }
-
-    /// Where branches enter or leave the band.
-    Table crossing_table(const SweepChart &line)
-    {
-      using Row = BandCrossing;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
-                                {"uncertainty", "-", &Row::uncertainty, 1, true},
-                                {"branch", "-", [](const Row &row) { return row.branch + 1; }},
-                                {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
-                                {"direction", "", [](const Row &row) { return row.enters ? "enters" : "leaves"; }},
-                                {"edge", "", &Row::edge}},
-                   line.chart.crossings);
-    }
-
-    /// Modes in the band at every point, and how many the crossings imply.
-    Table count_table(const StabilityChart &chart)
-    {
-      using Row = ChartCount;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
-                                {"modes", "-", &Row::n_modes},
-                                {"expected", "-", &Row::n_expected},
-                                {"overdamped pairs", "-", &Row::n_overdamped}},
-                   chart.counts);
     }
 
     /// Stability over the friction coefficient and the load or speed.
@@ -202,55 +281,10 @@ namespace Squeal
                                 {"truncation bound", "-", [](const Row &row) { return row.count.truncation_bound; }, 1, true}},
                    counts);
     }
-
-    /// Contact sets along the lines: where they change.
-    Table contact_table(const SweepPlan &plan, const std::size_t n_pairs)
-    {
-      struct Row
-      {
-        double               friction_coefficient;
-        const SweepLine     &line;
-        const ContactRegime &regime;
-      };
-      std::vector<Row> rows;
-      for (std::size_t l = 0; l < plan.lines.size(); ++l)
-        if (plan.lines[l].kind != SweepLine::Kind::without_dissipation)
-          for (const double mu : plan.lines[l].friction_coefficients)
-            for (const ContactRegime &regime : plan.regimes)
-              for (const int i : regime.on_line(static_cast<int>(l)))
-                if (regime.points[i].friction_coefficient == mu)
-                  rows.push_back({mu, plan.lines[l], regime});
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
-                                {"load per side", "N", [](const Row &row) { return row.line.operation.load_per_side; }, 3},
-                                {"rotation speed", "rad/s", [](const Row &row) { return row.line.operation.rotation_speed; }, 3},
-                                {"contact set", "-", [](const Row &row) { return row.regime.number; }},
-                                {"open contact nodes", "-", [&](const Row &row) { return n_pairs - row.regime.closed.size(); }}},
-                   rows);
-    }
-
-    /// @p charts of each line of the plan.
-    void write_charts(const SweepPlan &plan, const std::vector<std::vector<SweepChart>> &charts, const double omega_max, Run &run)
-    {
-      for (std::size_t l = 0; l < charts.size(); ++l)
-        for (std::size_t s = 0; s < charts[l].size(); ++s)
-          {
-            const SweepChart &chart   = charts[l][s];
-            const bool        is_main = plan.lines[l].kind == SweepLine::Kind::main;
-            const std::string suffix  = (is_main ? "" : "_without_dissipation") + (s > 0 ? text("_", s + 1) : "");
-            run.store_table("branches" + suffix, branch_table(chart, omega_max));
-            run.store_table("counts" + suffix, count_table(chart.chart));
-            run.write_table("thresholds" + suffix, threshold_table(chart));
-            const bool crosses = !chart.chart.crossings.empty();
-            (run.*(crosses ? &Run::write_table : &Run::store_table))("band_crossings" + suffix, crossing_table(chart));
-          }
-    }
-
   } // namespace
 
-  /**
-   * `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where
-   * they begin and cease to grow, and maps over load or speed.
-   */
+  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where they begin and
+  /// cease to grow, and maps over load or speed.
   static void run_sweep_study(Scene &scene, Run &run)
   {
     const Parameters &parameters = run.parameters;
@@ -270,7 +304,7 @@ namespace Squeal
     for (const ContactRegime &regime : plan.regimes)
       {
         SweepModel model(plan, regime, run);
-        evaluate_points(model, *store_of(model, checkpoint, "sweep"));
+        evaluate_points(model, store_of(model, checkpoint, "sweep").get());
         follow_branches(model, checkpoint, charts);
         append_map_cells(model, main.empty() ? nullptr : &main.back(), map);
         append_plane_modes(model, plane);

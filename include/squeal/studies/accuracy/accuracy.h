@@ -1,14 +1,8 @@
 #pragma once
 
 #include <squeal/estimates/common_points.h>
-#include <squeal/estimates/extrapolation.h>
-#include <squeal/output/table.h>
+#include <squeal/estimates/discretisation_error.h>
 #include <squeal/studies/steps/friction_modes.h>
-
-#include <complex>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Squeal
 {
@@ -63,22 +57,25 @@ namespace Squeal
     std::vector<LeftOut>    left_out; ///< that do not come about or have more dofs than the parameters allow
   };
 
-  /**
-   * Solves scenes on the meshes and with the elements that the parameters ask for, at full order and with the bases that they name, each
-   * as a step of the run. Modes are kept at the points of the first mesh.
-   */
+  /// Solves scenes on the meshes and with the elements that the parameters ask for, at full order and with the bases that they name, each
+  /// as a step of the run. Modes are kept at the points of the first mesh.
   SolvedMeshes solve_meshes(Run &run);
+
+  /// What a quantity of a mode tends to.
+  struct Limit
+  {
+    std::optional<Extrapolation> sequence; ///< nothing where one mesh alone has the mode
+    double                       value = 0., uncertainty = 0.;
+  };
 
   /// A mode on all meshes of a family, and what it tends to.
   struct ConvergedMode
   {
-    ModeLabel                    label;                    ///< on the finest mesh
-    bool                         in_cluster;               ///< on some pair of meshes, see pair_modes()
-    std::vector<int>             numbers;                  ///< of the mode on every mesh; -1 where it has no counterpart
-    double                       frequency, divergence;    ///< of the limit [Hz], [-]
-    double                       frequency_uncertainty;    ///< estimated [Hz]
-    double                       divergence_uncertainty;   ///< estimated [-]
-    std::optional<Extrapolation> frequencies, divergences; ///< nothing where one mesh alone has the mode
+    ModeLabel        label;      ///< on the finest mesh
+    bool             in_cluster; ///< on some pair of meshes, see pair_modes()
+    std::vector<int> numbers;    ///< of the mode on every mesh; -1 where it has no counterpart
+    Limit            frequency;  ///< [Hz]
+    Limit            divergence; ///< [-]
   };
 
   /// Modes of one element and outline on finer and finer meshes.
@@ -91,10 +88,10 @@ namespace Squeal
   };
 
   /**
-   * Extrapolates the modes of every family of two meshes or more in the mesh width, frequencies and divergence rates each by
-   * themselves, paired by shape with those of the finest mesh. The mean of ω² or anything else is not taken: a family converges as it does.
-   * Where no order of convergence is observed the limit is that with twice the degree of the element as order if there are two
-   * meshes, and the value of the finest mesh if there are more. In clusters, whose members the mesh decides, it is that of the finest mesh, too.
+   * Extrapolates the modes of every family of two meshes or more in the mesh width, frequencies and divergence rates each by themselves,
+   * paired by shape with those of the finest mesh. The mean of ω² or anything else is not taken: a family converges as it does. Where no
+   * order of convergence is observed the limit is that with twice the degree of the element as order if there are two meshes, and the value
+   * of the finest mesh if there are more. In clusters, whose members the mesh decides, it is that of the finest mesh, too.
    */
   std::vector<ConvergedFamily> converged_families(const std::vector<SolvedMesh> &meshes, double maximum_frequency);
 
@@ -138,19 +135,4 @@ namespace Squeal
 
   /// All meshes and methods against the modes of the reference up to a frequency [Hz].
   std::vector<ComparedMethod> compare(const std::vector<SolvedMesh> &meshes, const ConvergedFamily &reference, double maximum_frequency);
-
-  /// Every mesh, element and method with its size, costs and largest errors.
-  Table accuracy_table(const std::vector<ComparedMethod> &methods);
-
-  /// The same of those that none beats in both time and error, the fastest first: what a user chooses among.
-  Table pareto_table(const std::vector<ComparedMethod> &methods);
-
-  /// Every mode by every mesh and method beside the reference.
-  Table accuracy_mode_table(const std::vector<ComparedMethod> &methods);
-
-  /// Orders of convergence and limits of every mode up to a frequency [Hz], for every family of meshes, beside those of the reference.
-  Table accuracy_order_table(const std::vector<ConvergedFamily> &families, const ConvergedFamily &reference, double maximum_frequency);
-
-  /// Meshes and elements without a solution: element, outlines, mesh factor, reason.
-  Table left_out_table(const std::vector<LeftOut> &meshes);
 } // namespace Squeal

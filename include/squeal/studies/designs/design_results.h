@@ -9,9 +9,6 @@
 
 #include <boost/optional.hpp>
 
-#include <string>
-#include <vector>
-
 namespace Squeal
 {
   /// Where a mode of a design begins or ceases to grow.
@@ -110,6 +107,9 @@ namespace Squeal
         &largest_residual &n_doubtful &onset &weak_onset &worst &thresholds &modes &seconds;
     }
   };
+
+  /// How a design went, in a few words.
+  std::string outcome_of(const DesignResult &result);
 
   /// One row for each design; @p names of the variables.
   Table design_table(const std::vector<std::string> &names, const std::vector<DesignResult> &designs);

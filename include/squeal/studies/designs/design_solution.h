@@ -1,26 +1,123 @@
 #pragma once
 
-#include <squeal/studies/designs/design_family.h>
+#include <squeal/estimates/body_frames.h>
+#include <squeal/parameters/design_plan.h>
 #include <squeal/studies/designs/design_results.h>
-#include <squeal/studies/steps/reference_modes.h>
-
-#include <string>
+#include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
 {
+  /// Modes of a scene without friction, by which those of its designs are named: their displacements at the centres of its cells, in
+  /// cylindrical components.
+  struct ReferenceModes
+  {
+    std::vector<BodyFrame>            frames;
+    CommonPoints                      points;
+    std::vector<std::complex<double>> lambda; ///< i ω [rad/s]
+    DenseMatrix                       shapes; ///< times √m, a row for each component at each point
+    std::vector<std::string>          names;
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &frames &points &lambda &shapes &names;
+    }
+  };
+
+  /// On process 0 with their shapes; the others have none.
+  ReferenceModes reference_modes(const FrictionlessModes &modes, const MaterialParameters &materials);
+
+  /// The reference mode that a mode of a design resembles.
+  struct ReferenceName
+  {
+    std::string name;               ///< empty if there is none
+    double      overlap    = 0.;    ///< of both shapes [-]
+    bool        in_cluster = false; ///< the design decides which of several modes is the partner
+  };
+
+  /// Names of modes of a design: their shapes are compared at the points of the reference, carried over to the bodies that both have.
+  std::vector<ReferenceName> names_by(const ReferenceModes &reference,
+                                      const Model          &model,
+                                      const SparseMatrix   &kernel,
+                                      const ComplexModes   &modes);
+
+  /// What must agree for designs to share a mesh and its matrices: their parameters but for those that are coefficients of terms. Empty
+  /// where a design cannot share them.
+  std::string family_key(Parameters design);
+
+  /**
+   * A reduced model that serves several designs on one mesh, which differ in moduli, densities, Rayleigh's coefficients, stiffnesses of
+   * mounts, load and speed: they are coefficients θ of terms of one system Q(λ; p) = Σ θ_k(p) λ^p A_k.
+   *
+   * Its basis starts from the real modes in the middle of the family and grows by the residuals of each design in turn until these meet the
+   * tolerance, by one factor of the middle, so that the modes of a design follow from small matrices: S⁻¹ of the middle stands for K_c⁻¹ of
+   * the design in its errors. What is found for a design depends on those before it.
+   */
+  class DesignFamily
+  {
+  public:
+    /// Meshes and assembles what @p designs of the same family_key() share, and finds the real modes in the middle. They and @p run must
+    /// outlive it.
+    DesignFamily(const std::vector<Parameters> &designs, Run &run);
+
+    /// A design's chart of branches and thresholds, with its model; they refer to each other.
+    struct Member
+    {
+      std::size_t                 design = 0;
+      std::unique_ptr<Run>        run;
+      std::unique_ptr<SweepPlan>  plan;
+      SystemMember                system;
+      std::unique_ptr<SweepModel> model;
+      SweepChart                  chart;
+      int                         n_counted = 0; ///< real modes in the band by inertia
+
+      // By all vectors of the family:
+      DenseMatrix                 Z; ///< M-orthonormal coordinates of the basis of the family, the first those of real modes
+      std::unique_ptr<ChartModel> whole;
+    };
+
+    /// Grows the basis for a design and follows its modes over the friction coefficients of its sweep. Throws SolverError if the design is
+    /// too far from the others for one basis.
+    Member solve(std::size_t design);
+
+    /// Grows the basis by what it once has grown by.
+    void extend(const MultiVector &vectors);
+
+    /// What the basis has grown by since this was asked for last.
+    std::vector<MultiVector> take_growth();
+
+    Scene scene;
+
+    const RowMap &map() const
+    {
+      return middle.linearisation.coupled.map();
+    }
+
+  private:
+    void                        find_whole_model(Member &member) const;
+    std::unique_ptr<ChartModel> restricted(const SystemMember &member, const DenseMatrix &Z) const;
+
+    /// A point by all vectors of the family, which grow until it meets the tolerance.
+    ChartPoint accurate_point(const OperatingPoint &point, Member &member);
+
+    /// Adds to the basis of a member, coordinates in its Z, the principal parts of what it lacks of the modes of some points.
+    void learn(const std::vector<ChartPoint> &charts, double compression, DenseMatrix &basis, const Member &member) const;
+
+    const std::vector<Parameters>      &designs;
+    Run                                &run;
+    const double                        largest_circular_frequency; ///< end of the band [rad/s]
+    TermFamily                          terms;
+    FrictionlessModes                   middle; ///< with the system of the family
+    std::unique_ptr<ReducedModel>       model;
+    std::unique_ptr<ProjectedResiduals> residuals;
+    std::vector<MultiVector>            grown;
+  };
+
   /// The sweep of a design: what only adds to the results of a single run is left out.
   Parameters sweep_of(const Parameters &design);
 
-  /**
-   * Follows the modes of a scene over the friction coefficients of the sweep, and says what a study of designs wants to know of them.
-   *
-   * @param parameters of the design
-   * @param reference  names its modes
-   * @param folder     keeps what has been found, until the design is solved
-   * @param run        of which this is a part
-   *
-   * Throws Error where the design cannot be meshed or solved.
-   */
+  /// Follows the modes of a scene over the friction coefficients of the sweep, and says what a study of designs wants to know of them, which
+  /// are named by @p reference. @p folder keeps what has been found until the design is solved. Throws Error where it cannot be.
   DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run);
 
   /// The same of a design of a family.

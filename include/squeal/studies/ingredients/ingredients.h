@@ -1,17 +1,7 @@
 #pragma once
 
-#include <squeal/bases/mode_labels.h>
 #include <squeal/estimates/common_points.h>
-#include <squeal/output/table.h>
-#include <squeal/parameters/ingredients.h>
 #include <squeal/studies/steps/friction_modes.h>
-
-#include <complex>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Squeal
 {
@@ -74,8 +64,8 @@ namespace Squeal
   ReferenceModel solve_reference(Scene &&scene, Run &run);
 
   /**
-   * Solves a variant; only what it does not share with the reference is computed, and shared steps are charged as the reference
-   * took them. Nothing is printed.
+   * Solves a variant; only what it does not share with the reference is computed, and shared steps are charged as the reference took them.
+   * Nothing is printed.
    *
    * Throws ParameterError, MeshError or SolverError where there is no such model.
    */
@@ -139,6 +129,13 @@ namespace Squeal
     bool changes_verdict() const;
   };
 
+  /// The largest change of a quantity, and its mode; null if there is none.
+  struct LargestChange
+  {
+    double            amount = 0.;
+    const ModeChange *mode   = nullptr;
+  };
+
   /// What a variant changes, in all modes.
   struct Effect
   {
@@ -146,13 +143,8 @@ namespace Squeal
     double                  band_end; ///< of the variant [rad/s]
     int                     n_growing_real_reference, n_growing_real_variant;
 
-    /// The mode whose frequency, or divergence rate, changes most, of those in the band of both; null if there is none.
-    const ModeChange *largest_frequency() const;
-    const ModeChange *largest_divergence() const;
-
-    /// Absolute values of these [%, percentage points].
-    double frequency() const;
-    double divergence() const;
+    LargestChange frequency() const;  ///< of the modes in the band of both [%]
+    LargestChange divergence() const; ///< likewise [percentage points]
 
     std::size_t n_unstable(bool in_variant) const;
     std::size_t n_lost() const; ///< modes of the reference without counterpart
@@ -183,9 +175,9 @@ namespace Squeal
   };
 
   /**
-   * Makes all changes that keep the accuracy by themselves, of one ingredient the first in the list, and tries them
-   * together. While the accuracy is not kept the change with the largest effect by itself is replaced by the next one of its ingredient
-   * with a smaller effect, or left out if there is none.
+   * Makes all changes that keep the accuracy by themselves, of one ingredient the first in the list, and tries them together. While the
+   * accuracy is not kept the change with the largest effect by itself is replaced by the next one of its ingredient with a smaller effect,
+   * or left out if there is none.
    *
    * @param severity_of of changes made together; not asked for none, and for one alone it is that of the change
    */
@@ -205,13 +197,4 @@ namespace Squeal
 
     std::vector<std::string> answer = {}; ///< the verdict of the variant, line by line
   };
-
-  /// One row for each change: what was changed, its largest effects, the verdict, what it costs beside the reference; fewer columns for the screen.
-  Table ingredient_table(const std::vector<IngredientResult> &results, const ReferenceModel &reference, bool is_short);
-
-  /// Every mode of every variant beside that of the reference.
-  Table ingredient_mode_table(const std::vector<IngredientResult> &results);
-
-  /// "0.12 % in frequency (A0-4 +) and 0.003 percentage points in divergence rate (F1)"
-  std::string largest_changes(const Effect &effect);
 } // namespace Squeal

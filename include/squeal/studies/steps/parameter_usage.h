@@ -2,9 +2,6 @@
 
 #include <squeal/parameters/parameters.h>
 
-#include <string>
-#include <vector>
-
 namespace Squeal
 {
   /// A parameter that a run does not use, and why.
@@ -14,10 +11,8 @@ namespace Squeal
     std::string why;
   };
 
-  /**
-   * Parameters that differ from their defaults and yet change nothing in the results of the run, in the order of their
-   * declaration. Throws MeshError if there is no geometry of the name that the parameters give.
-   */
+  /// Parameters that differ from their defaults and yet change nothing in the results of the run, in the order of their declaration. Throws
+  /// MeshError if there is no geometry of the name that the parameters give.
   std::vector<UnusedParameter> unused_parameters(const Parameters &parameters);
 
   /// Those of some parameters that change nothing in the results of the run. Throws MeshError as unused_parameters() does.

@@ -1,12 +1,7 @@
 #pragma once
 
 #include <squeal/bases/basis_recipes.h>
-#include <squeal/studies/steps/frictionless_modes.h>
-
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
+#include <squeal/studies/steps/friction_modes.h>
 
 namespace Squeal
 {
@@ -40,29 +35,22 @@ namespace Squeal
   };
 
   /**
-   * The sets of vectors that the bases of a plan are made of, computed as steps of the run, with the processor seconds of each:
-   * a basis pays for all that it rests on, and for nothing else.
+   * The sets of vectors that the bases of a plan are made of, computed as steps of the run, with the processor seconds of each: a basis
+   * pays for all that it rests on, and for nothing else.
    *
-   * Modes are charged as to somebody who asks an eigensolver for the lowest k of them, or for those below a frequency: one
-   * solution, its factorisation and its check by inertia included. Where the band ends that holds k modes is found beforehand and
-   * not charged; neither are the matrices of the components.
+   * Modes are charged as to somebody who asks an eigensolver for the lowest k of them, or for those below a frequency: one solution, its
+   * factorisation and its check by inertia included. Where the band ends that holds k modes is found beforehand and not charged; neither
+   * are the matrices of the components.
    */
   class ReductionSets
   {
   public:
-    /**
-     * Computes what does not change from basis to basis: static and complex modes.
-     *
-     * @param system coupled, with the damping of the problem. It and all other arguments must outlive the sets.
-     *
-     * Throws ParameterError or SolverError if there are no modes of a kind that is needed.
-     */
+    /// Computes what does not change from basis to basis: static and complex modes, of a coupled @p system with the damping of the problem.
+    /// All arguments must outlive the sets. Throws ParameterError or SolverError if there are no modes of a kind that is needed.
     ReductionSets(const ReductionPlan &plan, const FrictionlessModes &frictionless, const CoupledSystem &system, Run &run);
 
-    /**
-     * Computes component modes in the place of those of an earlier truncation, and returns their numbers.
-     * Throws SolverError if there are too few.
-     */
+    /// Computes component modes in the place of those of an earlier truncation, and returns their numbers. Throws SolverError if there are
+    /// too few.
     std::map<BasisSource, int> truncate(const ModeTruncation &truncation);
 
     /// Takes the real coupled modes below a frequency [Hz], those of the band for 0. Throws SolverError if there are none.
@@ -71,63 +59,43 @@ namespace Squeal
     /// Grows a basis by residuals, until the estimated errors of λ are below a relative tolerance, in the place of an earlier one.
     void grow(double tolerance);
 
-    /// Everything computed so far.
-    const BasisIngredients &ingredients() const
-    {
-      return available;
-    }
-
     /// Processor seconds of all that a basis rests on, each set counted once.
     double cost(const BasisRecipe &recipe) const;
 
     /// Processor seconds that the modes of full order need before they are solved for: the factor of K_c, with friction K_c⁻¹ A.
     double full_order_factorisation() const;
 
-    /// Of all sets, those replaced by others included.
-    const std::vector<Charge> &charges() const
-    {
-      return charged;
-    }
+    /// What all sets have cost, those replaced by others included.
+    Table cost_table() const;
 
     const ReductionPlan     &plan;
     const FrictionlessModes &frictionless;
     const CoupledSystem     &system;
     Run                     &run;
+    BasisIngredients         ingredients; ///< everything computed so far
 
   private:
-    /// Modes with what they cost; their source and variant are filled in by who asks for them.
-    struct ChargedModes
-    {
-      std::unique_ptr<MultiVector> vectors;
-      Charge                       charge;
-    };
-
     /// From now on bases pay this for its source.
     void book(const Charge &charge);
 
-    /// Computes something and books its processor seconds.
-    template <typename Function>
-    auto timed(BasisSource source, const std::string &variant, Function &&function);
-
-    /// Vectors that bases are made of from now on, in the place of an earlier set; returns their number.
-    int keep(BasisSource source, std::unique_ptr<MultiVector> set);
+    /// Books vectors that bases are made of from now on, in the place of an earlier set; returns their number.
+    int keep(Charge charge, MultiVector set);
 
     void charge_coupled_factor();
     void compute_static_modes();
     void compute_snapshots();
 
-    /// The lowest modes of a component: @p count of them, or, where that is zero, all up to @p frequency [Hz].
-    ChargedModes lowest_modes(Component component, ContactBoundary boundary, double frequency, int count) const;
+    /// Keeps the lowest modes of a component: @p count of them, or, where that is zero, all up to @p frequency [Hz].
+    int keep_lowest(Charge charge, Component component, ContactBoundary boundary, double frequency, int count);
 
     const Scene         &scene;
     const Linearisation &linearisation;
     const double         disc_shift; ///< of the disc alone [rad/s]
 
+    std::vector<Charge>                                 charges; ///< of all sets
     std::map<BasisSource, double>                       seconds; ///< of the sets in use
-    std::vector<Charge>                                 charged;
     std::map<BasisSource, std::unique_ptr<MultiVector>> vectors;
     std::unique_ptr<InertiaRelief>                      response;
     std::unique_ptr<StaticModes>                        static_modes;
-    BasisIngredients                                    available;
   };
 } // namespace Squeal

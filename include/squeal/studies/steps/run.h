@@ -1,22 +1,19 @@
 #pragma once
 
-#include <squeal/base/progress.h>
 #include <squeal/base/text.h>
 #include <squeal/output/result_folder.h>
-#include <squeal/output/run_record.h>
 #include <squeal/output/table.h>
 #include <squeal/parameters/parameters.h>
 
 #include <mpi.h>
 
-#include <functional>
-#include <iosfwd>
 #include <memory>
-#include <string>
-#include <vector>
 
 namespace Squeal
 {
+  /// MPI processes on this machine.
+  unsigned int n_processes_here(MPI_Comm communicator);
+
   /// What the command line adds to the parameters.
   struct RunOptions
   {
@@ -87,11 +84,8 @@ namespace Squeal
     /// Writes NAME.csv and shows the table.
     void write_table(const std::string &name, const Table &table);
 
-    /**
-     * Writes the parameters as used and the run record, and gives the folder its name.
-     *
-     * @param afterwards removes what only an unfinished run needs
-     */
+    /// Writes the parameters as used and the run record, and gives the folder its name; @p afterwards removes what only an unfinished run
+    /// needs.
     void finish(const std::function<void()> &afterwards = {});
   };
 

@@ -1,14 +1,8 @@
 #pragma once
 
 #include <squeal/model/elasticity.h>
-#include <squeal/contact/coupled_system.h>
-#include <squeal/geometry/hex_mesh.h>
-#include <squeal/model/model.h>
 #include <squeal/sliding/steady_sliding.h>
 #include <squeal/studies/steps/run.h>
-
-#include <memory>
-#include <optional>
 
 namespace Squeal
 {
@@ -47,10 +41,7 @@ namespace Squeal
   /// Coefficients of all pairs @p chosen among them.
   ContactDamping selected(const ContactDamping &damping, const std::vector<unsigned int> &chosen);
 
-  /**
-   * The state of contact about which a scene is linearised, and the system that
-   * results: only closed contact nodes couple the bodies.
-   */
+  /// The state of contact about which a scene is linearised, and the system that results: only closed contact nodes couple the bodies.
   struct Linearisation
   {
     const Scene                *scene;     ///< must outlive it
@@ -61,6 +52,10 @@ namespace Squeal
     ContactDamping              damping;   ///< of S_0
     CoupledSystem               coupled;
   };
+
+  /// Prints, before the work, what the program understood: sizes, masses, and the memory to expect; warns of implausible values; rejects
+  /// models that exceed the memory, and a disc that is not round about z but about another axis. Throws MeshError.
+  void summarise_scene(const HexMesh &mesh, Run &run);
 
   /// Meshes, checks and pairs; refuses parameters that do not fit the pins. The system is left empty.
   Scene mesh_scene(Run &run);
@@ -77,9 +72,7 @@ namespace Squeal
   /// Assembles the scene and linearises it about the state of contact that the parameters ask for, as steps of the run.
   Linearisation linearised_scene(Scene &scene, Run &run);
 
-  /**
-   * Couples the closed nodes of a state; without one all are closed
-   * with equal shares of the load. The contact damping follows @p operation.
-   */
+  /// Couples the closed nodes of a state; without one all are closed with equal shares of the load. The contact damping follows
+  /// @p operation.
   Linearisation linearise(const Scene &scene, const std::optional<SlidingState> &sliding, const OperationParameters &operation);
 } // namespace Squeal

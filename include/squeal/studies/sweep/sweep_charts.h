@@ -1,15 +1,133 @@
 #pragma once
 
 #include <squeal/output/chart_checkpoint.h>
-#include <squeal/studies/sweep/sweep_model.h>
+#include <squeal/studies/steps/friction_modes.h>
 #include <squeal/tracking/branches.h>
-
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace Squeal
 {
+  /// Friction coefficients at one load and speed.
+  struct SweepLine
+  {
+    enum class Kind
+    {
+      main,                ///< as the operation says
+      without_dissipation, ///< the same without radial dissipation
+      map                  ///< at another load or speed
+    };
+
+    Kind                kind;
+    OperationParameters operation; ///< but for the friction coefficient
+    double              value;     ///< load [N] or speed [rad/s] of a line of the map
+    std::vector<double> friction_coefficients;
+
+    OperationParameters at(double friction_coefficient) const;
+  };
+
+  /// Operating points with the same closed contact nodes: one coupled system, one basis.
+  struct ContactRegime
+  {
+    std::size_t                 number; ///< from one on
+    std::vector<unsigned int>   closed; ///< numbers of the closed pairs
+    std::vector<OperatingPoint> points;
+
+    /// Numbers of the points of a line.
+    std::vector<int> on_line(int line) const;
+  };
+
+  /// What a sweep asks for, with the states of contact there. The main line is the first.
+  struct SweepPlan
+  {
+    const Scene                  &scene;
+    SlidingParameters             sliding_parameters;
+    std::unique_ptr<SlidingModel> sliding; ///< serves all states; null: equal shares of the load
+    std::vector<SweepLine>        lines;
+    std::vector<ContactRegime>    regimes;
+
+    /// The steady sliding state, or nothing if the load is shared equally. Throws SolverError if there is no such state.
+    std::optional<SlidingState> sliding_state(const OperationParameters &operation) const;
+
+    StateOfContact state_at(int line, double friction_coefficient) const;
+
+    /// Numbers of the closed pairs on the main line.
+    std::vector<unsigned int> closed_at(const double friction_coefficient) const
+    {
+      return state_at(0, friction_coefficient).closed;
+    }
+
+    /// A point of a line with the damping of those contact nodes that are closed in a regime.
+    OperatingPoint point(int line, double friction_coefficient, const std::vector<unsigned int> &closed) const;
+  };
+
+  /// Finds the states of contact at all operating points that the parameters ask for, as steps of the run. @p scene must outlive the plan.
+  SweepPlan sweep_plan(const Scene &scene, Run &run);
+
+  /// The same for some lines of operating points.
+  SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
+
+  /// The coupled system of a contact set with its basis, and what is known of its modes.
+  struct SweepModel
+  {
+    /// Linearises where contact damps most: the basis starts from the responses to that damping. All arguments must outlive the model.
+    SweepModel(const SweepPlan &plan, const ContactRegime &regime, Run &run);
+
+    /// From what is found already; @p reduced is a model of the system that @p frictionless has.
+    SweepModel(const SweepPlan            &plan,
+               const ContactRegime        &regime,
+               Run                        &run,
+               FrictionlessModes           frictionless,
+               std::unique_ptr<ChartModel> reduced);
+
+    /// Modes of a line, known ones or new ones, which @p store keeps unless it is null. All processes must call.
+    std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients, ChartStore *store = nullptr);
+
+    /// Right vectors of some modes of a point at full order, real and imaginary parts.
+    std::pair<MultiVector, MultiVector> shapes(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    /// Identities of some modes of a point, without the signs of doublets.
+    std::vector<ModeLabel> labels(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    /// The linearised scene with the contact damping at a point of the main line.
+    Linearisation linearisation_at(double friction_coefficient) const;
+
+    bool is_in_band(const std::complex<double> &lambda) const
+    {
+      return lambda.imag() <= largest_circular_frequency;
+    }
+
+    /// Numbers of the modes of a point inside the band.
+    std::vector<int> in_band(const ChartPoint &point) const;
+
+    /// How many of them have a verdict.
+    int n_of(const ChartPoint &point, Verdict verdict) const;
+
+    /// Their identities: as in a run at one friction coefficient, the mode of a doublet that grows is plus.
+    std::vector<ModeLabel> labels_in_band(const ChartPoint &point) const;
+
+    const SweepPlan                             &plan;
+    const ContactRegime                         &regime;
+    Run                                         &run;
+    const double                                 largest_circular_frequency; ///< end of the band [rad/s]
+    FrictionlessModes                            frictionless;
+    std::unique_ptr<ChartModel>                  reduced;
+    std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
+
+  private:
+    /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
+    std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
+
+    mutable std::vector<DenseMatrix> reference_products; ///< with the basis as it was when modes were last named
+  };
+
+  /// Places among n friction coefficients at which a basis learns most: the ends, the middle and the quarters, the last one first.
+  std::vector<int> ends_and_quarters(int n);
+
+  /// The damping of the contact where a sweep's is largest.
+  const OperatingPoint &most_damped(const ContactRegime &regime);
+
+  /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run; @p store: null for none.
+  void evaluate_points(SweepModel &model, ChartStore *store);
+
   /// Modes over the friction coefficient at one load and speed, as far as the contact set is the same.
   struct SweepChart
   {
@@ -37,11 +155,8 @@ namespace Squeal
   /// Where the results of a phase of the work on a contact set are kept.
   std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
 
-  /**
-   * Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run.
-   *
-   * @param store keeps points, and what the basis grows by for thresholds; null: neither is done
-   */
+  /// Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run. For these the basis
+  /// grows, unless it is a part of another one. @p store keeps points, and what the basis grows by, unless it is null.
   SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients, ChartStore *store);
 
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
@@ -52,4 +167,10 @@ namespace Squeal
 
   /// From which friction coefficient on there is squeal, and what grows most: of the stretches of the main line, of @p n_asked values.
   std::string verdict(const std::vector<SweepChart> &charts, std::size_t n_asked, double largest_circular_frequency);
+
+  /// Contact sets along the lines: where they change.
+  Table contact_table(const SweepPlan &plan, std::size_t n_pairs);
+
+  /// Tables of the @p charts of each line of the plan: branches, counts, thresholds, band crossings.
+  void write_charts(const SweepPlan &plan, const std::vector<std::vector<SweepChart>> &charts, double omega_max, Run &run);
 } // namespace Squeal

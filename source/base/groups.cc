@@ -1,4 +1,4 @@
-#include <squeal/base/assignment.h>
+#include <squeal/base/groups.h>
 
 #include <limits>
 

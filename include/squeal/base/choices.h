@@ -1,0 +1,53 @@
+#pragma once
+
+#include <squeal/base/enum_table.h>
+
+namespace Squeal
+{
+  /// Solvers of symmetric modes.
+  enum class RealSolver
+  {
+    lanczos, ///< block Lanczos
+    anasazi, ///< block Krylov-Schur
+    arpack   ///< implicitly restarted Lanczos, the paper's method
+  };
+
+  template <>
+  inline constexpr EnumName<RealSolver> enum_table<RealSolver>[] = {{RealSolver::lanczos, "block Lanczos"},
+                                                                    {RealSolver::anasazi, "Anasazi"},
+                                                                    {RealSolver::arpack, "ARPACK"}};
+
+  /// Libraries that factorise sparse matrices.
+  enum class FactorizationLibrary
+  {
+    automatic, ///< CHOLMOD or UMFPACK on one process, MUMPS on several
+    cholmod,   ///< symmetric positive definite, one process
+    umfpack,   ///< general, one process
+    mumps      ///< any matrix, any number of processes
+  };
+
+  template <>
+  inline constexpr EnumName<FactorizationLibrary> enum_table<FactorizationLibrary>[] = {{FactorizationLibrary::automatic, "automatic"},
+                                                                                        {FactorizationLibrary::cholmod, "CHOLMOD"},
+                                                                                        {FactorizationLibrary::umfpack, "UMFPACK"},
+                                                                                        {FactorizationLibrary::mumps, "MUMPS"}};
+
+  /// Hexahedra.
+  enum class Element
+  {
+    trilinear,          ///< 8 nodes, straight edges
+    incompatible_modes, ///< the same, with quadratic displacements inside each element (model/cell_stiffness.h)
+    quadratic           ///< 27 nodes, edges that follow named cylinders
+  };
+
+  template <>
+  inline constexpr EnumName<Element> enum_table<Element>[] = {{Element::trilinear, "trilinear"},
+                                                              {Element::incompatible_modes, "incompatible modes"},
+                                                              {Element::quadratic, "quadratic"}};
+
+  /// Polynomial degree of the nodal displacements.
+  constexpr unsigned int degree_of(const Element element)
+  {
+    return element == Element::quadratic ? 2 : 1;
+  }
+} // namespace Squeal

@@ -1,0 +1,241 @@
+#include <squeal/base/conventions.h>
+#include <squeal/studies/steps/mode_results.h>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Modes that a warning names.
+    constexpr std::size_t n_named = 5;
+
+    /// Names the first as "A0-4 at 2315 Hz (0.3 %, 0.05 points)".
+    void warn_of_unconverged(const std::vector<DiscretisationError> &errors,
+                             const FrictionModes                    &friction,
+                             const AccuracyLimits                   &limits,
+                             Run                                    &run)
+    {
+      std::string names;
+      std::size_t n = 0;
+      for (std::size_t j = 0; j < errors.size(); ++j)
+        if (friction.unstable[j] && !errors[j].is_within(limits.frequency, limits.divergence) && ++n <= n_named)
+          names += text(n > 1 ? ", " : "", to_string(friction.labels[j]), " at ",
+                        decimal_text(modal_quantities(friction.modes.lambda[j]).frequency), " Hz (",
+                        errors[j].has_counterpart ?
+                          text(decimal_text(100. * errors[j].frequency), " %, ", decimal_text(100. * errors[j].divergence), " points") :
+                          "no counterpart",
+                        ")");
+      if (n > 0)
+        run.warn(text(n, n == 1 ? " unstable mode is" : " unstable modes are", " not converged on this mesh to ", 100. * limits.frequency,
+                      " % of the frequency and ", 100. * limits.divergence, " percentage points of the divergence rate: ", names,
+                      n > n_named ? ", ..." : "", "; finer meshes tell whether they grow"));
+    }
+
+    /// File name of a mode: what it is of, its row in the table, counted from 1, and its label.
+    std::string file_name(const std::string &kind, const std::size_t row, const ModeLabel &label)
+    {
+      std::ostringstream name;
+      name << kind << "_" << std::setw(3) << std::setfill('0') << row + 1 << "_" << file_text(label);
+      return name.str();
+    }
+
+    std::string real_mode_title(const std::string &what, const ModeLabel &label, const double frequency)
+    {
+      return text(what, " ", to_string(label), ", ", decimal_text(frequency), " Hz");
+    }
+
+    /// A displacement on the dofs of the uncoupled bodies, n_free × 1: rows of this process.
+    std::vector<double> rows_here(const MultiVector &displacement)
+    {
+      return {displacement.col(0).begin(), displacement.col(0).end()};
+    }
+
+    /// What friction and damping at each of all contact nodes add to ξ, over its area [1/m²]; zero at open ones.
+    std::vector<double> energy_input(const Linearisation &linearisation, const PowerBalance &balance)
+    {
+      std::vector<double> result(linearisation.scene->interface.size(), 0.);
+      for (std::size_t node = 0; node < linearisation.closed.size(); ++node)
+        result[linearisation.closed[node]] = balance.at(node) / linearisation.interface[node].area;
+      return result;
+    }
+
+    void write_complex_modes(const Linearisation &linearisation,
+                             const FrictionModes &friction,
+                             const PowerBalances &balances,
+                             FieldWriter         &writer,
+                             Run                 &run)
+    {
+      const OutputParameters &output = run.parameters.output;
+      const ComplexModes     &modes  = friction.modes;
+      std::vector<ListedMode> list;
+      unsigned int            n_animations = 0;
+      double                  highest      = 0.; // divergence rate of what is animated
+      run.progress.begin("Mode shapes");
+      for (std::size_t j = 0; j < friction.labels.size(); ++j)
+        {
+          if (output.fields != FieldSelection::all && !friction.unstable[j])
+            continue;
+          const ModeLabel &label     = friction.labels[j];
+          const double     frequency = modal_quantities(modes.lambda[j]).frequency;
+          run.progress.update(text(to_string(label), ", ", frequency, " Hz"));
+          const int column = static_cast<int>(j);
+          ModeField field  = mode_field(linearisation, file_name("complex", j, label), modes.lambda[j], view(*modes.real_part, column, 1),
+                                        view(*modes.imaginary_part, column, 1));
+          field.title      = mode_title(label, modes.lambda[j]);
+          if (const auto balance = balances.find(column); balance != balances.end())
+            field.energy_input = energy_input(linearisation, balance->second);
+          writer.write_mode(field);
+          list.push_back({field.name, frequency});
+          if (friction.unstable[j] && output.animation_frames > 0)
+            {
+              writer.write_animation(field, animation_options(output));
+              ++n_animations;
+              highest = std::max(highest, modal_quantities(modes.lambda[j]).divergence_rate);
+            }
+        }
+      if (!list.empty())
+        writer.write_list("modes", list);
+      std::string growth; // e^{2π ξ n} in n periods
+      if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
+        growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", and of e in ", 1. / exponent,
+                      " periods");
+      run.progress.finish(text(list.size(), " modes, ", n_animations, " animations", growth));
+    }
+
+    void write_real_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
+    {
+      std::vector<ListedMode> list;
+      run.progress.begin("Real mode shapes");
+      for (std::size_t j = 0; j < modes.labels.size(); ++j)
+        {
+          const double      frequency = hertz(std::sqrt(modes.real.eigenvalues[j]));
+          const std::string name      = file_name("real", j, modes.labels[j]);
+          const MultiVector shape     = *modes.linearisation.coupled.kernel * view(*modes.real.vectors, static_cast<int>(j), 1);
+          run.progress.update(name);
+          writer.write_mode({name, real_mode_title("real mode", modes.labels[j], frequency), rows_here(shape), {}});
+          list.push_back({name, frequency});
+        }
+      writer.write_list("real_modes", list);
+      run.progress.finish(text(list.size(), " modes"));
+    }
+
+    void write_component_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)
+    {
+      const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
+      const auto   listed    = listed_component_modes(modes, omega_max * omega_max);
+      // Disc and pins are different meshes, so that each set has a list of its own
+      std::map<std::string, std::vector<ListedMode>> lists;
+      run.progress.begin("Component mode shapes");
+      for (std::size_t row = 0; row < listed.size(); ++row)
+        {
+          const ListedComponentMode &mode    = listed[row];
+          const bool                 is_disc = mode.set == &modes.disc;
+          const std::string          set     = is_disc ? "disc" : text("pins_", mode.contact);
+          const std::string          name    = file_name("component_" + set, row, mode.label);
+          run.progress.update(name);
+          writer.write_mode({name, real_mode_title(is_disc ? "free disc" : text(mode.contact, " pins"), mode.label, mode.frequency()),
+                             rows_here(view(*mode.set->vectors, mode.number, 1)), is_disc ? Component::disc : Component::pins});
+          lists["component_modes_" + set].push_back({name, mode.frequency()});
+        }
+      for (const auto &[name, list] : lists)
+        writer.write_list(name, list);
+      run.progress.finish(text(listed.size(), " modes"));
+    }
+  } // namespace
+
+  ModesAtPoints modes_at(const CommonPoints &points, const FrictionlessModes &frictionless, const FrictionModes &friction)
+  {
+    const Linearisation &linearisation = frictionless.linearisation;
+    return at_points(*displacements_at(points, *linearisation.scene->model), *linearisation.coupled.kernel, friction.modes);
+  }
+
+  std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run)
+  {
+    if (run.parameters.goal == AccuracyGoal::as_given)
+      return {};
+    run.progress.begin("Coarser mesh");
+    const Parameters        parameters = with_coarser_mesh(run.parameters);
+    Progress                silent;
+    Run                     part(parameters, run, silent);
+    Scene                   scene        = mesh_scene(part);
+    const FrictionlessModes frictionless = damped_modes(scene, part);
+    const FrictionModes     friction     = friction_modes(frictionless, parameters.operation.friction_coefficient, part);
+    const CommonPoints      points       = common_points(*scene.model, parameters.materials);
+    CoarserSolution         result{points, modes_at(points, frictionless, friction)};
+    run.count("dofs of the coarser mesh", scene.model->free_map().n());
+    run.progress.finish(text(scene.model->free_map().n(), " dofs, ", friction.modes.lambda.size(), " complex modes, ",
+                             friction.n_unstable(), " unstable, to estimate the error of the mesh"));
+    return result;
+  }
+
+  std::vector<DiscretisationError> mesh_errors(const CoarserSolution   &coarser,
+                                               const FrictionlessModes &frictionless,
+                                               const FrictionModes     &friction,
+                                               const AccuracyGoal       goal)
+  {
+    auto result = discretisation_errors(coarser.modes, modes_at(coarser.points, frictionless, friction), error_by_difference(goal),
+                                        friction.modes.estimated_errors);
+    // What the arithmetic leaves open no mesh decides
+    for (std::size_t j = 0; j < result.size(); ++j)
+      if (friction.verdicts[j] == Verdict::undecided)
+        result[j].verdict = Verdict::undecided;
+    return result;
+  }
+
+  void report_mesh_errors(const std::vector<DiscretisationError> &errors, const FrictionModes &friction, Run &run)
+  {
+    const AccuracyLimits limits    = limits_of(run.parameters.goal);
+    double               frequency = 0., divergence = 0.;
+    long                 n_converged = 0, n_lost = 0, n_in_cluster = 0;
+    const auto           count = [&](const Verdict verdict) {
+      return std::count_if(errors.begin(), errors.end(), [verdict](const DiscretisationError &error) { return error.verdict == verdict; });
+    };
+    for (const DiscretisationError &error : errors)
+      {
+        frequency  = std::max(frequency, error.frequency);
+        divergence = std::max(divergence, error.divergence);
+        n_converged += error.is_within(limits.frequency, limits.divergence);
+        n_lost += !error.has_counterpart;
+        n_in_cluster += error.in_cluster;
+      }
+    run.measure("largest estimated error of a frequency by the mesh [-]", frequency);
+    run.measure("largest estimated error of a divergence rate by the mesh [-]", divergence);
+    run.count("modes converged on the mesh", n_converged);
+    run.count("modes without counterpart on the coarser mesh", n_lost);
+    run.count("modes in clusters whose members the mesh decides", n_in_cluster);
+    for (const Verdict verdict : {Verdict::unstable, Verdict::stable, Verdict::undecided})
+      run.count("modes " + to_string(verdict) + " with the error of the mesh", count(verdict));
+    run.progress.note(text("  accuracy: ", to_string(run.parameters.goal),
+                           " asked for; estimated by a coarser mesh, frequencies are within ", decimal_text(100. * frequency),
+                           " % and divergence rates within ", decimal_text(100. * divergence), " percentage points",
+                           n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart left out") : ""));
+    run.progress.note(text("  with the error of the mesh: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
+                           " stable, ", count(Verdict::undecided), " undecided; ", n_converged, " of ", errors.size(), " converged"));
+    warn_of_unconverged(errors, friction, limits, run);
+  }
+
+  std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda)
+  {
+    const ModalQuantities mode = modal_quantities(lambda);
+    return text(to_string(label), ", ", decimal_text(mode.frequency), " Hz, divergence rate ", 100. * mode.divergence_rate, " %",
+                verdict_of(lambda) == Verdict::unstable ? ", unstable" : "");
+  }
+
+  AnimationOptions animation_options(const OutputParameters &output)
+  {
+    return {output.animation_frames, output.animation_periods, output.animation_growth};
+  }
+
+  void write_mode_shapes(const FrictionlessModes &frictionless, const FrictionModes &friction, const PowerBalances &balances, Run &run)
+  {
+    const OutputParameters &output        = run.parameters.output;
+    const Linearisation    &linearisation = frictionless.linearisation;
+    const Scene            &scene         = *linearisation.scene;
+    FieldWriter             writer(*scene.model, scene.interface, linearisation.closed, run.folder());
+    if (output.fields != FieldSelection::none)
+      write_complex_modes(linearisation, friction, balances, writer, run);
+    if (output.real_fields)
+      write_real_modes(frictionless, writer, run);
+    if (output.component_fields)
+      write_component_modes(frictionless, writer, run);
+  }
+} // namespace Squeal
