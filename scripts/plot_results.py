@@ -67,15 +67,8 @@ def make_way(path):
 
 
 def enlist(results, pictures):
-    """Adds pictures, or a report, to the files of the run in run.json; returns what to say.
-
-    Runs of earlier versions have no list there, and none is begun: the program knows their files by their names.
-    """
-    files = results.record.get(FILES)
-    if files is None:
-        return []
-    if results.were_replaced():
-        raise ResultsError("the results were replaced meanwhile", f"folder {results.folder}", "draw the plots again")
+    """Adds pictures, or a report, to the files of the run in run.json; returns what to say."""
+    files = results.record[FILES]
     remarks = [make_way(results.folder / name) for name in pictures if name not in files and (results.folder / name).exists()]
     results.record[FILES] = dict(sorted({**files, **{name: len(content) for name, content in pictures.items()}}.items()))
     replace(results.record_file, (json.dumps(results.record, indent=2, ensure_ascii=False) + "\n").encode())

@@ -72,8 +72,7 @@ class Results:
                 raise ResultsError(f"`{folder}` holds no results: {name} is missing", "RESULTS",
                                    "name the folder in which a run has left its results")
         try:
-            self.record_text = self.record_file.read_text(encoding="utf-8")
-            self.record = dict(json.loads(self.record_text))
+            self.record = dict(json.loads(self.record_file.read_text(encoding="utf-8")))
             self.parameters = read_parameters(self.folder / "parameters.prm")
         except (OSError, TypeError, ValueError) as problem:
             what = f"the record of the run or its parameters cannot be read: {problem}"
@@ -82,10 +81,6 @@ class Results:
     @property
     def record_file(self):
         return self.folder / "run.json"
-
-    def were_replaced(self):
-        """Whether the folder holds the results of another run by now."""
-        return not self.record_file.is_file() or self.record_file.read_text(encoding="utf-8") != self.record_text
 
     def has(self, name):
         return (self.folder / f"{name}.csv").is_file()

@@ -70,6 +70,16 @@ class ProgramTest(unittest.TestCase):
             raise AssertionError(f"the run {output} failed:\n{process.stdout}\n{process.stderr}")
         return cls.folder / output
 
+    @classmethod
+    def shared(cls, *overrides, file="scene.prm"):
+        """Results that no test changes: of runs of a class with the same file and overrides the first is that of all."""
+        runs = cls.__dict__.get("shared_runs")
+        if runs is None:
+            runs = cls.shared_runs = {}
+        if (file, overrides) not in runs:
+            runs[file, overrides] = cls.run_scene(f"shared_{len(runs)}", *overrides, file=file)
+        return runs[file, overrides]
+
     def interrupt(self, output, overrides, ends):
         """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets
         the signal as soon as so many designs are known, and leaves no results."""
@@ -89,8 +99,7 @@ class ProgramTest(unittest.TestCase):
 
     def known_designs(self, output):
         """Files that hold the designs that an interrupted study has solved."""
-        # Not those of design-1.unfinished, which goes with the process that writes it
-        return sorted((self.folder / f"{output}.checkpoint").glob("design-*[0-9]/design.result"))
+        return sorted((self.folder / f"{output}.checkpoint").glob("design-*.result"))
 
     def assert_same_eigenvalues(self, actual, expected, tolerance=SAME):
         """Holds two lists against each other, whatever the order within clusters."""

@@ -21,7 +21,7 @@ class FamiliesTest(ProgramTest):
         thresholds = read_table(self.study / "design_thresholds.csv")
         modes = read_table(self.study / "design_modes.csv")
         self.assertEqual(len(together), 8)
-        for number in ("1", "4", "8"):
+        for number in ("1", "8"):
             single = self.run_design(f"single_{number}", number)
             row, alone = together[number], read_table(single / "designs.csv")[0]
             for name in ("outcome", "modes [-]", "modes counted [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]",

@@ -20,13 +20,18 @@ def tried_eigenvalues(folder, ingredient, tried=None):
 
 
 class Ingredients(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.study = cls.run_scene("study", "Study=ingredients", *RICH)
+        cls.here = eigenvalues(cls.run_scene("here", *RICH))
+
     def rows(self, folder):
         return {(row["ingredient"], row["tried"]): row for row in read_table(folder / "ingredients.csv")}
 
     def test_effects_are_those_of_single_runs(self):
         """What a variant shares with the reference leaves it as it is when run by itself."""
-        study = self.run_scene("study", "Study=ingredients", *RICH)
-        here = eigenvalues(self.run_scene("here", *RICH))
+        study, here = self.study, self.here
         for (ingredient, tried), override in {("radial dissipation", "none"): "Operation/Radial dissipation=none",
                                               ("friction slope", "none"): "Operation/Friction slope=0",
                                               ("contact state", "equal load"): "Steady sliding/Contact state=equal load",
@@ -45,7 +50,7 @@ class Ingredients(ProgramTest):
             self.assertEqual(sum(mode["frequency here [Hz]"] != "" for mode in modes), 0 if row["not tried because"] else len(here), ingredient)
 
     def test_the_cheapest_model_runs_and_keeps_its_promise(self):
-        study = self.run_scene("study", "Study=ingredients", *RICH)
+        study = self.study
         text = (study / "cheapest.prm").read_text(encoding="utf-8")
         self.assertIn("# cheapest model within 1 % and 0.05 percentage points: friction slope = none, modal damping = none", text)
         self.assertNotIn("Friction slope", text.split("subsection", 1)[1])
@@ -57,7 +62,7 @@ class Ingredients(ProgramTest):
         found, promised = eigenvalues(self.folder / "cheapest"), tried_eigenvalues(study, "together")
         self.assert_same_eigenvalues(promised, found, 1e-7)
         # Within the accuracy asked for, mode by mode
-        reference = eigenvalues(self.run_scene("here", *RICH))
+        reference = self.here
         self.assertEqual(len(found), len(reference))
         self.assertLess(distance(found, reference), 0.01)
         together = next(row for (ingredient, _), row in self.rows(study).items() if ingredient == "together")

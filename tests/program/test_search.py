@@ -54,9 +54,9 @@ class SearchTest(ProgramTest):
             self.assertAlmostEqual(100 * max(value.real / value.imag for value in values), float(row["divergence rate [%]"]), places=6)
 
     def test_every_goal_and_method(self):
-        for goal, method in (("onset", "COBYLA"), ("onset", "BOBYQA"), ("divergence rate", "COBYLA")):
-            rows = read_table(self.run_scene("other", *SEARCH, f"Search/Goal={goal}", f"Search/Method={method}") / "search.csv")
-            self.assertLessEqual(len(rows), 9)
+        for goal, method in (("onset", "BOBYQA"), ("divergence rate", "COBYLA")):
+            rows = read_table(self.run_scene("other", *SEARCH, "Search/Evaluations=6", f"Search/Goal={goal}", f"Search/Method={method}") / "search.csv")
+            self.assertLessEqual(len(rows), 6)
             self.assertGreater(len(rows), 4)
             if goal == "onset":
                 found = [float(row["mu of 0.01 % [-]"]) for row in rows]
