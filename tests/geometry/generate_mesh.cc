@@ -2,6 +2,7 @@
 
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/geometry/mesh_file.h>
+#include <squeal/geometry/plan_smoothing.h>
 
 #include <sstream>
 
@@ -85,61 +86,134 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
     }
 }
 
-TEST(GenerateMesh, DiscFillsTheAnnulusAndTheSurfacesBoundIt)
+TEST(GenerateMesh, BodiesAndSurfacesAreAtTheirPlaces)
 {
-  const GeometryParameters parameters = one_pin();
-  const HexMesh            mesh       = generate_mesh(parameters);
-  const double             t          = parameters.disc_thickness;
+  for (const double side : {1., -1.})
+    {
+      GeometryParameters parameters = one_pin();
+      if (side < 0.)
+        std::swap(parameters.top, parameters.bottom);
+      const HexMesh mesh = generate_mesh(parameters);
+      const double  t    = parameters.disc_thickness;
+      expect_contact_pairs(mesh, 19);
+      EXPECT_EQ(mesh.volume_names[1], side > 0. ? "pin_top_1" : "pin_bottom_1");
+      for (const unsigned int node : nodes_on(mesh, "pin_contact"))
+        EXPECT_EQ(mesh.points[node][2], side * t / 2.);
+      for (const unsigned int node : nodes_on(mesh, "pin_clamp"))
+        EXPECT_EQ(mesh.points[node][2], side * (t / 2. + parameters.pin_height));
 
-  const unsigned int n_bore = nodes_on(mesh, "disc_bore").size() / (parameters.disc_layers + 1);
-  const unsigned int n_rim  = nodes_on(mesh, "disc_rim").size() / (parameters.disc_layers + 1);
-  EXPECT_NEAR(volume(mesh, "disc"), t * (polygon(parameters.disc_outer_radius, n_rim) - polygon(parameters.disc_inner_radius, n_bore)),
-              1e-4 * volume(mesh, "disc"));
-  EXPECT_NEAR(area(mesh, "disc_bore"), 2. * pi * parameters.disc_inner_radius * t, 0.01 * area(mesh, "disc_bore"));
-  EXPECT_NEAR(area(mesh, "disc_rim"), 2. * pi * parameters.disc_outer_radius * t, 0.01 * area(mesh, "disc_rim"));
-  for (const unsigned int node : nodes_on(mesh, "disc_bore"))
-    EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), parameters.disc_inner_radius, 1e-9);
-  for (const unsigned int node : nodes_on(mesh, "pin_clamp"))
-    EXPECT_EQ(mesh.points[node][2], t / 2. + parameters.pin_height);
-}
-
-TEST(GenerateMesh, BottomPinsHangBelow)
-{
-  GeometryParameters parameters = one_pin();
-  std::swap(parameters.top, parameters.bottom);
-  const HexMesh mesh = generate_mesh(parameters);
-  expect_contact_pairs(mesh, 19);
-  EXPECT_EQ(mesh.volume_names[1], "pin_bottom_1");
-  for (const unsigned int node : nodes_on(mesh, "pin_contact"))
-    EXPECT_EQ(mesh.points[node][2], -parameters.disc_thickness / 2.);
-  for (const unsigned int node : nodes_on(mesh, "pin_clamp"))
-    EXPECT_LT(mesh.points[node][2], -parameters.disc_thickness / 2.);
+      const unsigned int n_bore = nodes_on(mesh, "disc_bore").size() / (parameters.disc_layers + 1);
+      const unsigned int n_rim  = nodes_on(mesh, "disc_rim").size() / (parameters.disc_layers + 1);
+      EXPECT_NEAR(volume(mesh, "disc"), t * (polygon(parameters.disc_outer_radius, n_rim) - polygon(parameters.disc_inner_radius, n_bore)),
+                  1e-4 * volume(mesh, "disc"));
+      EXPECT_NEAR(area(mesh, "disc_bore"), 2. * pi * parameters.disc_inner_radius * t, 0.01 * area(mesh, "disc_bore"));
+      EXPECT_NEAR(area(mesh, "disc_rim"), 2. * pi * parameters.disc_outer_radius * t, 0.01 * area(mesh, "disc_rim"));
+      for (const unsigned int node : nodes_on(mesh, "disc_bore"))
+        EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), parameters.disc_inner_radius, 1e-9);
+    }
 }
 
 TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
 {
+  const auto expect = [](const GeometryParameters &parameters, const double quality) {
+    SCOPED_TRACE(testing::PrintToString(parameters.top.angles) + testing::PrintToString(parameters.bottom.angles) + ", " +
+                 std::to_string(parameters.nodes_per_pin_face) + " nodes, " + std::to_string(parameters.element_size) + " m");
+    const HexMesh mesh = generate_mesh(parameters);
+    expect_contact_pairs(mesh, 12 * parameters.nodes_per_pin_face);
+    EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, quality);
+
+    // Every pin is a regular polygon
+    const unsigned int n_outline = parameters.nodes_per_pin_face == 7 ? 6 : 12;
+    const double       radius    = parameters.pin_diameter / 2.;
+    EXPECT_NEAR(volume(mesh, "pin_"), 12. * polygon(radius, n_outline) * parameters.pin_height, 1e-10);
+    for (const auto &[side, pins] : {std::pair(1., parameters.top), {-1., parameters.bottom}})
+      for (std::size_t pin = 0; pin < 6; ++pin)
+        EXPECT_EQ(n_on_outline(mesh, side, pins.radii[pin], pins.angles[pin], radius), n_outline);
+  };
   // A little aside, half a pitch aside, nothing opposite
   for (const double shift : {0.1, 2., 9.2, 14., 30., 180.})
     {
       GeometryParameters parameters;
       for (double &angle : parameters.bottom.angles)
         angle += shift;
-      const HexMesh mesh = generate_mesh(parameters);
-      expect_contact_pairs(mesh, 228);
-      EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.15) << shift;
-      EXPECT_NEAR(area(mesh, "pin_contact"), 12. * polygon(parameters.pin_diameter / 2., 12), 1e-10);
+      expect(parameters, 0.15);
+    }
+  // Those above spread further than those below, so that they overlap askew
+  for (const double spread : {27., 30., 33.})
+    for (const unsigned int nodes : {7, 19})
+      for (const double size : {0.012, 0.02, 0.03})
+        {
+          GeometryParameters parameters;
+          parameters.top.angles         = {-spread, 0., spread, -spread, 0., spread};
+          parameters.nodes_per_pin_face = nodes;
+          parameters.element_size       = size;
+          parameters.pin_layers         = 1;
+          expect(parameters, smallest_scaled_jacobian);
+        }
+}
 
-      for (unsigned int pin = 0; pin < 6; ++pin)
-        EXPECT_EQ(n_on_outline(mesh, -1., parameters.bottom.radii[pin], parameters.bottom.angles[pin], parameters.pin_diameter / 2.), 12u)
-          << shift;
+TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
+{
+  for (const unsigned int nodes : {7, 19})
+    {
+      GeometryParameters parameters;
+      parameters.nodes_per_pin_face            = nodes;
+      parameters.element_size                  = 0.02;
+      const HexMesh                       mesh = generate_mesh(parameters);
+      std::set<std::pair<double, double>> above, below;
+      for (const unsigned int node : nodes_on(mesh, "disc_contact"))
+        (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
+      EXPECT_EQ(above.size(), 6 * nodes);
+      EXPECT_EQ(above, below); // to the last bit: nothing was sheared
     }
 }
 
-TEST(GenerateMesh, SameParametersGiveTheSameMesh)
+TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
 {
-  HexMesh    mesh = generate_mesh(one_pin());
-  const auto of   = checksum(mesh);
-  EXPECT_EQ(text_of(generate_mesh(one_pin())), text_of(mesh));
+  // The pad of a railway brake: 18 pins, 2.56 mm apart
+  GeometryParameters parameters;
+  parameters.disc_inner_radius = 0.175;
+  parameters.disc_outer_radius = 0.320;
+  parameters.pin_diameter      = 0.0376;
+  parameters.element_size      = 0.02;
+  parameters.top.radii         = {0.215696546, 0.258936286, 0.259755654, 0.207761883, 0.282256975, 0.243074063,
+                                  0.281964537, 0.242958844, 0.20135789,  0.259083545, 0.201359622, 0.242962314,
+                                  0.281974332, 0.243130647, 0.207846669, 0.259855518, 0.282322054, 0.215831818};
+  parameters.top.angles = {7.19091141, 4.87389642, 14.0362435, 18.5221569, 21.8391041, 24.0342882, 31.6607511, 33.7554736, 33.4533095,
+                           75.1843979, 46.63198,   46.3157819, 48.4000408, 56.0360735, 61.5582833, 66.0272128, 58.2217852, 72.881462};
+  parameters.bottom     = {};
+  EXPECT_GT(mesh_quality(generate_mesh(parameters)).worst_scaled_jacobian, 0.1);
+
+  // Thin ones: elements grow between them
+  GeometryParameters thin;
+  thin.pin_diameter = 0.001;
+  EXPECT_LT(generate_mesh(thin).hexahedra.size(), 30000u);
+}
+
+TEST(GenerateMesh, ScaledParametersGiveTheScaledMesh)
+{
+  const HexMesh mesh = generate_mesh(one_pin());
+  for (const int exponent : {-6, -3, 3, 6})
+    {
+      GeometryParameters p = one_pin();
+      for (double *length : {&p.disc_inner_radius, &p.disc_outer_radius, &p.disc_thickness, &p.pin_diameter, &p.pin_height, &p.element_size,
+                             &p.pairing_tolerance, &p.top.radii[0]})
+        *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the nearest number
+      const HexMesh other = generate_mesh(p);
+      ASSERT_EQ(other.points.size(), mesh.points.size());
+      for (std::size_t i = 0; i < mesh.points.size(); ++i)
+        for (unsigned int d = 0; d < 3; ++d)
+          EXPECT_NEAR(other.points[i][d] / std::pow(10., exponent), mesh.points[i][d], 1e-15);
+    }
+}
+
+TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
+{
+  HexMesh           mesh    = generate_mesh(one_pin());
+  const auto        of      = checksum(mesh);
+  const std::string written = text_of(mesh);
+  EXPECT_EQ(text_of(generate_mesh(one_pin())), written);
+  EXPECT_EQ(text_of(generate_mesh(of_file(File("mesh.msh", written).string()))), written);
   // Checksums tell meshes apart
   EXPECT_EQ(checksum(generate_mesh(one_pin())), of);
   double &z = mesh.points.back()[2];
@@ -151,76 +225,67 @@ TEST(GenerateMesh, SameParametersGiveTheSameMesh)
 
 TEST(GenerateMesh, PadPlanIsExtruded)
 {
-  GeometryParameters parameters;
-  parameters.file    = "disc_pad.geo";
-  const HexMesh mesh = generate_mesh(parameters);
+  const GeometryParameters parameters = of_file("disc_pad.geo");
+  const HexMesh            mesh       = generate_mesh(parameters);
   EXPECT_EQ(mesh.volume_names, (std::vector<std::string>{"disc", "pin_top_1", "pin_bottom_1"}));
   expect_contact_pairs(mesh, nodes_on(mesh, "pin_clamp").size());
   const double pad_area = 50. / 360. * pi * (0.285 * 0.285 - 0.175 * 0.175);
   EXPECT_NEAR(volume(mesh, "pin_"), 2. * pad_area * parameters.pin_height, 0.01 * volume(mesh, "pin_"));
 }
 
-TEST(GenerateMesh, WrittenMeshReadsBackUnchanged)
+TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneName)
 {
-  const std::string  written = text_of(generate_mesh(one_pin()));
-  const File         file("mesh.msh", written);
-  GeometryParameters parameters = one_pin();
-  parameters.file               = file.string();
-  EXPECT_EQ(text_of(generate_mesh(parameters)), written);
-}
+  const File file("blocks.geo", blocks(volumes + surfaces + "Physical Surface(\"ground\") = {5}; Physical Surface(\"wall\") = {1, 5};\n"));
+  const HexMesh mesh = generate_mesh(of_file(file.string()), {"ground", "wall"});
+  EXPECT_EQ(mesh.hexahedra.size(), 16u);
+  EXPECT_EQ(mesh.points.size(), 54u);
+  EXPECT_NEAR(volume(mesh, "disc"), 0.5, 1e-12);
+  EXPECT_NEAR(volume(mesh, "pin_"), 0.25, 1e-12);
+  EXPECT_NEAR(area(mesh, "ground"), 1., 1e-12);
+  EXPECT_NEAR(area(mesh, "wall"), 1.5, 1e-12);
+  expect_contact_pairs(mesh, 9);
+  expect_mentions(message<MeshError>([&] { generate_mesh(of_file(file.string()), {"wall"}); }),
+                  {"'ground'", "disc_contact, pin_contact, pin_clamp, pin_side, disc_bore, disc_rim"});
 
-namespace
-{
-  /// Two blocks one upon the other, of 16 hexahedra.
-  const char *const two_blocks = R"(
-    SetFactory("OpenCASCADE");
-    Box(1) = {0, 0, 0, 2, 1, 0.5};
-    Box(2) = {0, 0, 0.5, 2, 1, 0.25};
-    Transfinite Curve{:} = 3; Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};
-    Physical Volume("disc") = {1};
-    Physical Volume("pin_block") = {2};
-    Physical Surface("disc_contact") = {6};
-    Physical Surface("pin_contact") = {11};
-    Physical Surface("pin_clamp") = {12};
-    Physical Surface("ground") = {5};
-  )";
-} // namespace
-
-TEST(GenerateMesh, FacesBearSeveralNamesAndGroupsOneName)
-{
-  GeometryParameters parameters;
-  const File         file("blocks.geo", std::string(two_blocks) + "Physical Surface(\"wall\") = {1, 5};\n");
-  parameters.file    = file.string();
-  const HexMesh mesh = generate_mesh(parameters, {"ground", "wall"});
-  EXPECT_NEAR(area(mesh, "ground"), 2., 1e-12);
-  EXPECT_NEAR(area(mesh, "wall"), 2.5, 1e-12);
-
-  // Through a file, which holds such a face twice
+  // Through a file, which holds a face of two names twice
   const File written("mesh.msh", text_of(mesh));
-  parameters.file = written.string();
-  EXPECT_EQ(text_of(generate_mesh(parameters, {"ground", "wall"})), text_of(mesh));
-
+  EXPECT_EQ(text_of(generate_mesh(of_file(written.string()), {"ground", "wall"})), text_of(mesh));
   // The same with the second group named like the first
   std::string one_name = text_of(mesh);
   one_name.replace(one_name.find("\"wall\""), 6, "\"ground\"");
   const File merged("merged.msh", one_name);
-  parameters.file = merged.string();
-  EXPECT_NEAR(area(generate_mesh(parameters, {"ground"}), "ground"), 2.5, 1e-12);
+  EXPECT_NEAR(area(generate_mesh(of_file(merged.string()), {"ground"}), "ground"), 1.5, 1e-12);
 }
 
-TEST(GenerateMesh, SolidGeometryIsTakenAsItIs)
+TEST(PlanSmoothing, InvertedFacesAreTurnedOver)
 {
-  GeometryParameters parameters;
-  const File         file("blocks.geo", two_blocks);
-  parameters.file    = file.string();
-  const HexMesh mesh = generate_mesh(parameters, {"ground"});
-  EXPECT_EQ(mesh.hexahedra.size(), 16u);
-  EXPECT_EQ(mesh.points.size(), 54u);
-  EXPECT_NEAR(volume(mesh, "disc"), 1., 1e-12);
-  EXPECT_NEAR(volume(mesh, "pin_"), 0.5, 1e-12);
-  EXPECT_NEAR(area(mesh, "ground"), 2., 1e-12);
-  expect_contact_pairs(mesh, 9);
+  // A grid of 4 x 4 faces whose inner nodes are mirrored
+  std::vector<Plan::Point> points;
+  std::vector<bool>        fixed;
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i)
+      {
+        const bool inside = i > 0 && i < 4 && j > 0 && j < 4;
+        points.push_back({inside ? 4. - i : double(i), double(j)});
+        fixed.push_back(!inside);
+      }
+  std::vector<Plan::Face> faces;
+  for (unsigned int j = 0; j < 4; ++j)
+    for (unsigned int i = 0; i < 4; ++i)
+      faces.push_back({{5 * j + i, 5 * j + i + 1, 5 * j + i + 6, 5 * j + i + 5}});
+  untangle(faces, fixed, {}, points);
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 0; i <= 4; ++i)
+      {
+        EXPECT_NEAR(points[5 * j + i][0], i, 0.1);
+        EXPECT_NEAR(points[5 * j + i][1], j, 0.1);
+      }
 
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }),
-                  {"'ground'", "disc_contact, pin_contact, pin_clamp, pin_side, disc_bore, disc_rim"});
+  // Faces that nothing can help, and faces that need no help, stay
+  std::vector<Plan::Point> flat   = {{0., 0.}, {1., 0.}, {2., 0.}, {3., 0.}};
+  const auto               before = flat, good = points;
+  untangle({{{0, 1, 2, 3}}}, std::vector<bool>(4, true), {}, flat);
+  EXPECT_EQ(flat, before);
+  untangle(faces, fixed, {}, points);
+  EXPECT_EQ(points, good);
 }

@@ -6,14 +6,10 @@ using namespace Scenes;
 
 namespace
 {
-  constexpr const char *box = R"(
-    SetFactory("OpenCASCADE");
-    Box(1) = {0, 0, 0, 1, 1, 1};
-    Transfinite Curve{:} = 3; Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};
-    Physical Volume("disc") = {1};
-  )";
+  const MesherLimits wide{60., 4e9, true};
+  const std::string  script = blocks("Physical Volume(\"disc\") = {1};");
 
-  GmshMesh mesh_of(const File &file, const MesherLimits &limits = {60., 4e9, true})
+  GmshMesh mesh_of(const File &file, const MesherLimits &limits = wide)
   {
     return run_mesher({file.string(), "", {}}, "here", limits);
   }
@@ -21,10 +17,9 @@ namespace
 
 TEST(Mesher, HandsOverWhatGmshHolds)
 {
-  const File     file("box.geo", box);
-  const GmshMesh mesh = mesh_of(file);
+  const GmshMesh mesh = mesh_of(File("blocks.geo", script));
   EXPECT_EQ(mesh.dimension(), 3);
-  EXPECT_EQ(mesh.points.size(), 27u);
+  EXPECT_EQ(mesh.points.size(), 54u);
   ASSERT_EQ(mesh.groups.size(), 1u);
   EXPECT_EQ(mesh.groups[0].name, "disc");
   ASSERT_EQ(mesh.groups[0].elements.size(), 1u);
@@ -41,10 +36,10 @@ TEST(Mesher, HandsOverWhatGmshHolds)
 
 TEST(Mesher, ReadsAScriptFromMemoryWithNumbersOfItsOwn)
 {
-  std::string script = "size = DefineNumber[ 1, Name \"Parameters/Size\" ];\n" + std::string(box);
-  script.replace(script.find("1, 1, 1}"), 8, "1, 1, size}");
+  std::string sized = "size = DefineNumber[ 1, Name \"Parameters/Size\" ];\n" + script;
+  sized.replace(sized.find("0.25}"), 5, "size - 0.5}");
   double height = 0.;
-  for (const auto &point : run_mesher({"", script, {{"Parameters/Size", 2.5}}}, "here", {60., 4e9, true}).points)
+  for (const auto &point : run_mesher({"", sized, {{"Parameters/Size", 2.5}}}, "here", wide).points)
     height = std::max(height, point[2]);
   EXPECT_EQ(height, 2.5);
 }
@@ -52,30 +47,25 @@ TEST(Mesher, ReadsAScriptFromMemoryWithNumbersOfItsOwn)
 TEST(Mesher, ConfinesGmsh)
 {
   const auto attempt = [](const std::string &statement) {
-    const File file("script.geo", "Point(1) = {0, 0, 0};\n" + statement);
-    return message<ForbiddenAction>([&] { mesh_of(file); });
+    return message<ForbiddenAction>([&] { mesh_of(File("script.geo", "Point(1) = {0, 0, 0};\n" + statement)); });
   };
-  for (const char *statement : {"SystemCall \"true\";", "NonBlockingSystemCall \"true\";", "Printf(\"x\") > \"trace\";",
-                                "Save \"trace.msh\";", "CreateDir \"trace\";"})
+  for (const std::string statement : {"SystemCall \"true\";", "NonBlockingSystemCall \"true\";", "Printf(\"x\") > \"trace\";",
+                                      "Save \"trace.msh\";", "CreateDir \"trace\";"})
     expect_mentions(attempt(statement), {"starts a program, writes a file or opens a connection"});
-}
 
-TEST(Mesher, LetsGmshGoWhereAllowed)
-{
+  // Not where it is allowed
   const File file("script.geo", "");
   const auto trace = file.directory / "trace";
-  std::ofstream(file.path) << "SystemCall \"touch " << trace.string() << "\";\n" << box;
-  EXPECT_EQ(mesh_of(file, {60., 4e9, false}).points.size(), 27u);
+  std::ofstream(file.path) << "SystemCall \"touch " << trace.string() << "\";\n" << script;
+  EXPECT_EQ(mesh_of(file, {60., 4e9, false}).points.size(), 54u);
   EXPECT_TRUE(std::filesystem::exists(trace));
 }
 
 TEST(Mesher, SurvivesWhatHappensToGmsh)
 {
   const auto failure = [](const std::string &text, const MesherLimits &limits) {
-    const File file("script.geo", text);
-    return message<MeshError>([&] { mesh_of(file, limits); });
+    return message<MeshError>([&] { mesh_of(File("script.geo", text), limits); });
   };
-  const MesherLimits wide{60., 4e9, true};
   expect_mentions(failure("Exit;", wide), {"ended Gmsh", "here"});
   std::string errors;
   for (int i = 0; i < 100; ++i)

@@ -79,13 +79,18 @@ TEST(PinGrid, WithoutRingsItIsTheOGrid)
 
 TEST(PinGrid, RingsShrinkOutwardsByTheRatio)
 {
+  EXPECT_EQ(graded_intervals(4, 1.), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
+  const std::vector<double> ends = graded_intervals(3, 2.); // 4 : 2 : 1 of 7
+  for (int i = 0; i <= 3; ++i)
+    EXPECT_NEAR(ends[i], std::vector<double>({0., 4. / 7., 6. / 7., 1.})[i], 1e-15);
+  EXPECT_EQ(ends.back(), 1.);
+
+  // The outer three lie between 1 and 0.8 of the radius
   std::vector<Plan::Point> points = circle(6);
   fill_pin(first(6), {4, 2.}, points);
-  // The outer three lie between 1 and 0.8 of the radius: 1 : 2 : 4 of 7 from outside
-  const double expected[] = {1., 1. - 0.2 / 7., 1. - 0.6 / 7., 0.8};
   for (unsigned int ring = 0; ring < 4; ++ring)
     for (unsigned int i = 0; i < 6; ++i)
-      EXPECT_NEAR(points[6 * ring + i].distance(Plan::Point(3., 4.)), expected[ring], 1e-14);
+      EXPECT_NEAR(points[6 * ring + i].distance(Plan::Point(3., 4.)), 0.8 + 0.2 * ends[3 - ring], 1e-14);
 }
 
 TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
@@ -123,13 +128,4 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
       // Layers of nodes above half of the height: three of four
       EXPECT_EQ(n_found, 3u * 3u * 12u) << pin;
     }
-}
-
-TEST(PinGrid, IntervalsShrinkByTheRatio)
-{
-  EXPECT_EQ(graded_intervals(4, 1.), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
-  const std::vector<double> ends = graded_intervals(4, 2.); // 8 : 4 : 2 : 1 of 15
-  for (int i = 0; i <= 4; ++i)
-    EXPECT_NEAR(ends[i], std::vector<double>({0., 8. / 15., 12. / 15., 14. / 15., 1.})[i], 1e-15);
-  EXPECT_EQ(ends.back(), 1.);
 }

@@ -1,23 +1,23 @@
 #pragma once
 
+#include "../input.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/generate_mesh.h>
 
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 namespace Scenes
 {
   using namespace Squeal;
+  using Testing::expect_mentions;
+  using Testing::File;
+  using Testing::message;
 
   /// One pin on the upper face: small and quick.
   inline GeometryParameters one_pin()
@@ -31,30 +31,37 @@ namespace Scenes
     return parameters;
   }
 
-  /// A file in a directory of its own that vanishes with the test.
-  class File
+  using Place = std::function<HexMesh::Point(const HexMesh::Point &)>;
+
+  inline HexMesh moved(HexMesh mesh, const Place &motion)
   {
-  public:
-    explicit File(const std::string &name, const std::string &content = "")
-    {
-      std::string pattern = (std::filesystem::temp_directory_path() / "squeal-test-XXXXXX").string();
-      directory           = ::mkdtemp(pattern.data());
-      path                = directory / name;
-      if (!content.empty())
-        std::ofstream(path) << content;
-    }
-    ~File()
-    {
-      std::filesystem::remove_all(directory);
-    }
+    for (HexMesh::Point &point : mesh.points)
+      point = motion(point);
+    return mesh;
+  }
 
-    std::string string() const
-    {
-      return path.string();
-    }
+  /// Geometry of the user's own.
+  inline GeometryParameters of_file(const std::string &file)
+  {
+    GeometryParameters parameters;
+    parameters.file = file;
+    return parameters;
+  }
 
-    std::filesystem::path directory, path;
-  };
+  /// Two blocks one upon the other, of 8 hexahedra each; @p names may be those below.
+  inline std::string blocks(const std::string &names, const std::string &before_names = "")
+  {
+    return R"(
+      SetFactory("OpenCASCADE");
+      Box(1) = {0, 0, 0, 1, 1, 0.5};
+      Box(2) = {0, 0, 0.5, 1, 1, 0.25};
+    )" + before_names +
+           "Transfinite Curve{:} = 3; Transfinite Surface{:}; Recombine Surface{:}; Transfinite Volume{:};\n" + names;
+  }
+
+  const std::string volumes  = "Physical Volume(\"disc\") = {1}; Physical Volume(\"pin_1\") = {2};\n";
+  const std::string surfaces = "Physical Surface(\"disc_contact\") = {6}; Physical Surface(\"pin_contact\") = {11}; "
+                               "Physical Surface(\"pin_clamp\") = {12};\n";
 
   inline unsigned int surface(const HexMesh &mesh, const std::string &name)
   {
@@ -108,27 +115,5 @@ namespace Scenes
       if (const HexMesh::Point &p = mesh.points[node]; side * p[2] > 0.)
         n += std::abs(std::hypot(p[0] - x, p[1] - y) - pin_radius) < 1e-9;
     return n;
-  }
-
-  /// The text of the Exception that the action throws; fails if it throws none.
-  template <typename Exception, typename Action>
-  std::string message(const Action &action)
-  {
-    try
-      {
-        action();
-      }
-    catch (const Exception &exception)
-      {
-        return exception.what();
-      }
-    ADD_FAILURE() << "nothing was thrown";
-    return "";
-  }
-
-  inline void expect_mentions(const std::string &text, const std::vector<std::string> &parts)
-  {
-    for (const std::string &part : parts)
-      EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is missing in:\n" << text;
   }
 } // namespace Scenes

@@ -1,12 +1,10 @@
+#include "geometry/scenes.h"
 #include "printed.h"
 
-#include <squeal/base/exceptions.h>
-#include <squeal/parameters/parameters.h>
+#include <squeal/parameters/geometry.h>
 
-#include <gtest/gtest.h>
-
-using namespace Squeal;
-using namespace Squeal::Testing;
+using namespace Scenes;
+using Squeal::Testing::printed;
 
 namespace
 {
@@ -21,13 +19,9 @@ namespace
                                            AccuracyGoal::a_hundredth_percent};
 } // namespace
 
-TEST(AccuracyGoal, WithoutOneNothingChanges)
-{
-  EXPECT_EQ(printed(with_goal(Parameters())), printed(Parameters()));
-}
-
 TEST(AccuracyGoal, MeshesAreFinerAndToleranceSmallerFromGoalToGoal)
 {
+  EXPECT_EQ(printed(with_goal(Parameters())), printed(Parameters()));
   for (std::size_t g = 0; g < goals.size(); ++g)
     {
       const Parameters fine = with_goal(goal(goals[g])), coarse = with_coarser_mesh(goal(goals[g]));
@@ -79,11 +73,48 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
   Parameters tall          = goal(AccuracyGoal::one_percent);
   tall.geometry.pin_height = 4. * reference.geometry.pin_height;
   EXPECT_NEAR(with_goal(tall).geometry.pin_layers, 4. * reference.geometry.pin_layers, 1.);
+
+  // Meshes of the user's own do not follow
+  Parameters own    = goal(AccuracyGoal::one_percent);
+  own.geometry.file = SQUEAL_SOURCE_DIRECTORY "/tests/no.msh";
+  EXPECT_THROW(with_goal(own), Error);
 }
 
-TEST(AccuracyGoal, AMeshOfTheUsersOwnIsRefused)
+TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
 {
-  Parameters parameters    = goal(AccuracyGoal::one_percent);
-  parameters.geometry.file = SQUEAL_SOURCE_DIRECTORY "/tests/no.msh";
-  EXPECT_THROW(with_goal(parameters), Error);
+  // 11.5 mm; 19 nodes, k = 2; 4 and 3 layers
+  for (const auto &[factor, size, nodes, of_pin, of_disc] :
+       std::vector<std::tuple<double, double, unsigned int, unsigned int, unsigned int>>{{1., 0.0115, 19, 4, 3},
+                                                                                         {2., 0.00575, 61, 8, 6},
+                                                                                         {1.5, 0.0115 / 1.5, 37, 6, 5},
+                                                                                         {0.5, 0.023, 7, 2, 2},
+                                                                                         {0.2, 0.0575, 7, 1, 1}})
+    {
+      const GeometryParameters result = refined({}, factor);
+      EXPECT_NEAR(result.element_size, size, 1e-15) << factor;
+      EXPECT_EQ(result.nodes_per_pin_face, nodes) << factor;
+      EXPECT_EQ(result.pin_layers, of_pin) << factor;
+      EXPECT_EQ(result.disc_layers, of_disc) << factor;
+      result.check();
+    }
+
+  // Bodies stay; outlines are smooth by polygons: the volume differs by those alone
+  const HexMesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
+  EXPECT_EQ(coarse.volume_names, fine.volume_names);
+  EXPECT_GT(fine.hexahedra.size(), 6 * coarse.hexahedra.size());
+  EXPECT_LT(fine.hexahedra.size(), 10 * coarse.hexahedra.size());
+  EXPECT_NEAR(volume(fine, "disc") / volume(coarse, "disc"), 1., 0.02);
+}
+
+TEST(MeshFamily, RefusesMeshesThatDoNotFollow)
+{
+  const File mesh("bodies.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 1 \"disc\"\n$EndPhysicalNames\n");
+  const File solid("bodies.geo", "Box(1) = {0, 0, 0, 1, 1, 1};\nPhysical Volume(\"disc\") = {1};\n");
+  for (const std::string &file : {mesh.string(), solid.string()})
+    {
+      expect_mentions(message<ParameterError>([&] { refined(of_file(file), 2.); }),
+                      {file, "cannot be refined", "Geometry/Element size", "element_size"});
+      EXPECT_EQ(refined(of_file(file), 1.).element_size, GeometryParameters().element_size);
+    }
+  EXPECT_THROW(refined(of_file("missing.geo"), 2.), MeshError);
 }

@@ -1,22 +1,19 @@
+#include "input.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/parameters/design_plan.h>
 
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
-  namespace fs = std::filesystem;
-
   using Values = std::vector<std::string>;
 
   DesignPlan plan_of(const DesignChoice choice, const std::string &variables, const unsigned int n = 20, const unsigned int seed = 1)
@@ -38,65 +35,44 @@ namespace
     return result;
   }
 
-  void expect_refusal(const std::string &variables, const std::string &what)
+  /// Parameters of the plan that a file holds.
+  Parameters reading(const File &file)
+  {
+    Parameters parameters;
+    parameters.designs.choice = DesignChoice::file;
+    parameters.designs.file   = file.string();
+    return parameters;
+  }
+
+  ParameterError refusal_of(const Parameters &parameters)
   {
     try
       {
-        plan_of(DesignChoice::full_grid, variables);
-        FAIL() << variables;
+        design_plan(parameters);
       }
     catch (const ParameterError &error)
       {
-        EXPECT_NE(error.reason.find(what), std::string::npos) << error.reason;
-        EXPECT_EQ(error.where, "parameter Designs/Variables");
+        return error;
       }
+    return {"accepted", "", ""};
   }
-
-  /// A file that vanishes.
-  struct Csv
-  {
-    explicit Csv(const std::string &text)
-      : path(fs::temp_directory_path() / ("squeal_designs_" + std::to_string(getpid()) + ".csv"))
-    {
-      std::ofstream(path.string()) << text;
-      parameters.designs.choice = DesignChoice::file;
-      parameters.designs.file   = path.string();
-    }
-    ~Csv()
-    {
-      fs::remove(path);
-    }
-
-    const fs::path path;
-    Parameters     parameters;
-  };
 } // namespace
 
-TEST(DesignPlan, FullGridHasEveryCombination)
+TEST(DesignPlan, GridsAndOneAtATime)
 {
-  const DesignPlan plan =
-    plan_of(DesignChoice::full_grid, "Geometry/Pin height = 0.03 to 0.04 in 3; Geometry/Disc thickness = 0.044, 0.046");
-  EXPECT_EQ(plan.names, (Values{"Geometry/Pin height", "Geometry/Disc thickness"}));
-  EXPECT_EQ(plan.designs, (std::vector<Values>{{"0.03", "0.044"},
-                                               {"0.03", "0.046"},
-                                               {"0.035", "0.044"},
-                                               {"0.035", "0.046"},
-                                               {"0.04", "0.044"},
-                                               {"0.04", "0.046"}}));
-}
-
-TEST(DesignPlan, LevelsByRatioAndValuesWithCommas)
-{
-  EXPECT_EQ(plan_of(DesignChoice::full_grid, "Disc material/Young modulus = 1e9 to 1e11 in 3 by ratio").designs,
-            (std::vector<Values>{{"1e+09"}, {"1e+10"}, {"1e+11"}}));
-  EXPECT_EQ(plan_of(DesignChoice::full_grid, "Geometry/Top pin angles = -10, 0, 10 | -20, 0, 20").designs,
-            (std::vector<Values>{{"-10, 0, 10"}, {"-20, 0, 20"}}));
-}
-
-TEST(DesignPlan, OneAtATimeBeginsWithTheSceneAsItIs)
-{
-  EXPECT_EQ(plan_of(DesignChoice::one_at_a_time, "A/x = 1, 2; B/y = 3").designs,
-            (std::vector<Values>{{"", ""}, {"1", ""}, {"2", ""}, {"", "3"}}));
+  using Designs = std::vector<Values>;
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 0.03 to 0.04 in 3; B/y = 0.044, 0.046").designs,
+            (Designs{{"0.03", "0.044"}, {"0.03", "0.046"}, {"0.035", "0.044"}, {"0.035", "0.046"}, {"0.04", "0.044"}, {"0.04", "0.046"}}));
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1e9 to 1e11 in 3 by ratio").designs, (Designs{{"1e+09"}, {"1e+10"}, {"1e+11"}}));
+  // Values with commas
+  const DesignPlan lists = plan_of(DesignChoice::full_grid, "Geometry/Top pin angles = -10, 0, 10 | -20, 0, 20");
+  EXPECT_EQ(lists.names, Values{"Geometry/Top pin angles"});
+  EXPECT_EQ(lists.designs, (Designs{{"-10, 0, 10"}, {"-20, 0, 20"}}));
+  // It begins with the scene as it is
+  EXPECT_EQ(plan_of(DesignChoice::one_at_a_time, "A/x = 1, 2; B/y = 3").designs, (Designs{{"", ""}, {"1", ""}, {"2", ""}, {"", "3"}}));
+  for (const char *variables : {"A/x[1] = 1, 2; A/x[2] = 3, 4", "A/x = 1, 2; B/y = 1, 2"})
+    EXPECT_EQ(plan_of(DesignChoice::full_grid, variables).designs.size(), 4u) << variables;
+  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1,2").designs.size(), 2u);
 }
 
 TEST(DesignPlan, LatinHypercubeMeetsEveryPartOnce)
@@ -169,22 +145,25 @@ TEST(DesignPlan, RefusesWhatItDoesNotUnderstandOrVariesTwiceOrIsEqual)
                                                         {"A/x = 0,3, 0,4", "decimal"},
                                                         {"A/x = 0,3; 0,4", "`0,4` has no `=`"},
                                                         {"A/x = 0,3 to 0,5 in 3", "`0,3` in"}})
-    expect_refusal(variables, reason);
-  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x[1] = 1, 2; A/x[2] = 3, 4").designs.size(), 4u);
-  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1, 2; B/y = 1, 2").designs.size(), 4u);
-  EXPECT_EQ(plan_of(DesignChoice::full_grid, "A/x = 1,2").designs.size(), 2u);
+    {
+      Parameters parameters;
+      parameters.designs.choice    = DesignChoice::full_grid;
+      parameters.designs.variables = variables;
+      const ParameterError error   = refusal_of(parameters);
+      EXPECT_EQ(error.where, "parameter Designs/Variables");
+      expect_mentions(error.reason, {reason});
+    }
 }
 
 TEST(DesignPlan, ReadsAFile)
 {
-  const Csv        file("\xEF\xBB\xBFGeometry/Pin height,\"Geometry/Top pin angles\"\r\n0.03,\"-10, 10\"\n\n0.04,\"-20, 20\"\n");
-  const DesignPlan plan = design_plan(file.parameters);
-  EXPECT_EQ(plan.names, (Values{"Geometry/Pin height", "Geometry/Top pin angles"}));
-  EXPECT_EQ(plan.designs, (std::vector<Values>{{"0.03", "-10, 10"}, {"0.04", "-20, 20"}}));
-}
+  const File       file("designs.csv", "\xEF\xBB\xBF"
+                                             "A/x,\"B/y\"\r\n1,\"-10, 10\"\n\n2,\"-20, 20\"\n1,\"-10, 10\"");
+  const DesignPlan plan = design_plan(reading(file));
+  EXPECT_EQ(plan.names, (Values{"A/x", "B/y"}));
+  EXPECT_EQ(plan.designs, (std::vector<Values>{{"1", "-10, 10"}, {"2", "-20, 20"}, {"1", "-10, 10"}})); // equal ones as well
+  EXPECT_EQ(plan.where.back(), "file " + file.string() + ", line 5");
 
-TEST(DesignPlan, RefusesFilesThatAreNotThere)
-{
   Parameters parameters;
   parameters.designs.choice = DesignChoice::file;
   EXPECT_THROW(design_plan(parameters), ParameterError);
@@ -194,45 +173,31 @@ TEST(DesignPlan, RefusesFilesThatAreNotThere)
 
 TEST(DesignPlan, NamesTheLineOfAFileAndWhatIsWrongThere)
 {
-  const auto expect = [](const std::string &content, const std::vector<std::string> &mentions, const int line) {
-    const Csv file(content);
-    try
-      {
-        design_plan(file.parameters);
-        FAIL() << content;
-      }
-    catch (const ParameterError &error)
-      {
-        EXPECT_EQ(error.where, "file " + file.path.string() + ", line " + std::to_string(line)) << error.what();
-        for (const std::string &word : mentions)
-          EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
-      }
-  };
-  expect("A/x;B/y\r\n0,1;0,2", {"semicolons", "decimal"}, 1);
-  expect("A/x\tB/y\n1\t2", {"tabs"}, 1);
-  expect("sep=;\r\nA/x;B/y\r\n", {"sep=;", "remove"}, 1);
-  expect(std::string("\xFF\xFE"
-                     "A\0/\0x\0\n\0",
-                     10),
-         {"UTF-16", "UTF-8"}, 1);
-  expect("A/x,B/y\r1,2\r", {"carriage return"}, 1);
-  expect("A/x,B/y,\n1,2,\n", {"column 3", "ends with a comma"}, 1);
-  expect("A/x,B/y\n1,2\n3,4,\n", {"3 values", "2 names", "ends with a comma"}, 3);
-  expect("A/x\n0,3\n", {"2 values", "1 name", "0.3"}, 2);
-  expect("A/x,B/y\n1;2\n", {"semicolons"}, 2);
-  expect("A/x,B/y\n1,\"2,\n3\"\n", {"quotation mark"}, 2);
-  expect("A/x,B/y\n", {"no design"}, 1);
-  expect("A/x,B/y\n1\n", {"1 value", "2 names"}, 2);
-  expect("A/x,B/y + A/x\n1,2\n", {"`A/x` varies twice"}, 1);
-  expect("A/x,A/x\n1,2\n", {"`A/x` varies twice"}, 1);
-}
-
-TEST(DesignPlan, EqualRowsOfAFileAreDesigns)
-{
-  const Csv        file("A/x,B/y\r\n1,2\r\n3,4\r\n1,2");
-  const DesignPlan plan = design_plan(file.parameters);
-  EXPECT_EQ(plan.designs, (std::vector<Values>{{"1", "2"}, {"3", "4"}, {"1", "2"}}));
-  EXPECT_EQ(plan.where.back(), "file " + file.path.string() + ", line 4");
+  for (const auto &[line, content, mentions] : std::vector<std::tuple<int, std::string, std::vector<std::string>>>{
+         {1, "A/x;B/y\r\n0,1;0,2", {"semicolons", "decimal"}},
+         {1, "A/x\tB/y\n1\t2", {"tabs"}},
+         {1, "sep=;\r\nA/x;B/y\r\n", {"sep=;", "remove"}},
+         {1,
+          std::string("\xFF\xFE"
+                      "A\0/\0x\0\n\0",
+                      10),
+          {"UTF-16", "UTF-8"}},
+         {1, "A/x,B/y\r1,2\r", {"carriage return"}},
+         {1, "A/x,B/y,\n1,2,\n", {"column 3", "ends with a comma"}},
+         {3, "A/x,B/y\n1,2\n3,4,\n", {"3 values", "2 names", "ends with a comma"}},
+         {2, "A/x\n0,3\n", {"2 values", "1 name", "0.3"}},
+         {2, "A/x,B/y\n1;2\n", {"semicolons"}},
+         {2, "A/x,B/y\n1,\"2,\n3\"\n", {"quotation mark"}},
+         {1, "A/x,B/y\n", {"no design"}},
+         {2, "A/x,B/y\n1\n", {"1 value", "2 names"}},
+         {1, "A/x,B/y + A/x\n1,2\n", {"`A/x` varies twice"}},
+         {1, "A/x,A/x\n1,2\n", {"`A/x` varies twice"}}})
+    {
+      const File           file("designs.csv", content);
+      const ParameterError error = refusal_of(reading(file));
+      EXPECT_EQ(error.where, "file " + file.string() + ", line " + std::to_string(line)) << error.what();
+      expect_mentions(error.what(), mentions);
+    }
 }
 
 TEST(WithDesign, ChangesParametersNumbersOfThemAndSeveralAtOnce)
@@ -255,12 +220,12 @@ TEST(WithDesign, ChangesParametersNumbersOfThemAndSeveralAtOnce)
 
 TEST(WithDesign, RefusesUnknownNamesAndValues)
 {
-  const Parameters scene;
-  EXPECT_THROW(with_design(scene, {"Geometry/Pin hight"}, {"0.04"}), ParameterError);
-  EXPECT_THROW(with_design(scene, {"Geometry/"}, {"0.04"}), ParameterError);
-  EXPECT_THROW(with_design(scene, {"Geometry/Pin height"}, {"-1"}), ParameterError);
-  EXPECT_THROW(with_design(scene, {"Mounts/Elastic mounts[4]"}, {"1"}), ParameterError);
-  EXPECT_THROW(with_design(scene, {"Mounts/Elastic mounts[0]"}, {"1"}), ParameterError);
+  for (const auto &[name, value] : {std::pair("Geometry/Pin hight", "0.04"),
+                                    {"Geometry/", "0.04"},
+                                    {"Geometry/Pin height", "-1"},
+                                    {"Mounts/Elastic mounts[4]", "1"},
+                                    {"Mounts/Elastic mounts[0]", "1"}})
+    EXPECT_THROW(with_design({}, {name}, {value}), ParameterError) << name;
 }
 
 TEST(WithNumber, LeavesDigitsOfNamesAlone)

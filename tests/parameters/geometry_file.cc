@@ -1,49 +1,32 @@
+#include "files.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/parameters/geometry_file.h>
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include <unistd.h>
-
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
-  namespace fs = std::filesystem;
-
-  /// A folder that vanishes with the test.
-  class Folder
+  class GeometryFiles : public testing::Test
   {
-  public:
-    Folder()
-    {
-      std::string pattern = (fs::temp_directory_path() / "squeal-test-XXXXXX").string();
-      path                = ::mkdtemp(pattern.data());
-    }
-    ~Folder()
-    {
-      fs::remove_all(path);
-    }
-
+  protected:
     std::string write(const std::string &name, const std::string &text) const
     {
-      fs::create_directories((path / name).parent_path());
-      std::ofstream(path / name) << text;
-      return (path / name).string();
+      put(folder.path / name, text);
+      return (folder.path / name).string();
     }
 
-    fs::path path;
+    const TemporaryFolder folder;
   };
 } // namespace
 
-TEST(GeometryFiles, VariablesAreThoseThatOthersMaySet)
+TEST_F(GeometryFiles, VariablesAreThoseThatOthersMaySet)
 {
-  const Folder folder;
-  folder.write("part.geo", "DefineConstant[ inner = 3 ];");
-  const GeometryScript script(folder.write("own.geo", R"(
+  write("part.geo", "DefineConstant[ inner = 3 ];");
+  const GeometryScript script(write("own.geo", R"(
     // DefineConstant[ no = 1 ];
     /* DefineConstant[ neither = 1 ]; */
     DefineConstant[
@@ -60,19 +43,17 @@ TEST(GeometryFiles, VariablesAreThoseThatOthersMaySet)
   EXPECT_EQ(found, "a = 0.15 (); b = 2 * Pi / 3 (); c = 0 (); h = 0.02 (Parameters/Height [m]); inner = 3 (); ");
 }
 
-TEST(GeometryFiles, StatementsAreFoundInIncludedFilesButNotInComments)
+TEST_F(GeometryFiles, StatementsAreFoundInIncludedFilesButNotInComments)
 {
-  const Folder         folder;
-  const std::string    part = folder.write("part.geo", "a = 1;\n  SystemCall \"x\";\n");
-  const GeometryScript script(folder.write("own.geo", "// SystemCall\nInclude \"part.geo\";\nInclude \"own.geo\";\n"));
+  const std::string    part = write("part.geo", "a = 1;\n  SystemCall \"x\";\n");
+  const GeometryScript script(write("own.geo", "// SystemCall\nInclude \"part.geo\";\nInclude \"own.geo\";\n"));
   EXPECT_EQ(script.find({"SystemCall"}).value_or(""), part + ", line 2: SystemCall \"x\";");
   EXPECT_FALSE(script.find({"Save"}));
 }
 
-TEST(GeometryFiles, AreLookedForBesideTheParameterFileFirst)
+TEST_F(GeometryFiles, AreLookedForBesideTheParameterFileFirst)
 {
-  const Folder folder;
-  const auto   beside = folder.write("apart/disc_pad.geo", "");
+  const auto beside = write("apart/disc_pad.geo", "");
   EXPECT_EQ(find_geometry("disc_pad.geo", (folder.path / "apart").string()), beside);
   EXPECT_TRUE(is_supplied(find_geometry("disc_pad.geo", folder.path.string())));
   EXPECT_FALSE(is_supplied(beside));
@@ -80,12 +61,11 @@ TEST(GeometryFiles, AreLookedForBesideTheParameterFileFirst)
   EXPECT_THROW(find_geometry("missing/disc_pad.geo", folder.path.string()), MeshError);
 }
 
-TEST(GeometryFiles, CopiesHoldWhatIsIncluded)
+TEST_F(GeometryFiles, CopiesHoldWhatIsIncluded)
 {
-  const Folder folder;
-  folder.write("parts/part.geo", "");
-  folder.write("shape.step", "");
-  const std::string  own  = folder.write("own.geo", "Include \"parts/part.geo\"; Merge \"shape.step\"; Merge \"missing.step\";");
+  write("parts/part.geo", "");
+  write("shape.step", "");
+  const std::string  own  = write("own.geo", "Include \"parts/part.geo\"; Merge \"shape.step\"; Merge \"missing.step\";");
   const GeometryCopy copy = copy_of(own);
   EXPECT_EQ(copy.name, "geometry/own.geo");
   std::string names;
@@ -94,7 +74,7 @@ TEST(GeometryFiles, CopiesHoldWhatIsIncluded)
   EXPECT_EQ(names, "geometry/own.geo geometry/parts/part.geo geometry/shape.step ");
 
   // What lies elsewhere would not be found from the copy
-  const std::string inner = folder.write("inner/own.geo", "Include \"../parts/part.geo\";");
+  const std::string inner = write("inner/own.geo", "Include \"../parts/part.geo\";");
   EXPECT_EQ(copy_of(inner).name, inner);
   EXPECT_TRUE(copy_of(find_geometry("disc_pins.geo", "")).files.empty());
 }

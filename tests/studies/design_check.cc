@@ -1,55 +1,30 @@
+#include "input.h"
+
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/designs/design_work.h>
 
-#include <gtest/gtest.h>
-
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
-  namespace fs = std::filesystem;
-
-  /// The message with which a study is refused, or "accepted".
+  /// The message with which a study is refused.
   std::string refusal(const std::string &variables, std::vector<std::string> settings = {})
   {
     settings.insert(settings.begin(), {"Study=geometry", "Designs/Variables=" + variables});
-    try
-      {
-        Parameters::read("/dev/null", settings);
-      }
-    catch (const Error &error)
-      {
-        return error.what();
-      }
-    return "accepted";
+    return message<Error>([&] { Parameters::read("/dev/null", settings); });
   }
 
   void expect_refusal(const std::vector<std::string> &mentions, const std::string &variables, const std::vector<std::string> &settings = {})
   {
-    const std::string message = refusal(variables, settings);
-    for (const std::string &word : mentions)
-      EXPECT_NE(message.find(word), std::string::npos) << variables << ": " << message;
+    expect_mentions(refusal(variables, settings), mentions);
   }
 
-  /// Writes a file that vanishes.
-  struct File
+  std::string refusal_of_file(const std::string &designs)
   {
-    File(const std::string &name, const std::string &content)
-      : path(fs::temp_directory_path() / ("squeal_" + std::to_string(getpid()) + name))
-    {
-      std::ofstream(path.string()) << content;
-    }
-    ~File()
-    {
-      fs::remove(path);
-    }
-    const fs::path path;
-  };
+    const File file("designs.csv", designs);
+    return refusal("", {"Designs/Plan=file", "Designs/File=" + file.string()});
+  }
 
   const std::string changes_nothing = "changes nothing";
 } // namespace
@@ -83,8 +58,9 @@ TEST(DesignChecks, VariablesThatChangeNothingAreRefused)
 
 TEST(DesignChecks, SizesOfTheBuiltInPlanChangeNothingInAMesh)
 {
-  const File mesh(".msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n");
-  const std::vector<std::string> own = {"Geometry/File=" + mesh.path.string()};
+  const File                     mesh("solid.msh",
+                                      "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n2 1 \"disc_rim\"\n3 2 \"disc\"\n$EndPhysicalNames\n");
+  const std::vector<std::string> own = {"Geometry/File=" + mesh.string()};
   expect_refusal({changes_nothing, "Geometry/Pin height"}, "Geometry/Pin height = 0.03, 0.034", own);
   expect_refusal({changes_nothing, "Geometry/Pin height"}, "Disc material/Density = 7000, 7200; Geometry/Pin height = 0.03, 0.034", own);
   EXPECT_EQ(refusal("Disc material/Density = 7000, 7200", own), "accepted");
@@ -94,11 +70,9 @@ TEST(DesignChecks, SizesOfTheBuiltInPlanChangeNothingInAMesh)
 TEST(DesignChecks, ColumnsThatChangeNothingAreRefusedWhereRowsBecomeEqual)
 {
   const std::string names = "Geometry/Pin height,Operation/Friction coefficient\n";
-  const auto        read  = [](const File &file) { return refusal("", {"Designs/Plan=file", "Designs/File=" + file.path.string()}); };
-  EXPECT_EQ(read(File(".csv", names + "0.03,0.3\n0.035,0.4\n0.03,0.3\n")), "accepted");
-  const std::string message = read(File(".csv", names + "0.03,0.3\n0.03,0.4\n"));
-  EXPECT_NE(message.find("`Operation/Friction coefficient` varies, but changes nothing"), std::string::npos) << message;
-  EXPECT_NE(message.find("line 1"), std::string::npos) << message;
+  EXPECT_EQ(refusal_of_file(names + "0.03,0.3\n0.035,0.4\n0.03,0.3\n"), "accepted");
+  expect_mentions(refusal_of_file(names + "0.03,0.3\n0.03,0.4\n"),
+                  {"`Operation/Friction coefficient` varies, but changes nothing", "line 1"});
 }
 
 TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
@@ -117,16 +91,7 @@ TEST(DesignChecks, ValuesAreHeldAgainstTheirBoundsFirst)
                  {"Study=search"});
   // Values that only together make no sense are told in their rows
   EXPECT_EQ(refusal("Operation/Load per side = 0, 1000; Operation/Radial dissipation = none, consistent"), "accepted");
-}
-
-TEST(DesignChecks, AFileIsNamedWithTheLine)
-{
-  const File        file(".csv", "Geometry/Pin height\n0.03\n\n-1\n");
-  const std::string message = refusal("", {"Designs/Plan=file", "Designs/File=" + file.path.string()});
-  EXPECT_NE(message.find("line 4"), std::string::npos) << message;
-  EXPECT_NE(message.find("not -1"), std::string::npos) << message;
-  const File        nameless(".csv", "Pin height\n0.03\n");
-  const std::string unknown = refusal("", {"Designs/Plan=file", "Designs/File=" + nameless.path.string()});
-  EXPECT_NE(unknown.find("line 1"), std::string::npos) << unknown;
-  EXPECT_NE(unknown.find("`Geometry/Pin height`"), std::string::npos) << unknown;
+  // In a file the line is named
+  expect_mentions(refusal_of_file("Geometry/Pin height\n0.03\n\n-1\n"), {"line 4", "not -1"});
+  expect_mentions(refusal_of_file("Pin height\n0.03\n"), {"line 1", "`Geometry/Pin height`"});
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using namespace Squeal;
@@ -36,14 +37,6 @@ namespace
     return result;
   }
 
-  std::set<std::string> names(const std::vector<const Ingredient *> &list)
-  {
-    std::set<std::string> result;
-    for (const Ingredient *ingredient : list)
-      result.insert(ingredient->name);
-    return result;
-  }
-
   /// λ [rad/s] from a frequency [Hz] and a divergence rate [%].
   std::complex<double> eigenvalue(const double frequency, const double divergence)
   {
@@ -57,33 +50,31 @@ namespace
   }
 } // namespace
 
-TEST(Ingredients, EveryOneHasARowInEveryScene)
+TEST(Ingredients, ChangesAreMadeAndNothingElseInEveryScene)
 {
-  std::vector<const Ingredient *> all;
+  std::set<std::string> all;
   for (const Ingredient &ingredient : ingredients())
-    all.push_back(&ingredient);
+    all.insert(ingredient.name);
   for (const Parameters &scene : {Parameters(), plain_scene(), rich_scene()})
-    EXPECT_EQ(names(ingredients_to_try(scene)), names(all));
-}
-
-TEST(Ingredients, AChangeIsMadeAndNothingElse)
-{
-  for (const Parameters &scene : {plain_scene(), rich_scene()})
-    for (const Ingredient *ingredient : ingredients_to_try(scene))
-      {
-        const Variation changed = combined(scene, {ingredient});
-        EXPECT_NO_THROW(changed.parameters.check()) << ingredient->name << " = " << ingredient->tried(scene);
-        const bool is_shown = changed.without_lift_off || !changed.basis.empty();
-        const bool possible = ingredient->obstacle == nullptr || ingredient->obstacle(scene, std::nullopt) == nullptr;
-        if (possible && ingredient->kind != ChangeKind::shows)
-          {
-            EXPECT_FALSE(is_shown) << ingredient->name;
-            EXPECT_NE(printed(changed.parameters), printed(scene)) << ingredient->name;
-            // Once made it is not made again
-            const Variation twice = combined(changed.parameters, {ingredient});
-            EXPECT_EQ(printed(twice.parameters), printed(changed.parameters)) << ingredient->name;
-          }
-      }
+    {
+      std::set<std::string> names;
+      for (const Ingredient *ingredient : ingredients_to_try(scene))
+        {
+          names.insert(ingredient->name);
+          const Variation changed = combined(scene, {ingredient});
+          EXPECT_NO_THROW(changed.parameters.check()) << ingredient->name << " = " << ingredient->tried(scene);
+          const bool possible = ingredient->obstacle == nullptr || ingredient->obstacle(scene, std::nullopt) == nullptr;
+          if (possible && ingredient->kind != ChangeKind::shows)
+            {
+              EXPECT_FALSE(changed.without_lift_off || !changed.basis.empty()) << ingredient->name;
+              EXPECT_NE(printed(changed.parameters), printed(scene)) << ingredient->name;
+              // Once made it is not made again
+              const Variation twice = combined(changed.parameters, {ingredient});
+              EXPECT_EQ(printed(twice.parameters), printed(changed.parameters)) << ingredient->name;
+            }
+        }
+      EXPECT_EQ(names, all);
+    }
 }
 
 TEST(Ingredients, WhatASceneCannotHaveSaysWhy)
@@ -132,7 +123,7 @@ TEST(IngredientEffects, TheLargestChangesCount)
   EXPECT_NEAR(result.severity(accuracy), 2., 1e-12);
 }
 
-TEST(IngredientEffects, WeakModesDoNotDecideAVerdict)
+TEST(IngredientEffects, GrowingModesButWeakOnesDecideAVerdict)
 {
   const auto change = [](const double here, const double there) {
     return effect({{{}, eigenvalue(1000., here), eigenvalue(1000., there), here > 0., there > 0.}}).changes_verdict();
@@ -141,6 +132,11 @@ TEST(IngredientEffects, WeakModesDoNotDecideAVerdict)
   EXPECT_TRUE(change(0.011, -0.1));
   EXPECT_TRUE(change(-0.1, 0.011));
   EXPECT_FALSE(change(0.5, 0.005)); // it grows in both
+
+  Effect divergence                 = effect({}); // static
+  divergence.n_growing_real_variant = 1;
+  EXPECT_TRUE(divergence.changes_verdict());
+  EXPECT_TRUE(std::isinf(divergence.severity({})));
 }
 
 TEST(IngredientEffects, ModesWithoutCounterpartCount)
@@ -160,62 +156,42 @@ TEST(IngredientEffects, ModesWithoutCounterpartCount)
   EXPECT_EQ(shorter.n_lost(), 1u);
 }
 
-TEST(IngredientEffects, StaticDivergenceIsAVerdict)
-{
-  Effect result                 = effect({});
-  result.n_growing_real_variant = 1;
-  EXPECT_TRUE(result.changes_verdict());
-  EXPECT_TRUE(std::isinf(result.severity({})));
-}
-
 // -------------------------------------------------------------------- selection
 
-TEST(IngredientSelection, AllThatKeepTheAccuracyTogether)
+TEST(IngredientSelection, CheapestChangesThatKeepTheAccuracyTogether)
 {
-  const std::vector<CheaperChange> changes = {{"a", 0.2}, {"b", 1.5}, {"c", 0.9}};
-  const ChangesTogether            found   = cheapest_changes(changes, [](const std::vector<int> &) { return 0.95; });
-  EXPECT_EQ(found.changes, (std::vector<int>{0, 2}));
-  EXPECT_TRUE(found.put_back.empty());
-  EXPECT_EQ(found.n_solved, 1);
-  EXPECT_EQ(found.severity, 0.95);
-}
-
-TEST(IngredientSelection, TheMostImportantOneIsPutBack)
-{
-  const std::vector<CheaperChange> changes = {{"a", 0.2}, {"b", 0.8}, {"c", 0.6}};
-  const ChangesTogether            found   = cheapest_changes(changes, [&](const std::vector<int> &chosen) {
-    double sum = 0.;
-    for (const int i : chosen)
-      sum += changes[i].severity;
-    return sum;
-  });
-  EXPECT_EQ(found.changes, (std::vector<int>{0, 2}));
-  EXPECT_EQ(found.put_back, std::vector<int>{1});
-  EXPECT_EQ(found.n_solved, 2);
-  EXPECT_NEAR(found.severity, 0.8, 1e-12);
-}
-
-TEST(IngredientSelection, OfOneIngredientTheSimplestThatServes)
-{
-  const std::vector<CheaperChange> changes = {{"element", 3.}, {"element", 0.7}, {"element", 0.1}, {"a", 0.2}};
-  EXPECT_EQ(cheapest_changes(changes, [](const std::vector<int> &) { return 0.9; }).changes, (std::vector<int>{1, 3}));
-  // Too much together: the next one of the ingredient
-  const ChangesTogether found = cheapest_changes(changes, [](const std::vector<int> &chosen) { return chosen.front() == 1 ? 1.2 : 0.4; });
-  EXPECT_EQ(found.changes, (std::vector<int>{2, 3}));
-  EXPECT_EQ(found.put_back, std::vector<int>{1});
-}
-
-TEST(IngredientSelection, OneAloneAndNone)
-{
-  const auto never = [](const std::vector<int> &) -> double {
-    ADD_FAILURE() << "solved again";
-    return 0.;
+  using Numbers = std::vector<int>;
+  struct Case
+  {
+    std::vector<CheaperChange>                   changes;
+    std::function<double(const Numbers &chosen)> severity_of;
+    ChangesTogether                              expected;
   };
-  const ChangesTogether one = cheapest_changes({{"a", 0.3}, {"b", INFINITY}}, never);
-  EXPECT_EQ(one.changes, std::vector<int>{0});
-  EXPECT_EQ(one.severity, 0.3);
-  EXPECT_TRUE(cheapest_changes({{"a", 1.1}}, never).changes.empty());
-  EXPECT_TRUE(cheapest_changes({}, never).changes.empty());
-  // Two that contradict each other: the smaller one is left
-  EXPECT_EQ(cheapest_changes({{"a", 0.3}, {"b", 0.4}}, [](const std::vector<int> &) { return INFINITY; }).changes, std::vector<int>{0});
+  const std::vector<CheaperChange> unlike = {{"a", 0.2}, {"b", 0.8}, {"c", 0.6}},
+                                   of_one = {{"element", 3.}, {"element", 0.7}, {"element", 0.1}, {"a", 0.2}};
+  const auto always                       = [](const double severity) { return [severity](const Numbers &) { return severity; }; };
+  const auto sum                          = [&](const Numbers &chosen) {
+    return std::accumulate(chosen.begin(), chosen.end(), 0., [&](const double s, const int i) { return s + unlike[i].severity; });
+  };
+  for (const auto &[changes, severity_of, expected] :
+       std::vector<Case>{// All that keep it
+                         {{{"a", 0.2}, {"b", 1.5}, {"c", 0.9}}, always(0.95), {{0, 2}, {}, 1, 0.95}},
+                         // The most important one is put back
+                         {unlike, sum, {{0, 2}, {1}, 2, 0.8}},
+                         // Of one ingredient the simplest that serves; where it is too much together, the next one
+                         {of_one, always(0.9), {{1, 3}, {}, 1, 0.9}},
+                         {of_one, [](const Numbers &chosen) { return chosen.front() == 1 ? 1.2 : 0.4; }, {{2, 3}, {1}, 2, 0.4}},
+                         // One alone and none are not solved again
+                         {{{"a", 0.3}, {"b", INFINITY}}, nullptr, {{0}, {}, 0, 0.3}},
+                         {{{"a", 1.1}}, nullptr, {{}, {}, 0, 0.}},
+                         {{}, nullptr, {{}, {}, 0, 0.}},
+                         // Two that contradict each other: the smaller one is left
+                         {{{"a", 0.3}, {"b", 0.4}}, always(INFINITY), {{0}, {1}, 1, 0.3}}})
+    {
+      const ChangesTogether found = cheapest_changes(changes, severity_of);
+      EXPECT_EQ(found.changes, expected.changes);
+      EXPECT_EQ(found.put_back, expected.put_back);
+      EXPECT_EQ(found.n_solved, expected.n_solved);
+      EXPECT_NEAR(found.severity, expected.severity, 1e-12);
+    }
 }

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+namespace Squeal::Testing
+{
+  /// A file in a directory of its own that vanishes with the test.
+  class File
+  {
+  public:
+    explicit File(const std::string &name, const std::string &content = "")
+    {
+      std::string pattern = (std::filesystem::temp_directory_path() / "squeal-test-XXXXXX").string();
+      directory           = ::mkdtemp(pattern.data());
+      path                = directory / name;
+      std::ofstream(path) << content;
+    }
+    ~File()
+    {
+      std::filesystem::remove_all(directory);
+    }
+
+    std::string string() const
+    {
+      return path.string();
+    }
+
+    std::filesystem::path directory, path;
+  };
+
+  /// The text of the Exception that the action throws, "accepted" if it throws none.
+  template <typename Exception, typename Action>
+  std::string message(const Action &action)
+  {
+    try
+      {
+        action();
+      }
+    catch (const Exception &exception)
+      {
+        return exception.what();
+      }
+    return "accepted";
+  }
+
+  inline void expect_mentions(const std::string &text, const std::vector<std::string> &parts)
+  {
+    for (const std::string &part : parts)
+      EXPECT_NE(text.find(part), std::string::npos) << "'" << part << "' is missing in:\n" << text;
+  }
+} // namespace Squeal::Testing
