@@ -10,7 +10,7 @@
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/modes/krylov_modes.h>
+#include <squeal/modes/system_modes.h>
 
 #include <gtest/gtest.h>
 

@@ -9,8 +9,6 @@ namespace Squeal
     using In     = BasisIngredients;
     using Source = BasisSource;
 
-    using Compute = MultiVector (*)(const In &);
-
     MultiVector response(const In &in, const Side side)
     {
       return friction_response(*in.coupled, *in.inverse, *in.set(Source::real), side);
@@ -18,13 +16,10 @@ namespace Squeal
 
     // ----------------------------------------------------------- sets at hand
 
-    BasisPart uncoupled_set(const char *symbol, const Source set)
-    {
-      return {symbol, {set}, set, true};
-    }
-
-    const BasisPart disc_free = uncoupled_set("Phi_f^D", Source::disc_free), disc_sliding = uncoupled_set("Phi_s^D", Source::disc_sliding);
-    const BasisPart pins_free = uncoupled_set("Phi_f^P", Source::pins_free), pins_sliding = uncoupled_set("Phi_s^P", Source::pins_sliding);
+    const BasisPart disc_free    = {"Phi_f^D", {Source::disc_free}, Source::disc_free, true};
+    const BasisPart disc_sliding = {"Phi_s^D", {Source::disc_sliding}, Source::disc_sliding, true};
+    const BasisPart pins_free    = {"Phi_f^P", {Source::pins_free}, Source::pins_free, true};
+    const BasisPart pins_sliding = {"Phi_s^P", {Source::pins_sliding}, Source::pins_sliding, true};
 
     const BasisPart real      = {"Phi_R", {Source::real, Source::coupled_factor}, Source::real};
     const BasisPart snapshots = {"complex modes at several mu",
@@ -36,52 +31,42 @@ namespace Squeal
 
     // ------------------------------------- one for each contact node, uncoupled
 
-    BasisPart at_contact(const char *symbol, const std::vector<Source> &rests_on, const Compute compute)
-    {
-      return {symbol, rests_on, {}, true, compute};
-    }
-
     const std::vector<Source> normal     = {Source::uncoupled_factor, Source::normal_attachment};
     const std::vector<Source> tangential = {Source::uncoupled_factor, Source::tangential_attachment};
     const std::vector<Source> both       = {Source::uncoupled_factor, Source::normal_attachment, Source::tangential_attachment};
 
-    const BasisPart normal_attachment =
-      at_contact("(Psi_an^D - Psi_an^P)", normal, [](const In &in) { return in.static_modes->normal_attachment(); });
-    const BasisPart normal_attachment_disc =
-      at_contact("Psi_an^D", normal, [](const In &in) { return in.static_modes->normal_attachment(Component::disc); });
-    const BasisPart tangential_attachment =
-      at_contact("(Psi_at^D - Psi_at^P)", tangential, [](const In &in) { return in.static_modes->tangential_attachment(); });
-    const BasisPart rubbing_attachment = at_contact("(Psi_amu^D - Psi_amu^P)", both, [](const In &in) {
-      return in.static_modes->rubbing_attachment(in.friction_coefficient);
-    });
-    const BasisPart constraint_disc =
-      at_contact("Psi_cn^D", {Source::constraint_disc}, [](const In &in) { return in.static_modes->constraint(Component::disc); });
-    const BasisPart constraint_pins =
-      at_contact("Psi_cn^P", {Source::constraint_pins}, [](const In &in) { return in.static_modes->constraint(Component::pins); });
+    const BasisPart normal_attachment      = {"(Psi_an^D - Psi_an^P)", normal, {}, true, [](const In &in) {
+                                           return in.static_modes->normal_attachment();
+                                         }};
+    const BasisPart normal_attachment_disc = {"Psi_an^D", normal, {}, true, [](const In &in) {
+                                                return in.static_modes->normal_attachment(Component::disc);
+                                              }};
+    const BasisPart tangential_attachment  = {"(Psi_at^D - Psi_at^P)", tangential, {}, true, [](const In &in) {
+                                               return in.static_modes->tangential_attachment();
+                                             }};
+    const BasisPart rubbing_attachment     = {"(Psi_amu^D - Psi_amu^P)", both, {}, true, [](const In &in) {
+                                            return in.static_modes->rubbing_attachment(in.friction_coefficient);
+                                          }};
+    const BasisPart constraint_disc        = {"Psi_cn^D", {Source::constraint_disc}, {}, true, [](const In &in) {
+                                         return in.static_modes->constraint(Component::disc);
+                                       }};
+    const BasisPart constraint_pins        = {"Psi_cn^P", {Source::constraint_pins}, {}, true, [](const In &in) {
+                                         return in.static_modes->constraint(Component::pins);
+                                       }};
 
     // ------------------------------------------- responses of the coupled system
 
-    BasisPart coupled_response(const char                  *symbol,
-                               const std::vector<Source>   &rests_on,
-                               const std::optional<Source> &set,
-                               const Compute                compute)
-    {
-      return {symbol, rests_on, set, false, compute};
-    }
-
     const std::vector<Source> factor = {Source::coupled_factor}, attachment = {Source::coupled_factor, Source::coupled_attachment};
 
-    const BasisPart coupled_tangential_attachment =
-      coupled_response("(Psi_cat^D - Psi_cat^P)", attachment, {}, [](const In &in) -> MultiVector {
-        return in.inverse->attachment_modes();
-      });
-    const BasisPart friction_right =
-      coupled_response("Psi_Rmu", attachment, Source::real, [](const In &in) { return response(in, Side::right); });
-    const BasisPart friction_left =
-      coupled_response("K_c^-1 V_K^T A^T Phi_R", factor, Source::real, [](const In &in) { return response(in, Side::left); });
-    const BasisPart damping = coupled_response("K_c^-1 C_c Phi_R", factor, Source::real, [](const In &in) {
-      return damping_response(*in.coupled, *in.inverse, *in.set(Source::real), in.friction_coefficient);
-    });
+    const BasisPart coupled_tangential_attachment = {"(Psi_cat^D - Psi_cat^P)", attachment, {}, false, [](const In &in) -> MultiVector {
+                                                       return in.inverse->attachment_modes();
+                                                     }};
+    const BasisPart friction_right = {"Psi_Rmu", attachment, Source::real, false, [](const In &in) { return response(in, Side::right); }};
+    const BasisPart friction_left  = {"K_c^-1 V_K^T A^T Phi_R", factor, Source::real, false,
+                                      [](const In &in) { return response(in, Side::left); }};
+    const BasisPart damping        = {"K_c^-1 C_c Phi_R", factor, Source::real, false, [](const In &in) {
+                                 return damping_response(*in.coupled, *in.inverse, *in.set(Source::real), in.friction_coefficient);
+                               }};
   } // namespace
 
   // -------------------------------------------------------------------- recipes

@@ -31,39 +31,6 @@ namespace Squeal
     return masses;
   }
 
-  ComponentProblem component_problem(const Model             &model,
-                                     const ContactInterface  &closed,
-                                     const SecondOrderSystem &system,
-                                     const Component          component,
-                                     const ContactBoundary    boundary)
-  {
-    const auto T = component_kernel(model, closed, component, boundary);
-    return {component, boundary, T, congruence(*system.stiffness, *T), congruence(*system.mass, *T)};
-  }
-
-  ComponentModes component_modes(const Model                 &model,
-                                 const ContactInterface      &interface,
-                                 const SecondOrderSystem     &system,
-                                 const ComponentProblem      &problem,
-                                 const double                 largest_eigenvalue,
-                                 const SymmetricModesOptions &options)
-  {
-    const SymmetricModes modes = symmetric_modes(*problem.stiffness, *problem.mass, largest_eigenvalue, options);
-    ComponentModes       result;
-    result.eigenvalues = modes.eigenvalues;
-    result.residuals   = modes.residuals;
-    if (modes.eigenvalues.empty())
-      return result;
-    result.vectors = std::make_shared<MultiVector>(*problem.kernel * *modes.vectors);
-
-    const auto masses = nodal_masses(model, *system.mass);
-    result.labels     = problem.component == Component::disc ? disc_labels(model, masses, *result.vectors) :
-                                                               pin_labels(model, interface, masses, *result.vectors);
-    for (int j = 0; j < modes.n_rigid_body; ++j)
-      result.labels[j] = {ModeFamily::rigid_body};
-    return result;
-  }
-
   ComponentModes component_modes(const Model                 &model,
                                  const ContactInterface      &interface,
                                  const ContactInterface      &closed,
@@ -73,8 +40,22 @@ namespace Squeal
                                  const double                 largest_eigenvalue,
                                  const SymmetricModesOptions &options)
   {
-    return component_modes(model, interface, system, component_problem(model, closed, system, component, boundary), largest_eigenvalue,
-                           options);
+    const auto           T = component_kernel(model, closed, component, boundary);
+    const auto           K = congruence(*system.stiffness, *T), M = congruence(*system.mass, *T);
+    const SymmetricModes modes = symmetric_modes(*K, *M, largest_eigenvalue, options);
+    ComponentModes       result;
+    result.eigenvalues = modes.eigenvalues;
+    result.residuals   = modes.residuals;
+    if (modes.eigenvalues.empty())
+      return result;
+    result.vectors = std::make_shared<MultiVector>(*T * *modes.vectors);
+
+    const auto masses = nodal_masses(model, *system.mass);
+    result.labels =
+      component == Component::disc ? disc_labels(model, masses, *result.vectors) : pin_labels(model, interface, masses, *result.vectors);
+    for (int j = 0; j < modes.n_rigid_body; ++j)
+      result.labels[j] = {ModeFamily::rigid_body};
+    return result;
   }
 
   std::vector<ShapeShares> shape_shares(const std::vector<const ComponentModes *> &references,

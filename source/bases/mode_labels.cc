@@ -11,11 +11,6 @@
 
 namespace Squeal
 {
-  bool operator==(const ModeLabel &a, const ModeLabel &b)
-  {
-    return a.shape() == b.shape() && a.sign == b.sign;
-  }
-
   namespace
   {
     std::string text_of(const ModeLabel &label, const char *minus, const char *plus)
@@ -27,41 +22,7 @@ namespace Squeal
         text += std::to_string(label.nodal_circles) + "-" + std::to_string(label.nodal_diameters);
       return text + (label.sign == DoubletSign::none ? "" : label.sign == DoubletSign::minus ? minus : plus);
     }
-  } // namespace
 
-  std::string to_string(const ModeLabel &label)
-  {
-    return text_of(label, " -", " +");
-  }
-
-  std::string file_text(const ModeLabel &label)
-  {
-    return text_of(label, "_minus", "_plus");
-  }
-
-  std::string shape_text(ModeLabel label)
-  {
-    label.sign = DoubletSign::none;
-    return to_string(label);
-  }
-
-  void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates)
-  {
-    std::map<ModeShape, std::vector<std::size_t>> places;
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      if (labels[i].family != ModeFamily::unnamed)
-        places[labels[i].shape()].push_back(i);
-    for (const auto &[shape, modes] : places)
-      if (modes.size() == 2)
-        {
-          const bool first_grows_more           = !growth_rates.empty() && growth_rates[modes[0]] > growth_rates[modes[1]];
-          labels[modes[!first_grows_more]].sign = DoubletSign::plus;
-          labels[modes[first_grows_more]].sign  = DoubletSign::minus;
-        }
-  }
-
-  namespace
-  {
     /// Norm of what projection leaves of a function r^k e^{inθ}, over its norm, up to which the others span it: well above rounding errors.
     constexpr double smallest_rest = 1e-8;
 
@@ -332,6 +293,42 @@ namespace Squeal
         }
     }
   } // namespace
+
+  bool operator==(const ModeLabel &a, const ModeLabel &b)
+  {
+    return a.shape() == b.shape() && a.sign == b.sign;
+  }
+
+  std::string to_string(const ModeLabel &label)
+  {
+    return text_of(label, " -", " +");
+  }
+
+  std::string file_text(const ModeLabel &label)
+  {
+    return text_of(label, "_minus", "_plus");
+  }
+
+  std::string shape_text(ModeLabel label)
+  {
+    label.sign = DoubletSign::none;
+    return to_string(label);
+  }
+
+  void mark_doublets(std::vector<ModeLabel> &labels, const std::vector<double> &growth_rates)
+  {
+    std::map<ModeShape, std::vector<std::size_t>> places;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+      if (labels[i].family != ModeFamily::unnamed)
+        places[labels[i].shape()].push_back(i);
+    for (const auto &[shape, modes] : places)
+      if (modes.size() == 2)
+        {
+          const bool first_grows_more           = !growth_rates.empty() && growth_rates[modes[0]] > growth_rates[modes[1]];
+          labels[modes[!first_grows_more]].sign = DoubletSign::plus;
+          labels[modes[first_grows_more]].sign  = DoubletSign::minus;
+        }
+  }
 
   std::vector<ModeLabel> disc_labels(const Model &model, const std::vector<double> &nodal_masses, const MultiVector &modes)
   {

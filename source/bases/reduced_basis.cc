@@ -33,15 +33,6 @@ namespace Squeal
       return *pointer;
     }
 
-    /// Motions of a free disc outside of the span of its M-orthonormal modes; nothing if there is none.
-    std::optional<MultiVector> missing_motions(const BasisIngredients &in, const MultiVector &modes)
-    {
-      const MultiVector *N = in.static_modes != nullptr ? in.static_modes->rigid_body_modes() : nullptr;
-      if (N == nullptr)
-        return {};
-      return orthonormalize_if_any(*in.uncoupled->mass, &modes, *N, contained);
-    }
-
     /// T_r0: the parts side by side.
     MultiVector join_parts(const BasisRecipe &recipe, const BasisIngredients &in, BasisCounts &counts)
     {
@@ -53,9 +44,12 @@ namespace Squeal
           sets.push_back(part->compute ? part->compute(in) : required(in.set(*part->set), recipe, part->symbol));
           if (part->set)
             counts.sets[*part->set] = sets.back().n_columns();
-          if (part->set != BasisSource::disc_free)
+          // Motions of a free disc that its modes lack
+          const MultiVector *N =
+            part->set == BasisSource::disc_free && in.static_modes != nullptr ? in.static_modes->response.rigid_body_modes() : nullptr;
+          if (N == nullptr)
             continue;
-          if (const auto motions = missing_motions(in, sets.back()))
+          if (const auto motions = orthonormalize_if_any(*in.uncoupled->mass, &sets.back(), *N, contained))
             {
               counts.rigid_body = motions->n_columns();
               sets.push_back(*motions);
@@ -115,11 +109,6 @@ namespace Squeal
     for (const BasisPart *part : recipe.parts)
       n += (part->set ? counts.sets.at(*part->set) : counts.contact) + (part->set == BasisSource::disc_free ? counts.rigid_body : 0);
     return {n, recipe.is_connected() ? n - counts.contact : n};
-  }
-
-  int ReducedBasis::size() const
-  {
-    return vectors->n_columns();
   }
 
   ReducedBasis reduced_basis(const BasisRecipe &recipe, const BasisIngredients &in, const BasisOptions &options)

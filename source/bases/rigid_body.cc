@@ -18,6 +18,12 @@ namespace Squeal
     /// Normal motion of contact nodes over the motion of the disc, up to which it is a rounding error of sliding.
     constexpr double no_normal_motion = 1e-8;
 
+    /// ω_max / s: the shift lies far below the elastic modes, so that each refinement gains several digits.
+    constexpr double band_per_shift = 5000.;
+
+    /// Refinement ends when it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this.
+    constexpr double largest_residual = 1e-9;
+
     /// Ritz vectors, M-orthonormal, and Ritz values of K and M on the columns of X, ascending.
     std::pair<MultiVector, std::vector<double>> rayleigh_ritz(const MultiVector &X, const SecondOrderSystem &system)
     {
@@ -100,15 +106,6 @@ namespace Squeal
   {
     return shift_for(rayleigh_ritz(rigid_motions(model, 0), system).second, largest_circular_frequency);
   }
-
-  namespace
-  {
-    /// ω_max / s: the shift lies far below the elastic modes, so that each refinement gains several digits.
-    constexpr double band_per_shift = 5000.;
-
-    /// Refinement ends when it no longer halves the largest ‖K u − f‖ / ‖f‖, which must then be below this.
-    constexpr double largest_residual = 1e-9;
-  } // namespace
 
   InertiaRelief::InertiaRelief(std::shared_ptr<const SparseMatrix> stiffness,
                                std::shared_ptr<const SparseMatrix> mass,

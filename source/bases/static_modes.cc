@@ -31,11 +31,11 @@ namespace Squeal
                            const InertiaRelief       &response,
                            const double               largest_circular_frequency,
                            const FactorizationLibrary library)
-    : model(model)
+    : response(response)
+    , model(model)
     , interface(interface)
     , contact(contact)
     , system(system)
-    , response(response)
     , largest_circular_frequency(largest_circular_frequency)
     , library(library)
   {}

@@ -133,9 +133,11 @@ namespace Squeal
       return S.llt().info() == Eigen::Success;
     }
 
-    /// Whether Re κ > limit for all eigenvalues κ of T, as far as powers of the Cayley transform show.
-    bool all_beyond_by_powers(const DenseMatrix &T, const double limit, const double scale)
+    /// Whether Re κ > limit for all eigenvalues κ of T, as far as that or powers of the Cayley transform show.
+    bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
     {
+      if (all_beyond_in_norm(T, limit))
+        return true;
       const Eigen::Index n    = T.rows();
       const DenseMatrix  unit = DenseMatrix::Identity(n, n);
       const RealLU       lu(T + (scale - limit) * unit);
@@ -149,11 +151,6 @@ namespace Squeal
           Z = Z * Z;
         }
       return false;
-    }
-
-    bool all_beyond(const DenseMatrix &T, const double limit, const double scale)
-    {
-      return all_beyond_in_norm(T, limit) || all_beyond_by_powers(T, limit, scale);
     }
 
     /**
@@ -175,13 +172,13 @@ namespace Squeal
         lower << -(inverse * stiffness), -(inverse * damping * columns.asDiagonal());
       }
 
-      DenseMatrix dense() const
+      friend DenseMatrix dense(const CompanionBlock &A)
       {
-        const Eigen::Index p      = lower.rows();
-        DenseMatrix        result = DenseMatrix::Zero(2 * p, lower.cols());
-        if (sigma.size() > 0)
-          result.topRightCorner(p, p).diagonal() = sigma;
-        result.bottomRows(p) = lower;
+        const Eigen::Index p      = A.lower.rows();
+        DenseMatrix        result = DenseMatrix::Zero(2 * p, A.lower.cols());
+        if (A.sigma.size() > 0)
+          result.topRightCorner(p, p).diagonal() = A.sigma;
+        result.bottomRows(p) = A.lower;
         return result;
       }
 
@@ -212,11 +209,6 @@ namespace Squeal
     const DenseMatrix &dense(const DenseMatrix &A)
     {
       return A;
-    }
-
-    DenseMatrix dense(const CompanionBlock &A)
-    {
-      return A.dense();
     }
 
     /// Blocks of a matrix in modal coordinates, those of the band first.
@@ -320,9 +312,9 @@ namespace Squeal
     const DenseMatrix     differences = s_2.replicate(1, k) - s_1.transpose().replicate(m, 1),
                       sums            = s_2.replicate(1, k) + s_1.transpose().replicate(m, 1);
     const auto apart                  = separated(
-                       Blocks<CompanionBlock>{CompanionBlock(A.topLeftCorner(k, k), C.topLeftCorner(k, k), s_1, s_1, true).dense(),
+                       Blocks<CompanionBlock>{dense(CompanionBlock(A.topLeftCorner(k, k), C.topLeftCorner(k, k), s_1, s_1, true)),
                                               CompanionBlock(A.topRightCorner(k, m), C.topRightCorner(k, m), s_1, s_2, false),
-                                              CompanionBlock(A.bottomLeftCorner(m, k), C.bottomLeftCorner(m, k), s_2, s_1, false).dense(),
+                                              dense(CompanionBlock(A.bottomLeftCorner(m, k), C.bottomLeftCorner(m, k), s_2, s_1, false)),
                                               CompanionBlock(A.bottomRightCorner(m, m), C.bottomRightCorner(m, m), s_2, s_2, true)},
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences, sums); },
                        [&](const DenseMatrix &R) { return divided_pairs(R, differences.transpose(), -sums.transpose()); },

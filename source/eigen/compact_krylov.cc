@@ -1,14 +1,11 @@
-#include "pivoted_qr.h"
-
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
 #include <squeal/linear_algebra/communication.h>
 
+#include <Eigen/QR>
 #include <lapacke.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <numeric>
 
 namespace Squeal
 {
@@ -42,6 +39,92 @@ namespace Squeal
       return states;
     }
 
+    /// X Π = Q R by modified Gram–Schmidt with column pivoting; columns left with no more than @p smallest, one for each, are dropped. Q
+    /// replaces the first columns of X; returns R Πᵀ, k × b.
+    DenseMatrix pivoted_qr(MultiVector &X, std::vector<double> smallest)
+    {
+      const int        b = X.n_columns();
+      DenseMatrix      R = DenseMatrix::Zero(b, b);
+      std::vector<int> permutation(b);
+      std::iota(permutation.begin(), permutation.end(), 0);
+
+      int k = 0;
+      for (; k < b; ++k)
+        {
+          const MultiVector   remaining = view(X, k, b - k);
+          std::vector<double> norms     = column_norms(remaining);
+          agree(X.communicator(), norms.data(), norms.size());
+          int pivot = 0;
+          for (int j = 1; j < b - k; ++j)
+            if (norms[j] > norms[pivot])
+              pivot = j;
+
+          // ------------------------------------------------- the largest one next
+          const double largest = norms[pivot];
+          if (pivot > 0)
+            {
+              pivot += k;
+              MultiVector       first = view(X, k, 1), second = view(X, pivot, 1);
+              const MultiVector copy = first;
+              first                  = second;
+              second                 = copy;
+              R.col(k).head(k).swap(R.col(pivot).head(k));
+              std::swap(permutation[k], permutation[pivot]);
+              std::swap(smallest[k], smallest[pivot]);
+            }
+          if (!(largest > smallest[k]))
+            break;
+
+          // ------------------------------------------------- removed from the others
+          MultiVector q = view(X, k, 1);
+          q *= 1. / largest;
+          R(k, k) = largest;
+          if (k + 1 < b)
+            {
+              MultiVector       others       = view(X, k + 1, b - k - 1);
+              const DenseMatrix coefficients = gram(q, others);
+              multiply_add(-1., q, coefficients, 1., others);
+              R.row(k).tail(b - k - 1) = coefficients;
+            }
+        }
+
+      DenseMatrix result(k, b);
+      for (int j = 0; j < b; ++j)
+        result.col(permutation[j]) = R.col(j).head(k);
+      return result;
+    }
+
+    /// The same for a small matrix, by Householder reflections (X is replaced by Q, n × k).
+    DenseMatrix pivoted_qr(DenseMatrix &X, const double smallest)
+    {
+      const DenseMatrix::Index b = X.cols();
+      if (X.size() == 0)
+        {
+          X.resize(Eigen::NoChange, 0);
+          return DenseMatrix(0, b);
+        }
+      const Eigen::ColPivHouseholderQR<DenseMatrix> qr(X);
+      Eigen::Index                                  k = 0;
+      while (k < std::min(X.rows(), b) && std::abs(qr.matrixR()(k, k)) > smallest)
+        ++k;
+      X                   = qr.householderQ() * DenseMatrix::Identity(X.rows(), k);
+      const DenseMatrix R = qr.matrixR().topRows(k).triangularView<Eigen::Upper>();
+      return R * qr.colsPermutation().transpose();
+    }
+
+    /// Smallest pivot of R Πᵀ by pivoted_qr() / norm of its column.
+    double smallest_share(const DenseMatrix &R)
+    {
+      double result = 1.;
+      for (Eigen::Index k = 0; k < R.rows(); ++k)
+        {
+          Eigen::Index pivot;
+          const double largest = R.row(k).cwiseAbs().maxCoeff(&pivot);
+          result               = std::min(result, largest / R.col(pivot).norm());
+        }
+      return result;
+    }
+
     /// A above B.
     DenseMatrix above(const DenseMatrix &A, const DenseMatrix &B)
     {
@@ -57,24 +140,9 @@ namespace Squeal
     , U(std::make_unique<MultiVector>(map, std::max(n_reserved, 1), false))
   {}
 
-  int CompactKrylov::dimension() const
-  {
-    return m;
-  }
-
-  int CompactKrylov::block_size() const
-  {
-    return b;
-  }
-
-  int CompactKrylov::n_vectors() const
-  {
-    return r;
-  }
-
   MultiVector CompactKrylov::basis() const
   {
-    return view(*U, 0, r);
+    return view(*U, 0, n_vectors);
   }
 
   void CompactKrylov::reserve(const int n)
@@ -82,9 +150,9 @@ namespace Squeal
     if (n <= U->n_columns())
       return;
     auto larger = std::make_unique<MultiVector>(map, n + n / 2, false);
-    if (r > 0)
+    if (n_vectors > 0)
       {
-        MultiVector target = view(*larger, 0, r);
+        MultiVector target = view(*larger, 0, n_vectors);
         target             = basis();
       }
     U = std::move(larger);
@@ -92,8 +160,8 @@ namespace Squeal
 
   DenseMatrix CompactKrylov::absorb(MultiVector &X, const std::vector<double> &magnitudes)
   {
-    DenseMatrix coefficients = DenseMatrix::Zero(r, X.n_columns());
-    if (r > 0)
+    DenseMatrix coefficients = DenseMatrix::Zero(n_vectors, X.n_columns());
+    if (n_vectors > 0)
       {
         // The second round removes what rounding errors left of the first
         const DenseMatrix most = gram(basis(), X);
@@ -113,7 +181,7 @@ namespace Squeal
       {
         MultiVector Q       = view(X, 0, R.rows());
         double      removed = 0.;
-        if (r > 0)
+        if (n_vectors > 0)
           {
             const DenseMatrix rest = gram(basis(), Q);
             multiply_add(-1., basis(), rest, 1., Q);
@@ -129,11 +197,11 @@ namespace Squeal
     const int n_new = R.rows();
     if (n_new > 0)
       {
-        reserve(r + n_new);
-        MultiVector target = view(*U, r, n_new);
+        reserve(n_vectors + n_new);
+        MultiVector target = view(*U, n_vectors, n_new);
         target             = view(X, 0, n_new);
-        G                  = stacked(parts_of(G, degree), degree, r + n_new);
-        r += n_new;
+        G                  = stacked(parts_of(G, degree), degree, n_vectors + n_new);
+        n_vectors += n_new;
       }
     return above(coefficients, R);
   }
@@ -164,75 +232,76 @@ namespace Squeal
   {
     MultiVector       X           = directions;
     const DenseMatrix coordinates = absorb(X, column_norms(directions));
-    const int         n_before    = m + b;
-    append_active(with_rows(coordinates, degree * r), n_before);
-    b = G.cols() - m;
-    H = with_rows(H, m + b);
-    return m + b - n_before;
+    const int         n_before    = dimension + block_size;
+    append_active(with_rows(coordinates, degree * n_vectors), n_before);
+    block_size = G.cols() - dimension;
+    H          = with_rows(H, dimension + block_size);
+    return dimension + block_size - n_before;
   }
 
   void CompactKrylov::expand(const Operator &apply)
   {
     // ------------------------------------------------- upper part of the image
-    const DenseMatrix parts = parts_of(G.middleCols(m, b), degree);
-    MultiVector       states(map, degree * b, false), image(map, b, false);
+    const DenseMatrix parts = parts_of(G.middleCols(dimension, block_size), degree);
+    MultiVector       states(map, degree * block_size, false), image(map, block_size, false);
     multiply_add(1., basis(), parts, 0., states);
     apply(states, image);
 
-    const DenseMatrix   shifted    = parts.leftCols((degree - 1) * b);
+    const DenseMatrix   shifted    = parts.leftCols((degree - 1) * block_size);
     std::vector<double> magnitudes = column_norms(image);
-    for (int j = 0; j < b; ++j)
+    for (int j = 0; j < block_size; ++j)
       for (int part = 0; part < degree - 1; ++part)
-        magnitudes[j] = std::hypot(magnitudes[j], shifted.col(part * b + j).norm());
+        magnitudes[j] = std::hypot(magnitudes[j], shifted.col(part * block_size + j).norm());
     const DenseMatrix upper = absorb(image, magnitudes);
 
     // ------------------------------------------------- lower parts: shifted
-    const DenseMatrix coordinates = stacked(append_columns(upper, with_rows(shifted, r)), degree, r);
+    const DenseMatrix coordinates = stacked(append_columns(upper, with_rows(shifted, n_vectors)), degree, n_vectors);
 
     // ------------------------------------------------- new columns of [H; B]
-    const int         m_before = m;
-    const DenseMatrix entries  = append_active(coordinates, m + b);
-    m += b;
-    b = G.cols() - m;
-    H = with_rows(H, m + b);
-    H.conservativeResize(Eigen::NoChange, m);
-    H.rightCols(m - m_before) = entries;
+    const int         m_before = dimension;
+    const DenseMatrix entries  = append_active(coordinates, dimension + block_size);
+    dimension += block_size;
+    block_size = G.cols() - dimension;
+    H          = with_rows(H, dimension + block_size);
+    H.conservativeResize(Eigen::NoChange, dimension);
+    H.rightCols(dimension - m_before) = entries;
   }
 
   RitzPairs CompactKrylov::ritz_pairs() const
   {
     RitzPairs ritz;
-    if (m == 0)
+    if (dimension == 0)
       return ritz;
 
     // ------------------------------------------------- real Schur form and eigenvectors
-    ritz.schur_form       = H.topRows(m);
-    ritz.schur_vectors    = DenseMatrix(m, m);
+    ritz.schur_form       = H.topRows(dimension);
+    ritz.schur_vectors    = DenseMatrix(dimension, dimension);
     DenseMatrix        &T = ritz.schur_form, &Z = ritz.schur_vectors;
-    std::vector<double> real(m), imaginary(m);
+    std::vector<double> real(dimension), imaginary(dimension);
     lapack_int          n_sorted = 0;
-    const lapack_int    info =
-      LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', nullptr, m, T.data(), m, &n_sorted, real.data(), imaginary.data(), Z.data(), m);
+    const lapack_int    info = LAPACKE_dgees(LAPACK_COL_MAJOR, 'V', 'N', nullptr, dimension, T.data(), dimension, &n_sorted, real.data(),
+                                             imaginary.data(), Z.data(), dimension);
     if (info != 0)
-      throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(m) + " rows",
+      throw SolverError("The QR algorithm did not converge for a projected matrix of " + std::to_string(dimension) + " rows",
                         "eigenvalues of the quadratic pencil",
                         "check the matrices for entries that are not finite, or choose another shift");
     agree(map.communicator(), T);
     agree(map.communicator(), Z);
-    agree(map.communicator(), real.data(), m);
-    agree(map.communicator(), imaginary.data(), m);
+    agree(map.communicator(), real.data(), dimension);
+    agree(map.communicator(), imaginary.data(), dimension);
 
-    ritz.eigenvectors      = Z;
-    DenseMatrix &Y         = ritz.eigenvectors;
-    lapack_int   n_vectors = 0;
-    LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'R', 'B', nullptr, m, T.data(), m, nullptr, 1, Y.data(), m, m, &n_vectors);
+    ritz.eigenvectors    = Z;
+    DenseMatrix &Y       = ritz.eigenvectors;
+    lapack_int   n_found = 0;
+    LAPACKE_dtrevc(LAPACK_COL_MAJOR, 'R', 'B', nullptr, dimension, T.data(), dimension, nullptr, 1, Y.data(), dimension, dimension,
+                   &n_found);
 
     // ------------------------------------------------- unit vectors and their errors
     const auto width = [&](const int j) { return imaginary[j] != 0. ? 2 : 1; };
-    for (int j = 0; j < m; j += width(j))
+    for (int j = 0; j < dimension; j += width(j))
       Y.middleCols(j, width(j)).normalize();
     agree(map.communicator(), Y);
-    DenseMatrix errors = H.bottomRows(b) * Y;
+    DenseMatrix errors = H.bottomRows(block_size) * Y;
     agree(map.communicator(), errors);
 
     // ------------------------------------------------- by descending |ν|
@@ -243,9 +312,9 @@ namespace Squeal
       int                  position;
     };
     std::vector<Entry> entries;
-    for (int j = 0; j < m; j += width(j))
+    for (int j = 0; j < dimension; j += width(j))
       entries.push_back({{real[j], std::abs(imaginary[j])}, errors.middleCols(j, width(j)).norm(), j});
-    std::stable_sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return std::abs(a.value) > std::abs(b.value); });
+    std::stable_sort(entries.begin(), entries.end(), [](const Entry &x, const Entry &y) { return std::abs(x.value) > std::abs(y.value); });
     for (const Entry &entry : entries)
       for (const bool conjugate : {false, true})
         if (!conjugate || entry.value.imag() != 0.)
@@ -260,7 +329,7 @@ namespace Squeal
   void CompactKrylov::take_schur_vectors(const CompactKrylov &from, const RitzPairs &ritz, const int n_kept, const int n_reserved)
   {
     // ------------------------------------------------- wanted Schur vectors first
-    const int               n = from.m;
+    const int               n = from.dimension;
     DenseMatrix             T = ritz.schur_form, Z = ritz.schur_vectors;
     std::vector<lapack_int> selected(n, 0);
     for (int i = 0; i < n_kept; ++i)
@@ -286,9 +355,9 @@ namespace Squeal
     const DenseMatrix kept = Z.leftCols(q);
 
     // ------------------------------------------------- new coordinates and [H; B]
-    const DenseMatrix states = append_columns(from.G.leftCols(n) * kept, from.G.rightCols(from.b));
-    H                        = above(T.topLeftCorner(q, q), from.H.bottomRows(from.b) * kept);
-    b                        = from.b;
+    const DenseMatrix states = append_columns(from.G.leftCols(n) * kept, from.G.rightCols(from.block_size));
+    H                        = above(T.topLeftCorner(q, q), from.H.bottomRows(from.block_size) * kept);
+    block_size               = from.block_size;
 
     // ------------------------------------------------- smallest basis of all parts
     DenseMatrix       P = parts_of(states, degree);
@@ -298,10 +367,10 @@ namespace Squeal
     auto        compressed = std::make_unique<MultiVector>(map, std::max(n_reserved, static_cast<int>(P.cols())), false);
     MultiVector target     = view(*compressed, 0, P.cols());
     multiply_add(1., from.basis(), P, 0., target);
-    U = std::move(compressed);
-    r = P.cols();
-    m = q;
-    G = stacked(R, degree, r);
+    U         = std::move(compressed);
+    n_vectors = P.cols();
+    dimension = q;
+    G         = stacked(R, degree, n_vectors);
   }
 
   void CompactKrylov::restart(const RitzPairs &ritz, const int n_kept)
@@ -313,15 +382,15 @@ namespace Squeal
   {
     CompactKrylov result(map, degree, 0);
     result.take_schur_vectors(*this, ritz, n_locked, n_locked + n_more);
-    result.b = 0;
-    result.G.conservativeResize(Eigen::NoChange, result.m);
-    result.H.conservativeResize(result.m, Eigen::NoChange);
+    result.block_size = 0;
+    result.G.conservativeResize(Eigen::NoChange, result.dimension);
+    result.H.conservativeResize(result.dimension, Eigen::NoChange);
     return result;
   }
 
   MultiVector CompactKrylov::ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const
   {
     const DenseMatrix Y = ritz.eigenvectors(Eigen::all, positions);
-    return basis() * (G.topRows(r) * (H * Y));
+    return basis() * (G.topRows(n_vectors) * (H * Y));
   }
 } // namespace Squeal

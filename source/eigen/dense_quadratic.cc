@@ -32,24 +32,6 @@ namespace Squeal
       return root.imag() < 0. ? -root : root;
     }
 
-    /// ‖x‖₂ = 1, entry of largest modulus real and positive; ties to the first.
-    void normalize(Eigen::Ref<Eigen::VectorXcd> x)
-    {
-      const double largest = x.cwiseAbs().maxCoeff();
-      if (!(largest > 0.))
-        return;
-      const Complex pivot = *std::find_if(x.begin(), x.end(), [largest](const Complex &y) { return std::abs(y) >= (1. - 1e-8) * largest; });
-      x *= std::conj(pivot) / (std::abs(pivot) * x.norm());
-    }
-
-    /// Factors of the mass; nothing where it is the unit matrix but for rounding errors.
-    std::optional<RealLU> inverse_of_mass(const DenseMatrix &mass)
-    {
-      if ((mass - DenseMatrix::Identity(mass.rows(), mass.rows())).norm() <= unit_mass)
-        return {};
-      return regular_lu(mass, "mass matrix of a small quadratic pencil");
-    }
-
     /// One step λ -= ψᵀQ(λ)φ / ψᵀQ'(λ)φ for each triple.
     void correct(DenseQuadraticModes &modes, const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K)
     {
@@ -65,16 +47,7 @@ namespace Squeal
             modes.values[j] -= value / derivative;
         }
     }
-  } // namespace
 
-  void normalize_columns(ComplexDenseMatrix &X)
-  {
-    for (Eigen::Index j = 0; j < X.cols(); ++j)
-      normalize(X.col(j));
-  }
-
-  namespace
-  {
     /// The numbers of wanted eigenvalues in their order; real ones become those of @p modes.
     std::vector<int> sorted_values(const int                          n,
                                    const std::function<Complex(int)> &value,
@@ -118,14 +91,14 @@ namespace Squeal
       const int           r = mass.rows();
       if (r == 0)
         return modes;
-      const double stiffness_norm = stiffness.norm();
-      const double unit           = stiffness_norm > 0. ? std::sqrt(stiffness_norm / mass.norm()) : 1.;
+      const double size = stiffness.norm(), unit = size > 0. ? std::sqrt(size / mass.norm()) : 1.;
 
       // ------------------------------------------------- companion form in units of the scale
-      const std::optional<RealLU>  factors = inverse_of_mass(mass);
-      const bool                   linear  = damping == nullptr;
-      const int                    last    = linear ? 0 : r;
-      const DenseMatrix            A       = factors ? factors->solve(stiffness) : stiffness;
+      const bool                  is_unit = (mass - DenseMatrix::Identity(r, r)).norm() <= unit_mass;
+      const std::optional<RealLU> factors =
+        is_unit ? std::nullopt : std::optional(regular_lu(mass, "mass matrix of a small quadratic pencil"));
+      const bool                   linear = damping == nullptr;
+      const DenseMatrix            A      = factors ? factors->solve(stiffness) : stiffness;
       DenseMatrix                  companion;
       std::optional<BandSubspaces> band;
       const DenseMatrix            C = linear ? DenseMatrix() : factors ? factors->solve(*damping) : *damping;
@@ -187,7 +160,7 @@ namespace Squeal
         {
           modes.values.push_back(value(wanted[j]));
           const bool lower   = std::abs(modes.values[j]) > unit;
-          modes.right.col(j) = right_parts.col(j).segment(lower ? last : 0, r);
+          modes.right.col(j) = right_parts.col(j).segment(lower && !linear ? r : 0, r);
         }
       normalize_columns(modes.right);
       normalize_columns(modes.left);
@@ -195,6 +168,19 @@ namespace Squeal
       return modes;
     }
   } // namespace
+
+  void normalize_columns(ComplexDenseMatrix &X)
+  {
+    for (Eigen::Index j = 0; j < X.cols(); ++j)
+      if (const double largest = X.col(j).cwiseAbs().maxCoeff(); largest > 0.)
+        {
+          // Of equal ones the first
+          const auto    x = X.col(j);
+          const Complex pivot =
+            *std::find_if(x.begin(), x.end(), [largest](const Complex &y) { return std::abs(y) >= (1. - 1e-8) * largest; });
+          X.col(j) *= std::conj(pivot) / (std::abs(pivot) * x.norm());
+        }
+  }
 
   DenseQuadraticModes dense_quadratic_modes(const DenseMatrix &mass,
                                             const DenseMatrix *damping,

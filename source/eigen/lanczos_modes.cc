@@ -66,18 +66,6 @@ namespace Squeal
         append(start);
       }
 
-      /// Vectors of V.
-      int dimension() const
-      {
-        return m;
-      }
-
-      /// Vectors of Q; none is left where V spans an invariant subspace.
-      int block_size() const
-      {
-        return b;
-      }
-
       /// Q becomes part of V.
       void expand()
       {
@@ -125,6 +113,9 @@ namespace Squeal
         return view(*basis, 0, m + b) * coordinates;
       }
 
+      int m = 0; ///< vectors of V
+      int b = 0; ///< vectors of Q; none is left where V spans an invariant subspace
+
     private:
       struct Coefficients
       {
@@ -167,7 +158,6 @@ namespace Squeal
       std::unique_ptr<MultiVector> basis; ///< [V Q]
       MultiVector                  image; ///< M Q
       DenseMatrix                  T, R;
-      int                          m = 0, b = 0;
     };
 
     /// How many Ritz values have converged, counted from the largest up to the first that has not.
@@ -197,13 +187,13 @@ namespace Squeal
     int                     n_found = 0;
     for (int size = std::min(largest, 3 * request.n_wanted / 2 + 2 * width); n_found < request.n_wanted;)
       {
-        while (process.dimension() < size && process.block_size() > 0)
+        while (process.m < size && process.b > 0)
           process.expand();
         ritz    = process.ritz_pairs();
         n_found = std::min(n_converged(ritz, request.tolerance), request.n_wanted);
-        if (process.block_size() == 0 || process.dimension() >= largest)
+        if (process.b == 0 || process.m >= largest)
           break;
-        size = std::min(largest, process.dimension() + std::max(width, (request.n_wanted - n_found) / 4));
+        size = std::min(largest, process.m + std::max(width, (request.n_wanted - n_found) / 4));
       }
     if (n_found == 0)
       return {};

@@ -1,7 +1,5 @@
 #include "inverse_at_shift.h"
-#include "pencil_residuals.h"
 
-#include <squeal/eigen/phase.h>
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/eigen/compact_krylov.h>
@@ -207,17 +205,17 @@ namespace Squeal
       /// Expands the space to @p n_basis states.
       void grow(const int n_basis)
       {
-        while (krylov.dimension() < n_basis && !exhausted)
+        while (krylov.dimension < n_basis && !exhausted)
           {
-            if (krylov.dimension() == 0)
+            if (krylov.dimension == 0)
               krylov.inject(first_block());
-            if (krylov.block_size() == 0)
+            if (krylov.block_size == 0)
               {
                 exhausted = inject(options.block_size) == 0;
                 continue;
               }
             krylov.expand(shift_invert());
-            n_basis_largest = std::max(n_basis_largest, krylov.n_vectors());
+            n_basis_largest = std::max(n_basis_largest, krylov.n_vectors);
           }
       }
 
@@ -226,30 +224,30 @@ namespace Squeal
       {
         worst_before     = state.worst;
         dimension_before = dimension_seen;
-        dimension_seen   = krylov.dimension();
+        dimension_seen   = krylov.dimension;
 
         ritz     = krylov.ritz_pairs();
         state    = convergence(transformation, ritz, tolerance, exhausted);
         n_wanted = std::max(n_wanted, state.n_inside);
         if (options.report)
           options.report(std::to_string(state.n_converged) + " of " + std::to_string(state.n_inside) + " eigenvalues, " +
-                         std::to_string(krylov.dimension()) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
+                         std::to_string(krylov.dimension) + " vectors, " + std::to_string(transformation.n_solves) + " solves");
       }
 
       /// Size at which to look next; restarts if it does not fit.
       int next_size()
       {
         int n_more = n_until_next_look();
-        if (krylov.dimension() + n_more > largest_basis())
+        if (krylov.dimension + n_more > largest_basis())
           {
             // Half of the room beyond the wanted vectors keeps what is on its way.
-            const int n_kept = std::min(krylov.dimension(), state.n_inside + (largest_basis() - state.n_inside) / 3);
+            const int n_kept = std::min(krylov.dimension, state.n_inside + (largest_basis() - state.n_inside) / 3);
             if (++n_restarts > options.max_restarts)
               throw_unconverged(state, state.worst, "no convergence after " + std::to_string(options.max_restarts) + " restarts", options);
             krylov.restart(ritz, n_kept);
-            n_more = std::max(n_more, (largest_basis() - krylov.dimension()) / 2);
+            n_more = std::max(n_more, (largest_basis() - krylov.dimension) / 2);
           }
-        return krylov.dimension() + n_more;
+        return krylov.dimension + n_more;
       }
 
       /**
@@ -258,7 +256,7 @@ namespace Squeal
        */
       int n_until_next_look() const
       {
-        const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size(), 1);
+        const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size, 1);
         const int n_new = dimension_seen - dimension_before;
         if (n_new <= 0 || !(state.worst < worst_before))
           return std::max(2 * least, n_missing / 4);
@@ -282,7 +280,7 @@ namespace Squeal
         const int     n_steps = fewer ? n_searching_steps : n_proving_steps;
         CompactKrylov proof   = krylov.deflated(ritz, state.n_inside, (n_steps + 1) * n_fresh);
         proof.inject(fresh_vectors(n_fresh));
-        for (int step = 0; step < n_steps && proof.block_size() > 0; ++step)
+        for (int step = 0; step < n_steps && proof.block_size > 0; ++step)
           proof.expand(shift_invert());
         const RitzPairs more = proof.ritz_pairs();
         const auto      count =
@@ -373,7 +371,7 @@ namespace Squeal
               {
                 if (!search.proven())
                   {
-                    size = search.krylov.dimension() + n_proving_steps * search.width();
+                    size = search.krylov.dimension + n_proving_steps * search.width();
                     continue;
                   }
                 modes.n_solves   = search.transformation.n_solves;

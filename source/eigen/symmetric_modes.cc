@@ -3,17 +3,93 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
-#include <squeal/eigen/symmetric_modes.h>
-#include <squeal/eigen/uncoupled_parts.h>
+
+#include <deal.II/base/mpi.h>
+
+#include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <map>
+#include <numeric>
 
 namespace Squeal
 {
   namespace
   {
+    /// Rows of a matrix that nothing couples with others; they stay on their processes.
+    struct UncoupledPart
+    {
+      RowMap                                  map;
+      std::vector<int>                        places;  ///< of its rows among those of this process
+      std::shared_ptr<const std::vector<int>> numbers; ///< of all rows of the matrix, each in its part
+    };
+
+    /// For each row the smallest row number of its part, the same on every process.
+    std::vector<int> part_labels(const SparseMatrix &A)
+    {
+      std::vector<int> label(A.n_rows());
+      std::iota(label.begin(), label.end(), 0);
+      SparseMatrix::Row row;
+      while (true)
+        {
+          // Parts so far, joined by the rows here
+          std::vector<int>                   rank(label.size(), 0), parent(label.size());
+          boost::disjoint_sets<int *, int *> sets(rank.data(), parent.data());
+          for (int i = 0; i < A.n_rows(); ++i)
+            sets.make_set(i);
+          for (int i = 0; i < A.n_rows(); ++i)
+            sets.union_set(i, label[i]);
+          for (int i = 0; i < A.rows().n_local(); ++i)
+            {
+              A.get_row(i, row);
+              for (const auto &entry : row)
+                sets.union_set(A.rows().number(i), entry.first);
+            }
+          std::vector<int> smallest(label.size(), A.n_rows()), joined(label.size());
+          for (int i = A.n_rows(); i-- > 0;)
+            smallest[sets.find_set(i)] = i;
+          for (int i = 0; i < A.n_rows(); ++i)
+            joined[i] = smallest[sets.find_set(i)];
+          dealii::Utilities::MPI::min(joined, A.communicator(), joined);
+          if (joined == label)
+            return label;
+          label = joined;
+        }
+    }
+
+    /// The connected parts of the graph of a square symmetric matrix, in the order of their first rows.
+    std::vector<UncoupledPart> uncoupled_parts(const SparseMatrix &A)
+    {
+      const std::vector<int>       labels  = part_labels(A);
+      const auto                   numbers = std::make_shared<std::vector<int>>();
+      std::map<int, UncoupledPart> parts;
+      std::map<int, int>           sizes;
+      // Rows keep their order, in which processes have them one after the other
+      for (const int label : labels)
+        {
+          parts[label];
+          numbers->push_back(sizes[label]++);
+        }
+      for (int i = 0; i < A.rows().n_local(); ++i)
+        parts[labels[A.rows().number(i)]].places.push_back(i);
+      std::vector<UncoupledPart> result;
+      for (auto &[label, part] : parts)
+        result.push_back({RowMap(static_cast<int>(part.places.size()), A.communicator()), std::move(part.places), numbers});
+      return result;
+    }
+
+    /// Rows and columns of @p A in one of its uncoupled parts.
+    std::shared_ptr<SparseMatrix> matrix_of(const UncoupledPart &part, const SparseMatrix &A)
+    {
+      return std::make_shared<SparseMatrix>(part.map, part.map, [&](const int i, SparseMatrix::Row &row) {
+        A.get_row(part.places[i], row);
+        for (auto &entry : row)
+          entry.first = (*part.numbers)[entry.first];
+      });
+    }
+
     /// The modes of all uncoupled parts in one order, as vectors of the rows of all of them.
     SymmetricModes merged(const std::vector<UncoupledPart> &uncoupled, const std::vector<SymmetricModes> &parts, const RowMap &rows)
     {

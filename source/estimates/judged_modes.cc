@@ -1,7 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/estimates/judged_modes.h>
 #include <squeal/estimates/residual_iteration.h>
-#include <squeal/modes/krylov_modes.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-#include <squeal/eigen/phase.h>
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/eigen/quadratic_modes.h>
 #include <squeal/modes/complex_modes.h>
 
 #include <algorithm>

@@ -111,9 +111,9 @@ namespace Squeal
     , shift(shift)
   {
     for (const double eigenvalue : modes.eigenvalues)
-      omega.push_back(std::sqrt(std::max(0., eigenvalue)));
+      frequencies.push_back(std::sqrt(std::max(0., eigenvalue)));
     const SparseMatrix     &M   = *system.mass;
-    const MultiVector      *Phi = omega.empty() ? nullptr : modes.vectors.get();
+    const MultiVector      *Phi = frequencies.empty() ? nullptr : modes.vectors.get();
     const ComplementInverse complement_inverse{inverse, Phi, Phi ? std::optional(M * *Phi) : std::nullopt};
 
     Factors factors;
@@ -131,7 +131,7 @@ namespace Squeal
         blocks.push_back({&term, first_row, Phi ? term.right->transpose_times(*Phi) : DenseMatrix(term.right->rank(), 0), {}, 0.});
       }
     n_rows       = total_rank(factors);
-    modes_forces = ComplexDenseMatrix(omega.size(), n_rows);
+    modes_forces = ComplexDenseMatrix(frequencies.size(), n_rows);
     if (Phi != nullptr && n_rows > 0)
       modes_forces = transpose_times(factors, *Phi).transpose().cast<Complex>();
 
@@ -143,18 +143,18 @@ namespace Squeal
     const auto is_coarse = [&](const Complex lambda) {
       return !(truncation(lambda, request.largest_friction_coefficient) <= request.tolerance);
     };
-    for (n_terms = 1; std::any_of(request.lambda.begin(), request.lambda.end(), is_coarse); ++n_terms)
-      if (n_terms == most_terms)
+    for (n_moments = 1; std::any_of(request.lambda.begin(), request.lambda.end(), is_coarse); ++n_moments)
+      if (n_moments == most_terms)
         throw SolverError("a series of " + std::to_string(most_terms) + " terms does not reach the tolerance",
                           "determinant condensed to the contact nodes", "take more real modes");
 
     // Moments: T_{k+1} = 2 (2 w H − I) T_k − T_{k−1}. H blows up what rounding leaves of the modes: it is taken out in every step.
     for (Block &block : blocks)
-      block.moments.assign(n_terms, DenseMatrix(block.term->right->rank(), n_rows));
+      block.moments.assign(n_moments, DenseMatrix(block.term->right->rank(), n_rows));
     const double w = deflation_square + shift;
     for_chunks(factors, [&](const MultiVector &F, const int first) {
       MultiVector T = complement_inverse * F, previous(T);
-      for (int k = 0; k < n_terms; ++k)
+      for (int k = 0; k < n_moments; ++k)
         {
           if (k > 0)
             {
@@ -177,9 +177,9 @@ namespace Squeal
     const ParameterValues values = system.at(mu);
     ComplexDenseMatrix    N      = ComplexDenseMatrix::Identity(n_rows, n_rows);
     const Ratio           ratio(lambda, deflation_square, shift);
-    std::vector<Complex>  series(n_terms);
+    std::vector<Complex>  series(n_moments);
     Complex               power = 1. / ratio.r;
-    for (int k = 0; k < n_terms; ++k, power *= ratio.u)
+    for (int k = 0; k < n_moments; ++k, power *= ratio.u)
       series[k] = (k == 0 ? 1. : 2.) * power;
     for (const Block &block : blocks)
       {
@@ -190,7 +190,7 @@ namespace Squeal
           {
             real.setZero();
             imaginary.setZero();
-            for (int k = 0; k < n_terms; ++k)
+            for (int k = 0; k < n_moments; ++k)
               {
                 real += series[k].real() * block.moments[k].col(j);
                 imaginary += series[k].imag() * block.moments[k].col(j);
@@ -204,9 +204,9 @@ namespace Squeal
   CondensedDeterminant::OnModes CondensedDeterminant::on_modes(const Complex lambda, const double mu) const
   {
     const ParameterValues values  = system.at(mu);
-    const int             n_modes = omega.size();
+    const int             n_modes = frequencies.size();
     OnModes               result;
-    for (const double frequency : omega)
+    for (const double frequency : frequencies)
       result.resonances.push_back(1. / (lambda + Complex(0., frequency)) / (lambda - Complex(0., frequency)));
 
     // N_⊥⁻¹ G Φ
@@ -229,20 +229,10 @@ namespace Squeal
     const ParameterValues values = system.at(mu);
     // Σ_{k ≥ n} 2 |u|ᵏ / |r|
     const Ratio  ratio(lambda, deflation_square, shift);
-    const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n_terms) / (1. - u) / std::abs(ratio.r);
+    const double u = std::abs(ratio.u), tail = 2. * std::pow(u, n_moments) / (1. - u) / std::abs(ratio.r);
     double       rows = 0.;
     for (const Block &block : blocks)
       rows += std::abs(block.term->factor(lambda, values)) * block.norm;
     return rows * tail * forces_norm;
-  }
-
-  const std::vector<double> &CondensedDeterminant::frequencies() const
-  {
-    return omega;
-  }
-
-  int CondensedDeterminant::n_moments() const
-  {
-    return n_terms;
   }
 } // namespace Squeal

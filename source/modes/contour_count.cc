@@ -187,14 +187,14 @@ namespace Squeal
               return FollowedDense::Sample{std::move(sample.matrix), std::move(sample.resonances), bound * sample.complement_inverse,
                                            bound * sample.gain};
             },
-            determinant->frequencies(), options.largest_phase_step, M.communicator());
+            determinant->frequencies, options.largest_phase_step, M.communicator());
 
           ContourCount count;
           count.n_frictionless = n_frictionless;
           count.n_modes        = n_frictionless + turns(complement, contour, options, count, progress);
           count.n_modes += turns(on_modes, contour, options, count, progress);
           count.truncation_bound = std::max(complement.error, on_modes.error);
-          count.n_moments        = determinant->n_moments();
+          count.n_moments        = determinant->n_moments;
           if (count.truncation_bound <= largest_truncation)
             {
               results.push_back(count);

@@ -3,7 +3,7 @@
 #include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/eigen/quadratic_modes.h>
-#include <squeal/modes/krylov_modes.h>
+#include <squeal/modes/system_modes.h>
 
 #include <algorithm>
 #include <cmath>

@@ -29,11 +29,6 @@ namespace Squeal
       double       axis_distance, angle; ///< as the parameters say [m], [degree]
     };
 
-    double distance(const double x, const double y)
-    {
-      return std::hypot(x, y);
-    }
-
     /// The pins with the places that the parameters give them; empty if they are others.
     std::vector<PinPlace> places(const HexMesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
     {
@@ -58,7 +53,7 @@ namespace Squeal
                          layout->angles[i]};
             for (std::size_t n = 0; n < mesh.points.size(); ++n)
               if (component[n] == pin.component)
-                pin.radius = std::max(pin.radius, distance(mesh.points[n][0] - pin.x, mesh.points[n][1] - pin.y));
+                pin.radius = std::max(pin.radius, std::hypot(mesh.points[n][0] - pin.x, mesh.points[n][1] - pin.y));
             pins.push_back(pin);
           }
       if (pins.size() + 1 != mesh.volume_names.size())
@@ -79,7 +74,7 @@ namespace Squeal
       for (std::size_t n = 0; n < mesh.points.size(); ++n)
         {
           const Point &x       = mesh.points[n];
-          const double r       = distance(x[0], x[1]);
+          const double r       = std::hypot(x[0], x[1]);
           const bool   is_disc = component[n] == 0;
           double      &least = is_disc ? found.inner : found.innermost_pin, &most = is_disc ? found.outer : found.outermost_pin,
                  &top = is_disc ? found.highest : found.end;
@@ -104,13 +99,13 @@ namespace Squeal
         return {};
       for (PinPlace &pin : pins)
         {
-          const double r = distance(pin.x, pin.y);
+          const double r = std::hypot(pin.x, pin.y);
           if (differs(pin.radius, parameters.pin_diameter / 2.))
             return {};
           pin.gap = std::min(extent.outer - r - pin.radius, r - pin.radius - extent.inner);
           for (const PinPlace &other : pins)
             if (&other != &pin && other.side == pin.side)
-              pin.gap = std::min(pin.gap, distance(pin.x - other.x, pin.y - other.y) - pin.radius - other.radius);
+              pin.gap = std::min(pin.gap, std::hypot(pin.x - other.x, pin.y - other.y) - pin.radius - other.radius);
           if (!(pin.gap > rounding * R_out))
             return {};
         }
@@ -120,7 +115,7 @@ namespace Squeal
     /// ρ of a pin: 1 within, 0 from the nearest other thing on.
     double weight(const PinPlace &pin, const Point &x)
     {
-      const double outside = distance(x[0] - pin.x, x[1] - pin.y) - pin.radius;
+      const double outside = std::hypot(x[0] - pin.x, x[1] - pin.y) - pin.radius;
       return std::clamp(1. - outside / pin.gap, 0., 1.);
     }
   } // namespace
@@ -160,7 +155,7 @@ namespace Squeal
     });
     const auto radial = [&](const double rim, const double R, const double nearest_pin) {
       return [=](const Point &x, const unsigned int k) {
-        const double r = distance(x[0], x[1]), s = (r - nearest_pin) / (rim - nearest_pin);
+        const double r = std::hypot(x[0], x[1]), s = (r - nearest_pin) / (rim - nearest_pin);
         const double v = k == 0 && s > 0. ? s * rim / R / r : 0.;
         return Point(v * x[0], v * x[1], 0.);
       };
@@ -175,7 +170,7 @@ namespace Squeal
         sum += taken_along(pin, x, k,
                            [&](const PinPlace &p, const Point &at) {
                              // On the way outwards no faster than the outline
-                             const double s = distance(at[0] - p.x, at[1] - p.y), slow = s > p.radius ? p.radius / s : 1.;
+                             const double s = std::hypot(at[0] - p.x, at[1] - p.y), slow = s > p.radius ? p.radius / s : 1.;
                              return Point(slow * (at[0] - p.x) / d, slow * (at[1] - p.y) / d, 0.);
                            }) -
                Point();
@@ -187,7 +182,7 @@ namespace Squeal
         add(is_top ? "Top pin radii" : "Bottom pin radii", pin.name, "m", pin.axis_distance, true,
             [&](const Point &x, const unsigned int k) {
               return taken_along(pin, x, k, [](const PinPlace &p, const Point &) {
-                const double r = distance(p.x, p.y);
+                const double r = std::hypot(p.x, p.y);
                 return Point(p.x / r, p.y / r, 0.);
               });
             });

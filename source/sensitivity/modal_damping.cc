@@ -65,23 +65,21 @@ namespace Squeal
           next - last <= equal_frequencies * next)
         throw SolverError(text("the band ends between modes of equal frequency, ", hertz(last), " Hz, of which one is damped"),
                           "derivatives of modal damping", "change Band/Maximum frequency a little");
+    const auto divided_difference = [&](const int i, const int j) {
+      const double a = std::sqrt(modes.eigenvalues[i]), b = std::sqrt(modes.eigenvalues[j]), mean = 0.5 * (a + b);
+      if (std::abs(a - b) > equal_frequencies * mean)
+        return (d[i] - d[j]) / ((a - b) * (a + b));
+      if (d[i] == 0. && d[j] == 0.)
+        return 0.;
+      // d(2 ζ ω)/d(ω²) = ζ/ω + dζ/dω
+      const double step  = equal_frequencies * mean;
+      const auto   ratio = [&](const double omega) { return damping.modal_ratio(hertz(omega)); };
+      return ratio(mean) / mean + (ratio(mean + step) - ratio(mean - step)) / (2. * step);
+    };
     g.resize(n, n);
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j)
         g(i, j) = divided_difference(i, j);
-  }
-
-  double ModalDampingDerivatives::divided_difference(const int i, const int j) const
-  {
-    const double a = std::sqrt(modes.eigenvalues[i]), b = std::sqrt(modes.eigenvalues[j]), mean = 0.5 * (a + b);
-    if (std::abs(a - b) > equal_frequencies * mean)
-      return (d[i] - d[j]) / ((a - b) * (a + b));
-    if (d[i] == 0. && d[j] == 0.)
-      return 0.;
-    // d(2 ζ ω)/d(ω²) = ζ/ω + dζ/dω
-    const double step  = equal_frequencies * mean;
-    const auto   ratio = [&](const double omega) { return damping.modal_ratio(hertz(omega)); };
-    return ratio(mean) / mean + (ratio(mean + step) - ratio(mean - step)) / (2. * step);
   }
 
   std::vector<double> ModalDampingDerivatives::rates_of_ratio(const int number) const

@@ -142,6 +142,19 @@ namespace Squeal
       carried = std::move(result);
     }
 
+    /// Of each multiple λ of a point.
+    std::vector<MultipleModes> multiple_modes(const ChartPoint &point)
+    {
+      std::vector<MultipleModes> result;
+      for (std::vector<int> &modes : members_of(mode_clusters(point.lambda)))
+        if (modes.size() > 1)
+          {
+            const ComplexDenseMatrix right = point.right(Eigen::all, modes), left = point.left(Eigen::all, modes);
+            result.push_back({std::move(modes), orthonormal_basis(right).Q, orthonormal_basis(left).Q});
+          }
+      return result;
+    }
+
     /// Part of a step below which another one is half of it, up to rounding errors.
     constexpr double half_width = 0.5 + 1e-6;
 
@@ -149,10 +162,7 @@ namespace Squeal
     {
       if (values.empty())
         return;
-      std::vector<ChartPoint> found = evaluate(values);
-      if (found.size() != values.size())
-        throw SolverError(std::to_string(found.size()) + " sets of modes instead of " + std::to_string(values.size()),
-                          "modes over the friction coefficient", "this is a mistake in the program: please report it");
+      std::vector<ChartPoint>                 found = evaluate(values);
       std::vector<std::vector<MultipleModes>> multiple(found.size());
       run_tasks(static_cast<int>(found.size()), [&](const int i) { multiple[i] = multiple_modes(found[i]); });
       for (std::size_t i = 0; i < values.size(); ++i)
@@ -187,18 +197,6 @@ namespace Squeal
     }
   } // namespace
 
-  std::vector<MultipleModes> multiple_modes(const ChartPoint &point)
-  {
-    std::vector<MultipleModes> result;
-    for (std::vector<int> &modes : members_of(mode_clusters(point.lambda)))
-      if (modes.size() > 1)
-        {
-          const ComplexDenseMatrix right = point.right(Eigen::all, modes), left = point.left(Eigen::all, modes);
-          result.push_back({std::move(modes), orthonormal_basis(right).Q, orthonormal_basis(left).Q});
-        }
-    return result;
-  }
-
   void follow_branches(TrackedModes &modes)
   {
     modes.branches.clear();
@@ -229,12 +227,6 @@ namespace Squeal
             begin_branch(modes, k + 1, static_cast<int>(j));
         carry(modes, k, image, carried);
       }
-  }
-
-  double TrackedModes::tolerance(const int k) const
-  {
-    return std::max(options.threshold_tolerance,
-                    8. * std::numeric_limits<double>::epsilon() * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
   }
 
   StabilityChart stability_chart(const std::vector<double> &grid,

@@ -222,30 +222,28 @@ namespace Squeal
                          with_rows(orthonormal_in_clusters(set.chart->left(Eigen::all, set.modes), lambda), model.size())});
       }
     if (model.is_restricted())
-      return vectors_of_member(modes);
+      {
+        // Of a member of a family, at full order
+        std::vector<MultiVector> directions;
+        for (const ProjectedResiduals::ModesAt &set : modes)
+          {
+            ReducedModes reduced;
+            reduced.values = set.values;
+            reduced.lambda = set.lambda;
+            reduced.right  = set.right;
+            reduced.left   = set.left;
+            std::vector<int> all(set.lambda.size());
+            std::iota(all.begin(), all.end(), 0);
+            directions.push_back(residual_directions(residual_vectors(system, inverse, model, reduced), reduced, all));
+          }
+        return Squeal::new_vectors(system, model, directions);
+      }
     std::optional<MultiVector> responses = residuals.principal_responses(model, modes, compression_tolerance);
     if (!responses)
       return {};
     // First, so that what is left is not compared with what they have in the basis
     remove_basis(*system.mass, model, *responses);
     return orthonormalize_if_any(*system.mass, &model.basis(), std::move(*responses), dependence_tolerance, nullptr, FirstProjection::done);
-  }
-
-  std::optional<MultiVector> ChartModel::vectors_of_member(const std::vector<ProjectedResiduals::ModesAt> &sets) const
-  {
-    std::vector<MultiVector> directions;
-    for (const ProjectedResiduals::ModesAt &set : sets)
-      {
-        ReducedModes modes;
-        modes.values = set.values;
-        modes.lambda = set.lambda;
-        modes.right  = set.right;
-        modes.left   = set.left;
-        std::vector<int> all(set.lambda.size());
-        std::iota(all.begin(), all.end(), 0);
-        directions.push_back(residual_directions(residual_vectors(system, inverse, model, modes), modes, all));
-      }
-    return Squeal::new_vectors(system, model, directions);
   }
 
   void ChartModel::extend(MultiVector vectors)

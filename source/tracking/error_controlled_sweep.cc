@@ -47,8 +47,6 @@ namespace Squeal
       return "";
     }
 
-    using Report = std::function<void(double error)>;
-
     /// Grows the basis for some operating points, one after the other, and compresses it; returns how often it grew.
     int train(ChartModel                        &model,
               const std::vector<OperatingPoint> &points,
@@ -56,7 +54,7 @@ namespace Squeal
               const ErrorControlledSweepOptions &options,
               ChartStore                        *store,
               const MPI_Comm                     communicator,
-              const Report                      &report)
+              const std::function<void(double)> &report)
     {
       const double            tolerance = training_factor * options.tolerance;
       std::vector<ChartPoint> charts;

@@ -13,6 +13,9 @@ namespace Squeal
     /// |Re λ_1 + Re λ_2| and |Im λ_1 − Im λ_2| of ±R + iω by R.
     constexpr double mirror_tolerance = 1e-6;
 
+    /// δ² / |λ|² of pairs far enough from their coalescence for corrections to be read there.
+    constexpr double separate = 1e-6;
+
     Complex square_difference(const Complex &x, const Complex &y)
     {
       return (x - y) * (x - y);
@@ -108,73 +111,6 @@ namespace Squeal
           }
       return best;
     }
-  } // namespace
-
-  std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, const int k)
-  {
-    if (k < 0 || k >= modes.n_points())
-      return std::nullopt;
-    if (modes.mode(search.branch, k) < 0)
-      return search.kind == EventSearch::real_axis ? real_pair(modes, search, k) : std::nullopt;
-    const Complex lambda = modes.lambda(search.branch, k);
-    switch (search.kind)
-      {
-        case EventSearch::growth:
-          return lambda.real();
-        case EventSearch::coalescence:
-          if (modes.mode(search.partner, k) < 0)
-            return std::nullopt;
-          return square_difference(lambda, modes.lambda(search.partner, k)).real();
-        case EventSearch::end_of_band:
-          return lambda.imag() - modes.options.largest_circular_frequency;
-        case EventSearch::real_axis:
-          return -lambda.imag() * lambda.imag();
-      }
-    return std::nullopt;
-  }
-
-  bool grows_at_once(const TrackedModes &modes, const EventSearch &search)
-  {
-    if (modes.width(0) <= modes.options.smallest_step)
-      return true;
-    const auto near = search_value(modes, search, 1), far = search_value(modes, search, 2);
-    if (!near || !far || modes.verdict(search.branch, 2) != Verdict::unstable)
-      return false;
-    const double power = search.kind == EventSearch::coalescence ? 2. : 1., h1 = modes.mu(1) - modes.mu(0), h2 = modes.mu(2) - modes.mu(0);
-    const double q1 = *near / std::pow(h1, power), q2 = *far / std::pow(h2, power), q0 = q1 + (q1 - q2) * h1 / (h2 - h1);
-    return q0 > 0.5 * q1 && q0 < 2. * q1;
-  }
-
-  std::vector<EventSearch> find_events(const TrackedModes &modes)
-  {
-    std::vector<EventSearch> searches;
-    for (int k = 0; k + 1 < modes.n_points(); ++k)
-      {
-        for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
-          if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
-            {
-              if (const auto threshold = find_threshold(modes, k, b))
-                searches.push_back(*threshold);
-              if (const bool after = in_band(modes, b, k + 1); after != in_band(modes, b, k))
-                searches.push_back({EventSearch::end_of_band, k, b, -1, after});
-            }
-        // A list that is cut may lose modes beyond the band
-        const ModeLinks &links = *modes.intervals[k].links;
-        const int        n_new = modes.points[k + 1].n_real() - modes.points[k].n_real();
-        for (const int i : links.lost)
-          if (n_new > 0 && modes.points[k].lambda[i].imag() <= modes.options.largest_circular_frequency)
-            searches.push_back({EventSearch::real_axis, k, modes.branch_of[k][i], -1, false});
-        for (const int j : links.gained)
-          if (n_new < 0 && modes.points[k + 1].lambda[j].imag() <= modes.options.largest_circular_frequency)
-            searches.push_back({EventSearch::real_axis, k, modes.branch_of[k + 1][j], -1, true});
-      }
-    return searches;
-  }
-
-  namespace
-  {
-    /// δ² / |λ|² of pairs far enough from their coalescence for corrections to be read there.
-    constexpr double separate = 1e-6;
 
     /// Zero of a search, with what is left of its interval.
     std::pair<double, double> zero(const TrackedModes &modes, const EventSearch &search)
@@ -290,6 +226,67 @@ namespace Squeal
       return (1. - t) * mean(k) + t * mean(k + 1);
     }
   } // namespace
+
+  std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, const int k)
+  {
+    if (k < 0 || k >= modes.n_points())
+      return std::nullopt;
+    if (modes.mode(search.branch, k) < 0)
+      return search.kind == EventSearch::real_axis ? real_pair(modes, search, k) : std::nullopt;
+    const Complex lambda = modes.lambda(search.branch, k);
+    switch (search.kind)
+      {
+        case EventSearch::growth:
+          return lambda.real();
+        case EventSearch::coalescence:
+          if (modes.mode(search.partner, k) < 0)
+            return std::nullopt;
+          return square_difference(lambda, modes.lambda(search.partner, k)).real();
+        case EventSearch::end_of_band:
+          return lambda.imag() - modes.options.largest_circular_frequency;
+        case EventSearch::real_axis:
+          return -lambda.imag() * lambda.imag();
+      }
+    return std::nullopt;
+  }
+
+  bool grows_at_once(const TrackedModes &modes, const EventSearch &search)
+  {
+    if (modes.width(0) <= modes.options.smallest_step)
+      return true;
+    const auto near = search_value(modes, search, 1), far = search_value(modes, search, 2);
+    if (!near || !far || modes.verdict(search.branch, 2) != Verdict::unstable)
+      return false;
+    const double power = search.kind == EventSearch::coalescence ? 2. : 1., h1 = modes.mu(1) - modes.mu(0), h2 = modes.mu(2) - modes.mu(0);
+    const double q1 = *near / std::pow(h1, power), q2 = *far / std::pow(h2, power), q0 = q1 + (q1 - q2) * h1 / (h2 - h1);
+    return q0 > 0.5 * q1 && q0 < 2. * q1;
+  }
+
+  std::vector<EventSearch> find_events(const TrackedModes &modes)
+  {
+    std::vector<EventSearch> searches;
+    for (int k = 0; k + 1 < modes.n_points(); ++k)
+      {
+        for (int b = 0; b < static_cast<int>(modes.branches.size()); ++b)
+          if (modes.mode(b, k) >= 0 && modes.mode(b, k + 1) >= 0)
+            {
+              if (const auto threshold = find_threshold(modes, k, b))
+                searches.push_back(*threshold);
+              if (const bool after = in_band(modes, b, k + 1); after != in_band(modes, b, k))
+                searches.push_back({EventSearch::end_of_band, k, b, -1, after});
+            }
+        // A list that is cut may lose modes beyond the band
+        const ModeLinks &links = *modes.intervals[k].links;
+        const int        n_new = modes.points[k + 1].n_real() - modes.points[k].n_real();
+        for (const int i : links.lost)
+          if (n_new > 0 && modes.points[k].lambda[i].imag() <= modes.options.largest_circular_frequency)
+            searches.push_back({EventSearch::real_axis, k, modes.branch_of[k][i], -1, false});
+        for (const int j : links.gained)
+          if (n_new < 0 && modes.points[k + 1].lambda[j].imag() <= modes.options.largest_circular_frequency)
+            searches.push_back({EventSearch::real_axis, k, modes.branch_of[k + 1][j], -1, true});
+      }
+    return searches;
+  }
 
   StabilityChart finished_chart(TrackedModes modes, const std::vector<EventSearch> &searches)
   {

@@ -23,9 +23,6 @@ namespace Squeal
     ComplexDenseMatrix right, left;
   };
 
-  /// Of each multiple λ of a point.
-  std::vector<MultipleModes> multiple_modes(const ChartPoint &point);
-
   /// Modes over the friction coefficient: the points evaluated so far, and the mode of each branch at each of them.
   struct TrackedModes
   {
@@ -65,7 +62,11 @@ namespace Squeal
     }
 
     /// Intervals of this width are not searched further.
-    double tolerance(int k) const;
+    double tolerance(const int k) const
+    {
+      constexpr double rounding = 8. * std::numeric_limits<double>::epsilon();
+      return std::max(options.threshold_tolerance, rounding * std::max(std::abs(mu(k)), std::abs(mu(k + 1))));
+    }
 
     /// Of a branch at a point, from its λ alone: what rounding leaves open counts as neutral.
     Verdict verdict(const int branch, const int k) const

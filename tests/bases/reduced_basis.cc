@@ -390,7 +390,7 @@ TEST_F(BasesOfACase, DependentVectorsAreDropped)
 TEST_F(BasesOfACase, RigidBodyMotionsAreAddedWhereTheyAreMissing)
 {
   const Bodies &b      = bodies({"free disc, flat", 0., Element::trilinear, {}});
-  const int     n_free = b.static_modes.rigid_body_modes()->n_columns();
+  const int     n_free = b.static_modes.response.rigid_body_modes()->n_columns();
   ASSERT_EQ(n_free, 6);
   const MultiVector &modes        = *b.components.at(BasisSource::disc_free);
   const MultiVector  elastic      = view(modes, n_free, modes.n_columns() - n_free);

@@ -47,7 +47,7 @@ namespace
   double residual(const Modes &m, const MultiVector &u, MultiVector f)
   {
     const auto norms = column_norms(f);
-    if (const MultiVector *N = m.modes.rigid_body_modes())
+    if (const MultiVector *N = m.modes.response.rigid_body_modes())
       multiply_add(-1., *m.s.system.mass * *N, gram(*N, f), 1., f);
     MultiVector rest = *m.s.system.stiffness * u;
     rest -= f;
@@ -97,7 +97,7 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
 
 TEST_P(StaticModesOf, AFreeDiscIsRelievedByInertia)
 {
-  const MultiVector *N = m.modes.rigid_body_modes(), &u = m.modes.normal_attachment();
+  const MultiVector *N = m.modes.response.rigid_body_modes(), &u = m.modes.normal_attachment();
   ASSERT_EQ(N != nullptr ? N->n_columns() : 0, GetParam().n_free);
   // Flexibilities are symmetric
   const DenseMatrix F = replicate(*P.normal * u);

@@ -19,21 +19,6 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// The eigenproblem of a component with contact free or sliding.
-  struct ComponentProblem
-  {
-    Component                           component;
-    ContactBoundary                     boundary;
-    std::shared_ptr<const SparseMatrix> kernel;          ///< T, n_free × n: the coordinates of the component
-    std::shared_ptr<const SparseMatrix> stiffness, mass; ///< TᵀKT, TᵀMT
-  };
-
-  ComponentProblem component_problem(const Model             &model,
-                                     const ContactInterface  &closed,
-                                     const SecondOrderSystem &system,
-                                     Component                component,
-                                     ContactBoundary          boundary);
-
   /// Masses lumped to the nodes (row sums) [kg] whose rows this process has; zero of the others, and of clamped ones.
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
@@ -51,14 +36,6 @@ namespace Squeal
                                  const SecondOrderSystem     &system,
                                  Component                    component,
                                  ContactBoundary              boundary,
-                                 double                       largest_eigenvalue,
-                                 const SymmetricModesOptions &options);
-
-  /// The same of a problem that is at hand.
-  ComponentModes component_modes(const Model                 &model,
-                                 const ContactInterface      &interface,
-                                 const SecondOrderSystem     &system,
-                                 const ComponentProblem      &problem,
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options);
 

@@ -49,7 +49,10 @@ namespace Squeal
     ConnectionRank               connection;
 
     /// r
-    int size() const;
+    int size() const
+    {
+      return vectors->n_columns();
+    }
   };
 
   /**

@@ -15,7 +15,7 @@ namespace Squeal
    * it is first asked for and kept. The arguments must outlive it.
    *
    * Where the mount leaves the disc free, forces on it are relieved by inertia:
-   * its attachment modes are complete only together with rigid_body_modes().
+   * its attachment modes are complete only together with InertiaRelief::rigid_body_modes().
    */
   class StaticModes
   {
@@ -54,11 +54,7 @@ namespace Squeal
      */
     const MultiVector &constraint(Component component) const;
 
-    /// N, n × k, M-orthonormal: rigid-body motions of the uncoupled disc; null if the mounts hold it.
-    const MultiVector *rigid_body_modes() const
-    {
-      return response.rigid_body_modes();
-    }
+    const InertiaRelief &response; ///< with the rigid-body motions of the uncoupled disc
 
   private:
     MultiVector constraint_modes(Component component) const;
@@ -67,7 +63,6 @@ namespace Squeal
     const ContactInterface                             &interface;
     const ContactOperators                             &contact;
     const SecondOrderSystem                            &system;
-    const InertiaRelief                                &response;
     double                                              largest_circular_frequency;
     FactorizationLibrary                                library;
     mutable std::unique_ptr<MultiVector>                normal, tangential;

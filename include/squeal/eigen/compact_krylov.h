@@ -65,17 +65,8 @@ namespace Squeal
      */
     int inject(const MultiVector &directions);
 
-    /// Applies S to the active block, which becomes part of the basis. At most block_size() new active states remain.
+    /// Applies S to the active block, which becomes part of the basis. At most block_size new active states remain.
     void expand(const Operator &apply);
-
-    /// m, the number of basis states without the active block.
-    int dimension() const;
-
-    /// Number of active states; 0 if the basis spans an invariant subspace.
-    int block_size() const;
-
-    /// Number of vectors in U.
-    int n_vectors() const;
 
     /// Eigenpairs of H. Throws SolverError if the QR algorithm fails.
     RitzPairs ritz_pairs() const;
@@ -97,6 +88,10 @@ namespace Squeal
      */
     MultiVector ritz_vectors(const RitzPairs &ritz, const std::vector<int> &positions) const;
 
+    int n_vectors  = 0; ///< r, in U
+    int dimension  = 0; ///< m, the number of basis states without the active block
+    int block_size = 0; ///< b, the number of active states; 0 if the basis spans an invariant subspace
+
   private:
     /// Orthonormalises @p X against U, appends what is new to U, and returns the coordinates of X in the new U, r × b.
     DenseMatrix absorb(MultiVector &X, const std::vector<double> &magnitudes);
@@ -116,10 +111,7 @@ namespace Squeal
     RowMap                       map;
     int                          degree;
     std::unique_ptr<MultiVector> U;
-    int                          r = 0; ///< vectors in U
-    int                          m = 0; ///< basis states
-    int                          b = 0; ///< active states
-    DenseMatrix                  G;     ///< d r × (m + b)
-    DenseMatrix                  H;     ///< [H; B], (m + b) × m
+    DenseMatrix                  G; ///< d r × (m + b)
+    DenseMatrix                  H; ///< [H; B], (m + b) × m
   };
 } // namespace Squeal

@@ -110,4 +110,8 @@ namespace Squeal
                                 const std::vector<std::complex<double>> &values,
                                 const MultiVector                       &real_part,
                                 const MultiVector                       &imaginary_part);
+
+  /// Turns each complex vector so that its entry of largest modulus is real and positive; of several that are equal but for rounding, that
+  /// of the lowest row.
+  void fix_phase(MultiVector &real_part, MultiVector &imaginary_part);
 } // namespace Squeal

@@ -42,7 +42,7 @@ namespace Squeal
 
   /**
    * Normalises right and left modes to φᴴ M_c φ = 1 with the entry of largest
-   * modulus real (`eigen/phase.h`), sorts them by frequency, and computes both residuals:
+   * modulus real (fix_phase()), sorts them by frequency, and computes both residuals:
    *
    *   ‖Q(λ)φ‖₂ / ‖K_c φ‖₂  and  ε_res = |R_Uᴴ R_F| / (φᴴ K φ),  R_F = Q(λ)φ,  R_U = K_c⁻¹ R_F
    *

@@ -79,11 +79,8 @@ namespace Squeal
     /// Bound of the spectral norm of what is left out of N(λ) [-].
     double truncation(std::complex<double> lambda, double mu) const;
 
-    /// Circular frequencies ω_j of the modes that are summed [rad/s], 0 for rigid-body modes.
-    const std::vector<double> &frequencies() const;
-
-    /// Terms of the series.
-    int n_moments() const;
+    std::vector<double> frequencies;   ///< ω_j of the modes that are summed [rad/s], 0 for rigid-body modes
+    int                 n_moments = 0; ///< terms of the series
 
   private:
     /// Rows of G that stem from one term.
@@ -98,10 +95,8 @@ namespace Squeal
 
     const CoupledSystem &system;
     double               deflation_square, shift;
-    std::vector<double>  omega;
     std::vector<Block>   blocks;
-    int                  n_rows      = 0; ///< of N
-    int                  n_terms     = 0;
+    int                  n_rows      = 0;  ///< of N
     double               forces_norm = 0.; ///< ‖(K + s M)^−½ E‖ on the complement
     ComplexDenseMatrix   modes_forces;     ///< ΦᵀE
   };

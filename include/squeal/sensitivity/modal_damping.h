@@ -63,9 +63,6 @@ namespace Squeal
     /// Φᵀ X Φ of Σ X.
     DenseMatrix between_modes(const BodyRates::Sum &sum) const;
 
-    /// g_ij of two known modes.
-    double divided_difference(int i, int j) const;
-
     const CoupledSystem    &system;
     const LinearOperator   &inverse;
     const SymmetricModes   &modes;

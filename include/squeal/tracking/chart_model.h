@@ -122,9 +122,6 @@ namespace Squeal
     void restart(MultiVector vectors);
 
   private:
-    /// New vectors from the residuals of modes of a member of a family, at full order.
-    std::optional<MultiVector> vectors_of_member(const std::vector<ProjectedResiduals::ModesAt> &modes) const;
-
     const CoupledSystem  &system;
     const UpdatedInverse &inverse;
     const MultiVector    *real_modes = nullptr; ///< null: of a member of a family

@@ -1,7 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/estimates/residual_iteration.h>
-#include <squeal/modes/krylov_modes.h>
 #include <squeal/studies/steps/parameter_usage.h>
 #include <squeal/studies/steps/reduction_sets.h>
 
