@@ -33,16 +33,13 @@ namespace Squeal
                      const OperatingPoint &point,
                      const ChartPoint     &chart,
                      const double          tolerance,
-                     const int             maximum_basis,
-                     ChartStore           *store)
+                     const int             maximum_basis)
     {
       auto vectors = model.new_vectors({{point, &chart, model.inaccurate_modes(chart, tolerance)}});
       if (!vectors)
         return "rounding errors leave no new direction";
       if (model.size() + vectors->n_columns() > maximum_basis)
         return text("the basis would exceed ", maximum_basis, " vectors");
-      if (store != nullptr)
-        store->keep(*vectors);
       model.extend(*std::move(vectors));
       return "";
     }
@@ -52,7 +49,6 @@ namespace Squeal
               const std::vector<OperatingPoint> &points,
               const std::vector<int>            &training,
               const ErrorControlledSweepOptions &options,
-              ChartStore                        *store,
               const MPI_Comm                     communicator,
               const std::function<void(double)> &report)
     {
@@ -76,15 +72,12 @@ namespace Squeal
                 break;
               }
             before   = error;
-            may_grow = grow(model, points[t], chart, tolerance, options.maximum_basis, nullptr).empty();
+            may_grow = grow(model, points[t], chart, tolerance, options.maximum_basis).empty();
           }
       for (ChartPoint &chart : charts)
         for (ComplexDenseMatrix *vectors : {&chart.right, &chart.left})
           *vectors = with_rows(*vectors, model.size());
-      MultiVector smaller = model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis);
-      if (store != nullptr)
-        store->keep(smaller);
-      model.restart(std::move(smaller));
+      model.restart(model.compressed_basis(charts, compression_factor * options.tolerance, options.maximum_basis));
       return n_growths;
     }
   } // namespace
@@ -133,7 +126,6 @@ namespace Squeal
                                               const std::vector<OperatingPoint> &points,
                                               const std::vector<int>            &training,
                                               const ErrorControlledSweepOptions &options,
-                                              ChartStore                        *store,
                                               const MPI_Comm                     communicator,
                                               Progress                          &progress)
   {
@@ -146,19 +138,7 @@ namespace Squeal
       progress.update(text(n_finished, " of ", points.size(), " operating points, ", model.size(), " vectors, estimated error ", error));
     };
 
-    std::vector<MultiVector> basis;
-    if (store != nullptr)
-      basis = store->basis();
-    if (basis.empty())
-      result.n_growths = train(model, points, training, options, store, communicator, report);
-    else
-      model.restart(std::move(basis.front()));
-    for (std::size_t b = 1; b < basis.size(); ++b)
-      model.extend(std::move(basis[b]));
-    if (store != nullptr)
-      for (std::size_t i = 0; i < points.size(); ++i)
-        result.points[i] = store->find(points[i]);
-
+    result.n_growths    = train(model, points, training, options, communicator, report);
     int    grown        = -1; // the point that the basis was grown for
     int    n_in_vain    = 0;
     double error_before = 0.;
@@ -181,11 +161,7 @@ namespace Squeal
           if (left[k] == grown)
             n_in_vain = in_vain(n_in_vain, error_before, error);
           if (error <= options.tolerance)
-            {
-              result.points[left[k]] = point;
-              if (store != nullptr)
-                store->keep(points_left[k], point);
-            }
+            result.points[left[k]] = point;
           else if (worst < 0 || !(error <= worst_error))
             {
               worst       = left[k];
@@ -200,7 +176,7 @@ namespace Squeal
         error_before       = worst_error;
         result.why_stopped = n_in_vain >= max_growths_in_vain ?
                                text("larger bases do not halve the estimated error ", worst_error, ", which rounding makes up") :
-                               grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis, store);
+                               grow(model, points[worst], worst_point, options.tolerance, options.maximum_basis);
         if (!result.why_stopped.empty())
           break;
       }

@@ -136,7 +136,6 @@ class Sweep(SweepTest):
                   for suffix in ("", "_without_dissipation")}
         self.assertEqual(names, tables | {"onsets.csv", "complex_plane.csv", "argument_counts.csv", "map.csv", "modes", "animations", "parameters.prm",
                                           "run.json"})
-        self.assertFalse((self.folder / "results.checkpoint").exists())
         for suffix in ("", "_without_dissipation"):
             for name, expected in (("branches", BRANCHES), ("thresholds", THRESHOLDS), ("counts", COUNTS), ("band_crossings", CROSSINGS)):
                 self.assertEqual(header(self.results / f"{name}{suffix}.csv"), expected)
@@ -442,75 +441,6 @@ class OtherSweeps(SweepTest):
         self.assertFalse((self.folder / "between" / "argument_counts.csv").exists())
         self.assertFalse((self.folder / "between" / "complex_plane.csv").exists())
         self.assertFalse((self.folder / "between" / "modes").exists())
-
-
-class Interrupted(SweepTest):
-    """Runs that are killed and started again."""
-
-    TABLES = [f"{name}{suffix}.csv" for name in ("branches", "thresholds", "counts") for suffix in ("", "_without_dissipation")]
-    N_VALUES = 12
-    NUMBER = f"Sweep/Number of friction coefficients={N_VALUES}"
-
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        cls.reference = cls.sweep("reference", CONSISTENT, cls.NUMBER)
-
-    @staticmethod
-    def n_kept(checkpoint):
-        """Number of results and blocks of bases in a checkpoint."""
-        return len(list(checkpoint.glob("found-*[0-9]")))
-
-    def kill(self, output, n_results):
-        """Starts a run and kills it when it has kept as many results."""
-        settings = [word for override in (SWEEP, *GRID, CONSISTENT, self.NUMBER) for word in ("--set", override)]
-        checkpoint = self.folder / f"{output}.checkpoint"
-        with subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, stdout=subprocess.DEVNULL,
-                              stderr=subprocess.DEVNULL) as process:
-            deadline = time.monotonic() + 120
-            while self.n_kept(checkpoint) < n_results:
-                self.assertIsNone(process.poll(), "the run ended before it was to be killed")
-                self.assertLess(time.monotonic(), deadline)
-                time.sleep(0.002)
-            process.kill()
-        self.assertFalse((self.folder / output / "run.json").exists())
-        self.assertTrue((checkpoint / "sweep.key").is_file())
-        return checkpoint
-
-    def test_goes_on(self):
-        """Killed while the basis grows, at the grid and at the refinements; other parameters are refused meanwhile."""
-        checkpoint = self.kill("killed", 5)
-        kept = contents(checkpoint)
-        for override in ("Sweep/Tolerance=1e-7", "Operation/Load per side=2000", "Sweep/First friction coefficient=0.01"):
-            with self.subTest(override):
-                process = self.call_sweep("killed", CONSISTENT, self.NUMBER, override)
-                self.assertEqual(process.returncode, 1)
-                message = process.stderr.strip()
-                self.assertTrue(message.startswith("error: an unfinished sweep"), message)
-                self.assertEqual(message.count("error: "), 1)
-                self.assertIn(override.split("/")[1].split("=")[0], message)
-                self.assertEqual(contents(checkpoint), kept)
-                self.assertFalse((self.folder / "killed" / "run.json").exists())
-        # As if a geometry of one's own had been edited
-        key = checkpoint / "sweep.key"
-        key.write_bytes(re.sub(rb" nodes \w+", b" nodes 0", kept[key.name], count=1))
-        message = self.call_sweep("killed", CONSISTENT, self.NUMBER).stderr
-        self.assertIn("another mesh", message)
-        self.assertIn("hexahedra", message)
-        key.write_bytes(kept[key.name])
-
-        self.kill("killed", self.N_VALUES)
-        self.kill("killed", 2 * self.N_VALUES + 5)  # without radial dissipation, too
-        # What only adds to the results may be asked for meanwhile, and the number of threads may change
-        process = self.call_sweep("killed", CONSISTENT, self.NUMBER, "Sweep/Count modes at=0.3", "Sweep/Complex plane at=0.33",
-                                  "Linear algebra/Threads=3")
-        self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertIn("an interrupted sweep goes on", process.stdout + process.stderr)
-        self.assertFalse(checkpoint.exists())
-        for name in self.TABLES:
-            self.assertEqual((self.folder / "killed" / name).read_bytes(), (self.reference / name).read_bytes(), name)
-        for name in ("argument_counts.csv", "complex_plane.csv"):
-            self.assertTrue((self.folder / "killed" / name).is_file())
 
 
 class Refusals(SweepTest):

@@ -67,44 +67,10 @@ namespace
     SymmetricModes real;
   };
 
-  /// Keeps everything in memory; may give up after some results, as if the run were killed.
-  struct MemoryStore : ChartStore
-  {
-    struct Killed
-    {};
-
-    std::optional<ChartPoint> find(const OperatingPoint &point) const override
-    {
-      const auto found = results.find(point.friction_coefficient);
-      return found == results.end() ? std::optional<ChartPoint>() : found->second;
-    }
-    void keep(const OperatingPoint &point, const ChartPoint &result) override
-    {
-      if (n_left-- == 0)
-        throw Killed();
-      EXPECT_TRUE(results.emplace(point.friction_coefficient, result).second) << "computed twice";
-    }
-    std::vector<MultiVector> basis() const override
-    {
-      return blocks;
-    }
-    void keep(const MultiVector &block) override
-    {
-      blocks.push_back(block);
-    }
-
-    std::map<double, ChartPoint> results;
-    std::vector<MultiVector>     blocks;
-    int                          n_left = 1000000;
-  };
-
-  ErrorControlledSweep sweep(ChartModel                        &model,
-                             const std::vector<OperatingPoint> &points,
-                             const ErrorControlledSweepOptions &options,
-                             ChartStore                        *store = nullptr)
+  ErrorControlledSweep sweep(ChartModel &model, const std::vector<OperatingPoint> &points, const ErrorControlledSweepOptions &options)
   {
     Progress progress;
-    return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, store, MPI_COMM_WORLD, progress);
+    return error_controlled_sweep(model, points, {static_cast<int>(points.size()) - 1, 0}, options, MPI_COMM_WORLD, progress);
   }
 
   /// A model that is accurate everywhere, with contact damping 0.8 c_b [N s/m] at most, in proportion to the friction coefficient.
@@ -187,36 +153,6 @@ TEST(ErrorControlledSweep, ThreadsChangeNothing)
           ASSERT_EQ(several[i].verdicts, one[i].verdicts);
           for (std::size_t j = 0; j < one[i].errors.size(); ++j)
             EXPECT_NEAR(several[i].errors[j], one[i].errors[j], 1e-12 + 1e-9 * one[i].errors[j]);
-        }
-    }
-}
-
-TEST(ErrorControlledSweep, GoesOnAsIfNotInterrupted)
-{
-  const Chart                 chart(40.);
-  const auto                  points = chart.points();
-  ErrorControlledSweepOptions options;
-  MemoryStore                 whole;
-  ChartModel                  model  = chart.model();
-  const auto                  result = sweep(model, points, options, &whole);
-  for (const int n_before : {0, 1, 4})
-    {
-      MemoryStore store;
-      store.n_left      = n_before;
-      ChartModel killed = chart.model();
-      EXPECT_THROW(sweep(killed, points, options, &store), MemoryStore::Killed);
-      EXPECT_EQ(store.results.size(), static_cast<std::size_t>(n_before));
-      store.n_left       = 1000000;
-      ChartModel resumed = chart.model();
-      const auto again   = sweep(resumed, points, options, &store); // the store refuses a second result of a point
-      EXPECT_EQ(resumed.size(), model.size());
-      for (std::size_t i = 0; i < points.size(); ++i)
-        {
-          ASSERT_TRUE(again.points[i] && result.points[i]);
-          // The same to the last bit, but where sums over processes differ in rounding from run to run
-          const bool is_alone = chart.s.model.free_map().n_processes() == 1;
-          EXPECT_LE(largest(distances(again.points[i]->lambda, result.points[i]->lambda)), is_alone ? 0. : 1e-11) << "point " << i;
-          EXPECT_TRUE(!is_alone || again.points[i]->errors == result.points[i]->errors) << "point " << i;
         }
     }
 }

@@ -19,25 +19,6 @@ namespace Squeal
     int    maximum_basis = 1500; ///< vectors, at least the real modes
   };
 
-  /// Where results are kept as they come, and where an interrupted sweep finds them again.
-  class ChartStore
-  {
-  public:
-    virtual ~ChartStore() = default;
-
-    /// The result at an operating point, known by its line and friction coefficient, if there is one; the same on every process.
-    virtual std::optional<ChartPoint> find(const OperatingPoint &point) const = 0;
-
-    /// Keeps a final result; called on every process.
-    virtual void keep(const OperatingPoint &point, const ChartPoint &result) = 0;
-
-    /// Blocks of vectors by which the basis has grown, in their order.
-    virtual std::vector<MultiVector> basis() const = 0;
-
-    /// Keeps the next block of the basis; called on every process.
-    virtual void keep(const MultiVector &block) = 0;
-  };
-
   /// What a sweep has found within its tolerance.
   struct ErrorControlledSweep
   {
@@ -63,15 +44,11 @@ namespace Squeal
    * smaller basis would do (ChartModel::compressed_basis()). With that all points are
    * evaluated, and it grows where the largest error is left. A result that
    * meets the tolerance is final; later vectors serve the other points only.
-   * The basis so far and the results in the @p store, which may be null,
-   * determine how a sweep goes on: an interrupted one continues as if it had
-   * not been.
    */
   ErrorControlledSweep error_controlled_sweep(ChartModel                        &model,
                                               const std::vector<OperatingPoint> &points,
                                               const std::vector<int>            &training,
                                               const ErrorControlledSweepOptions &options,
-                                              ChartStore                        *store,
                                               MPI_Comm                           communicator,
                                               Progress                          &progress);
 } // namespace Squeal

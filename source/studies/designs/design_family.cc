@@ -58,7 +58,6 @@ namespace Squeal
     : scene(mesh_scene(run))
     , designs(designs)
     , run(run)
-
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
   {
     const BodyTerms              bodies = assemble_scene(scene, run);
@@ -82,18 +81,6 @@ namespace Squeal
     residuals                   = std::make_unique<ProjectedResiduals>(family, *middle.inverse, middle.shift, family.values);
     residuals->extend(*model);
     run.progress.finish(text(model->size(), " vectors to start from, ", family.terms.size(), " terms"));
-  }
-
-  void DesignFamily::extend(const MultiVector &vectors)
-  {
-    model->extend(vectors);
-    residuals->extend(*model);
-    grown.push_back(vectors);
-  }
-
-  std::vector<MultiVector> DesignFamily::take_growth()
-  {
-    return std::exchange(grown, {});
   }
 
   std::unique_ptr<ChartModel> DesignFamily::restricted(const SystemMember &member, const DenseMatrix &Z) const
@@ -141,7 +128,8 @@ namespace Squeal
           throw SolverError(
             text("one basis does not serve this design and those before it: estimated error ", error, " with ", model->size(), " vectors"),
             "designs on one mesh", "solve it alone");
-        extend(*vectors);
+        model->extend(*vectors);
+        residuals->extend(*model);
         find_whole_model(member);
       }
   }
@@ -236,7 +224,7 @@ namespace Squeal
     std::vector<double> friction_coefficients;
     for (const OperatingPoint &point : points)
       friction_coefficients.push_back(point.friction_coefficient);
-    result.chart = follow_branches(*result.model, points.front().line, friction_coefficients, nullptr);
+    result.chart = follow_branches(*result.model, points.front().line, friction_coefficients);
     return result;
   }
 } // namespace Squeal

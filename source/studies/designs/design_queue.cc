@@ -65,6 +65,12 @@ namespace Squeal
     }
   } // namespace
 
+  std::string checkpoint_folder(const std::string &output)
+  {
+    // The last slash, of which there may be one, belongs to the name of the folder, not in it.
+    return (fs::path(output) / "").lexically_normal().parent_path().string() + ".checkpoint";
+  }
+
   DesignStore::DesignStore(const fs::path &folder, const std::string &key, const MPI_Comm communicator)
     : folder(folder)
   {

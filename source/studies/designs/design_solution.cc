@@ -231,14 +231,13 @@ namespace Squeal
     return result;
   }
 
-  DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run)
+  DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, Run &run)
   {
     const Stopwatch  stopwatch;
     const Parameters sweep = sweep_of(parameters);
     Progress         silent;
     Run              part(sweep, run, silent);
     Scene            scene = mesh_scene(part);
-    ChartCheckpoint  checkpoint(folder, sweep_identity(part, scene), part.communicator);
     assemble_scene(scene, part);
 
     const SweepPlan                      plan = sweep_plan(scene, part);
@@ -248,13 +247,13 @@ namespace Squeal
     for (const ContactRegime &regime : plan.regimes)
       {
         SweepModel model(plan, regime, part);
-        evaluate_points(model, store_of(model, checkpoint, "sweep").get());
+        evaluate_points(model);
         if (model.known.size() < regime.points.size())
           throw SolverError(
             text(regime.points.size() - model.known.size(), " of ", regime.points.size(), " friction coefficients miss the tolerance"),
             "sweep", "raise Sweep/Tolerance or Sweep/Maximum basis");
         const std::size_t before = charts[0].size();
-        follow_branches(model, checkpoint, charts);
+        follow_branches(model, charts);
         for (std::size_t s = before; s < charts[0].size(); ++s)
           {
             take_over(model, charts[0][s], reference, largest_friction_coefficient, result);
@@ -266,7 +265,6 @@ namespace Squeal
           }
       }
     sort_thresholds(result);
-    checkpoint.remove();
     result.seconds = stopwatch.cost().seconds;
     return result;
   }

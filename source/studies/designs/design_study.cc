@@ -53,8 +53,8 @@ namespace Squeal
       return work;
     }
 
-    /// Solves a design in this process, alone; @p folder keeps what is found of an unfinished one.
-    DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference, const std::string &folder)
+    /// Solves a design in this process, alone.
+    DesignResult solve_here(Run &run, const DesignWork &work, const int design, const ReferenceModes &reference)
     {
       DesignResult    result = unfinished(run, work.plan, design);
       const Stopwatch stopwatch;
@@ -66,7 +66,7 @@ namespace Squeal
         }
       try
         {
-          DesignResult solved = solve_design(*parameters, reference, folder, run);
+          DesignResult solved = solve_design(*parameters, reference, run);
           solved.number       = design;
           solved.values       = result.values;
           return solved;
@@ -91,12 +91,10 @@ namespace Squeal
     }
 
     /// Solves a design, or several that share a mesh one after the other, each by the basis that those before it have left, for the study
-    /// of which this process is a part. What the basis grows by is kept before a result is: an interrupted run goes on with the same basis.
+    /// of which this process is a part.
     void solve_part(Run &run, const DesignWork &work, const ReferenceModes &reference, const DesignStore &store)
     {
-      const auto alone = [&](const int design) {
-        return solve_here(run, work, design, reference, checkpoint_folder(store.folder_of({design}).string()));
-      };
+      const auto              alone = [&](const int design) { return solve_here(run, work, design, reference); };
       std::vector<Parameters> designs;
       for (const int design : work.designs)
         designs.push_back(sweep_of(*parameters_of(run, work.plan, design)));
@@ -107,7 +105,6 @@ namespace Squeal
           if (designs.size() > 1)
             family.emplace(designs, part);
         }
-
       catch (const FileError &)
         {
           throw;
@@ -122,19 +119,13 @@ namespace Squeal
           return;
         }
 
-      ChartCheckpoint checkpoint(checkpoint_folder(store.folder_of(work.designs).string() + "-basis"),
-                                 design_key(run, family->scene, work.plan), run.communicator);
       for (std::size_t i = 0; i < designs.size(); ++i)
         {
-          const int                         design = work.designs[i];
-          const std::unique_ptr<ChartStore> kept   = checkpoint.part(text("design ", design), family->map());
-          if (store.find(design))
-            {
-              for (const MultiVector &block : kept->basis())
-                family->extend(block);
-              family->take_growth();
-              continue;
-            }
+          // Those that are solved already let the basis grow as before
+          const int  design = work.designs[i];
+          const auto known  = store.find(design);
+          if (known && known->outcome != DesignOutcome::solved)
+            continue;
           DesignResult result;
           try
             {
@@ -151,14 +142,9 @@ namespace Squeal
             }
           result.number = design;
           result.values = unfinished(run, work.plan, design).values;
-          // A run that was ended between both has left the same blocks
-          const bool is_kept = !kept->basis().empty();
-          for (const MultiVector &block : family->take_growth())
-            if (!is_kept)
-              kept->keep(block);
-          store.keep(result);
+          if (!known)
+            store.keep(result);
         }
-      checkpoint.remove();
     }
   } // namespace
 
@@ -185,7 +171,7 @@ namespace Squeal
       {
         const ReferenceModes modes = design_reference(scene, run, above / DesignStore::reference_file);
         run.progress.begin(text("Design ", work.designs.front()));
-        results.push_back(solve_here(run, work, work.designs.front(), modes, checkpoint_folder(run.folder().name())));
+        results.push_back(solve_here(run, work, work.designs.front(), modes));
         run.progress.finish();
       }
     else

@@ -98,8 +98,12 @@ namespace Squeal
   {
     Parameters parameters          = run.parameters;
     parameters.designs.n_processes = 0;
+    parameters.solvers.n_threads   = SolverParameters().n_threads;
+    parameters.output              = {};
     std::ostringstream stream;
-    stream << identity(parameters, scene.mesh);
+    stream << "# squeal " << version << '\n';
+    parameters.print(stream, false);
+    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(scene.mesh) << std::dec << '\n';
     for (const auto &values : plan.designs)
       {
         for (const std::string &value : values)

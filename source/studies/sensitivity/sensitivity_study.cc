@@ -224,7 +224,7 @@ namespace Squeal
       run.progress.note(text("  note: thresholds are those with the contact set at mu = ", exact_text(mu), "; there are ",
                              plan.regimes.size(), " over the range"));
     SweepModel sweep(plan, *regime, run);
-    evaluate_points(sweep, nullptr);
+    evaluate_points(sweep);
     std::optional<SweepChart> chart;
     if (p.sensitivity.thresholds)
       {
@@ -232,7 +232,7 @@ namespace Squeal
         for (const int i : regime->on_line(0))
           if (sweep.known.count({0, regime->points[i].friction_coefficient}) > 0)
             grid.push_back(regime->points[i].friction_coefficient);
-        chart = follow_branches(sweep, 0, grid, nullptr);
+        chart = follow_branches(sweep, 0, grid);
       }
 
     SensitivityModel                   model{sweep, bodies, parameters, modal_damping_derivatives(sweep, p.damping)};

@@ -1,5 +1,4 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/version.h>
 #include <squeal/studies/sweep/sweep_charts.h>
 
 namespace Squeal
@@ -25,7 +24,7 @@ namespace Squeal
 
     /// Adds to the basis what the modes of all thresholds of a chart without refinements lack on both sides, and forgets the results there:
     /// they were found without it.
-    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid, ChartStore *store)
+    void sharpen(SweepModel &model, const int line, const StabilityChart &chart, const std::vector<double> &grid)
     {
       // Values of the grid beside them: next to a coalescence the vectors of both modes are nearly the same
       std::map<int, std::set<int>> modes_at; // by point of the chart
@@ -42,17 +41,10 @@ namespace Squeal
         sets.push_back({model.plan.point(line, grid[i], model.regime.closed), &chart.points[i], {modes.begin(), modes.end()}});
       if (sets.empty())
         return;
-      if (auto earlier = store ? store->basis() : std::vector<MultiVector>(); !earlier.empty())
-        model.reduced->extend(std::move(earlier.front()));
-      else
-        {
-          auto vectors = model.reduced->new_vectors(sets);
-          if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
-            return;
-          if (store)
-            store->keep(*vectors);
-          model.reduced->extend(*std::move(vectors));
-        }
+      auto vectors = model.reduced->new_vectors(sets);
+      if (!vectors || model.reduced->size() + vectors->n_columns() > static_cast<int>(model.run.parameters.sweep.maximum_basis))
+        return;
+      model.reduced->extend(*std::move(vectors));
       for (const ChartModel::ModesAt &set : sets)
         model.known.erase({line, set.point.friction_coefficient});
     }
@@ -121,34 +113,14 @@ namespace Squeal
     }
   } // namespace
 
-  std::string identity(Parameters parameters, const HexMesh &mesh)
-  {
-    parameters.solvers.n_threads = SolverParameters().n_threads;
-    parameters.output            = {};
-    std::ostringstream stream;
-    stream << "# squeal " << version << '\n';
-    parameters.print(stream, false);
-    stream << "# mesh: " << mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(mesh) << '\n';
-    return stream.str();
-  }
-
-  std::string sweep_identity(const Run &run, const Scene &scene)
-  {
-    Parameters parameters        = run.parameters;
-    parameters.sweep.mode_shapes = {};
-    parameters.sweep.planes      = {};
-    parameters.sweep.counts      = {};
-    return identity(parameters, scene.mesh);
-  }
-
-  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid, ChartStore *store)
+  SweepChart follow_branches(SweepModel &model, const int line, const std::vector<double> &grid)
   {
     Run        &run         = model.run;
     std::size_t n_evaluated = 0;
     const auto  evaluate    = [&](const std::vector<double> &friction_coefficients) {
       n_evaluated += friction_coefficients.size();
       run.progress.update(text(n_evaluated, " points"));
-      return model.evaluate(line, friction_coefficients, store);
+      return model.evaluate(line, friction_coefficients);
     };
     run.progress.begin("Branches");
     ChartOptions options;
@@ -159,7 +131,7 @@ namespace Squeal
     ChartOptions coarse        = options;
     coarse.maximum_refinements = 0;
     if (!model.reduced->reduced().is_restricted())
-      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid, store);
+      sharpen(model, line, stability_chart(grid, evaluate, coarse), grid);
     const auto at = [&](const double mu) { return model.plan.point(line, mu, model.regime.closed); };
     SweepChart result{stability_chart(grid, evaluate, options, zero_predictor(*model.reduced, at, run.communicator)), {}, {}, {}};
     const StabilityChart &chart  = result.chart;
@@ -174,20 +146,13 @@ namespace Squeal
     return result;
   }
 
-  std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase)
-  {
-    return checkpoint.part(text("contact set ", model.regime.number, " of ", model.regime.closed.size(), " nodes, ", phase),
-                           model.frictionless.linearisation.coupled.map());
-  }
-
-  void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts)
+  void follow_branches(SweepModel &model, std::vector<std::vector<SweepChart>> &charts)
   {
     for (std::size_t l = 0; l < charts.size(); ++l)
       if (const auto kind = model.plan.lines[l].kind; kind != SweepLine::Kind::map)
         for (const auto &stretch : stretches(model, static_cast<int>(l)))
           {
-            const auto store = store_of(model, checkpoint, text("line ", l, " from ", exact_text(stretch.front())));
-            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch, store.get()));
+            charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch));
             if (kind == SweepLine::Kind::main)
               compare_with_inertia(model, charts[l].back().chart);
           }

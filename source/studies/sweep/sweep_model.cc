@@ -106,22 +106,14 @@ namespace Squeal
     run.progress.finish(text(reduced->size(), " vectors to start from"));
   }
 
-  std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients, ChartStore *store)
+  std::vector<ChartPoint> SweepModel::evaluate(const int line, const std::vector<double> &friction_coefficients)
   {
     std::vector<OperatingPoint> missing;
     for (const double mu : friction_coefficients)
       if (known.count({line, mu}) == 0)
-        {
-          const OperatingPoint point = plan.point(line, mu, regime.closed);
-          if (const auto stored = store ? store->find(point) : std::nullopt)
-            known.emplace(std::make_pair(line, mu), *stored);
-          else
-            missing.push_back(point);
-        }
+        missing.push_back(plan.point(line, mu, regime.closed));
     Squeal::evaluate(*reduced, missing, run.communicator, [&](const int i, const ChartPoint &found) {
       known.emplace(std::make_pair(line, missing[i].friction_coefficient), found);
-      if (store)
-        store->keep(missing[i], found);
     });
     std::vector<ChartPoint> result;
     for (const double mu : friction_coefficients)
@@ -199,7 +191,7 @@ namespace Squeal
     return result;
   }
 
-  void evaluate_points(SweepModel &model, ChartStore *store)
+  void evaluate_points(SweepModel &model)
   {
     Run                               &run    = model.run;
     const std::vector<OperatingPoint> &points = model.regime.points;
@@ -208,7 +200,7 @@ namespace Squeal
     options.maximum_basis = static_cast<int>(run.parameters.sweep.maximum_basis);
     run.progress.begin("Sweep");
     const ErrorControlledSweep sweep =
-      error_controlled_sweep(*model.reduced, points, training(model.regime), options, store, run.communicator, run.progress);
+      error_controlled_sweep(*model.reduced, points, training(model.regime), options, run.communicator, run.progress);
     for (std::size_t i = 0; i < points.size(); ++i)
       if (sweep.points[i])
         model.known.emplace(std::make_pair(points[i].line, points[i].friction_coefficient), *sweep.points[i]);

@@ -290,9 +290,6 @@ namespace Squeal
     const Parameters &parameters = run.parameters;
     const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
-    ChartCheckpoint checkpoint(checkpoint_folder(run.folder().name()), sweep_identity(run, scene), run.communicator);
-    if (checkpoint.n_found() > 0)
-      run.progress.note(text("  an interrupted sweep goes on: ", checkpoint.n_found(), " operating points are known"));
     assemble_scene(scene, run);
 
     const SweepPlan                      plan = sweep_plan(scene, run);
@@ -304,8 +301,8 @@ namespace Squeal
     for (const ContactRegime &regime : plan.regimes)
       {
         SweepModel model(plan, regime, run);
-        evaluate_points(model, store_of(model, checkpoint, "sweep").get());
-        follow_branches(model, checkpoint, charts);
+        evaluate_points(model);
+        follow_branches(model, charts);
         append_map_cells(model, main.empty() ? nullptr : &main.back(), map);
         append_plane_modes(model, plane);
         append_counts(model, counts);
@@ -330,7 +327,7 @@ namespace Squeal
       }
     if (!map.empty())
       run.store_table("map", map_table(map, parameters.sweep.map_parameter));
-    run.finish([&] { checkpoint.remove(); });
+    run.finish();
   }
 
   extern const Study sweep_study = [] {

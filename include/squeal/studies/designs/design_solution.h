@@ -80,18 +80,7 @@ namespace Squeal
     /// too far from the others for one basis.
     Member solve(std::size_t design);
 
-    /// Grows the basis by what it once has grown by.
-    void extend(const MultiVector &vectors);
-
-    /// What the basis has grown by since this was asked for last.
-    std::vector<MultiVector> take_growth();
-
     Scene scene;
-
-    const RowMap &map() const
-    {
-      return middle.linearisation.coupled.map();
-    }
 
   private:
     void                        find_whole_model(Member &member) const;
@@ -110,15 +99,14 @@ namespace Squeal
     FrictionlessModes                   middle; ///< with the system of the family
     std::unique_ptr<ReducedModel>       model;
     std::unique_ptr<ProjectedResiduals> residuals;
-    std::vector<MultiVector>            grown;
   };
 
   /// The sweep of a design: what only adds to the results of a single run is left out.
   Parameters sweep_of(const Parameters &design);
 
   /// Follows the modes of a scene over the friction coefficients of the sweep, and says what a study of designs wants to know of them, which
-  /// are named by @p reference. @p folder keeps what has been found until the design is solved. Throws Error where it cannot be.
-  DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, const std::string &folder, Run &run);
+  /// are named by @p reference. Throws Error where it cannot be.
+  DesignResult solve_design(const Parameters &parameters, const ReferenceModes &reference, Run &run);
 
   /// The same of a design of a family.
   DesignResult solve_member(DesignFamily &family, std::size_t design, const ReferenceModes &reference);

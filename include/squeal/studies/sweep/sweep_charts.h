@@ -1,8 +1,8 @@
 #pragma once
 
-#include <squeal/output/chart_checkpoint.h>
 #include <squeal/studies/steps/friction_modes.h>
 #include <squeal/tracking/branches.h>
+#include <squeal/tracking/error_controlled_sweep.h>
 
 namespace Squeal
 {
@@ -78,8 +78,8 @@ namespace Squeal
                FrictionlessModes           frictionless,
                std::unique_ptr<ChartModel> reduced);
 
-    /// Modes of a line, known ones or new ones, which @p store keeps unless it is null. All processes must call.
-    std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients, ChartStore *store = nullptr);
+    /// Modes of a line, known ones or new ones. All processes must call.
+    std::vector<ChartPoint> evaluate(int line, const std::vector<double> &friction_coefficients);
 
     /// Right vectors of some modes of a point at full order, real and imaginary parts.
     std::pair<MultiVector, MultiVector> shapes(const ChartPoint &point, const std::vector<int> &modes) const;
@@ -125,8 +125,8 @@ namespace Squeal
   /// The damping of the contact where a sweep's is largest.
   const OperatingPoint &most_damped(const ContactRegime &regime);
 
-  /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run; @p store: null for none.
-  void evaluate_points(SweepModel &model, ChartStore *store);
+  /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run.
+  void evaluate_points(SweepModel &model);
 
   /// Modes over the friction coefficient at one load and speed, as far as the contact set is the same.
   struct SweepChart
@@ -146,21 +146,12 @@ namespace Squeal
     ModeLabel   label;
   };
 
-  /// The version of the program, parameters and a mesh, but for threads and for output that only adds to results or shows them otherwise.
-  std::string identity(Parameters parameters, const HexMesh &mesh);
-
-  /// Everything on which the results of a sweep depend.
-  std::string sweep_identity(const Run &run, const Scene &scene);
-
-  /// Where the results of a phase of the work on a contact set are kept.
-  std::unique_ptr<ChartStore> store_of(const SweepModel &model, ChartCheckpoint &checkpoint, const std::string &phase);
-
   /// Follows the branches of a line over known friction coefficients, with their thresholds, as a step of the run. For these the basis
-  /// grows, unless it is a part of another one. @p store keeps points, and what the basis grows by, unless it is null.
-  SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients, ChartStore *store);
+  /// grows, unless it is a part of another one.
+  SweepChart follow_branches(SweepModel &model, int line, const std::vector<double> &friction_coefficients);
 
   /// Follows the branches on all lines but those of the map, with their thresholds, as steps of the run; appends to the @p charts of each line.
-  void follow_branches(SweepModel &model, ChartCheckpoint &checkpoint, std::vector<std::vector<SweepChart>> &charts);
+  void follow_branches(SweepModel &model, std::vector<std::vector<SweepChart>> &charts);
 
   /// The first onsets of all stretches of a line: of growth and of divergence rates beyond weak_divergence, where there are such.
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts);
