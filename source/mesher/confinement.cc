@@ -11,6 +11,7 @@
 #include <linux/sched.h>
 #include <seccomp.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 
 namespace Squeal
 {
@@ -73,7 +74,8 @@ namespace Squeal
 #if !defined(__SANITIZE_ADDRESS__) // which reserves more addresses than any machine has memory
     limit(RLIMIT_AS, bytes);
 #endif
-    limit(RLIMIT_CPU, 2. * seconds + 10.); // beyond what the parent, which says what happened, allows
     limit(RLIMIT_CORE, 0.);
+    const itimerval once{{}, {static_cast<time_t>(seconds), static_cast<suseconds_t>(1e6 * std::fmod(seconds, 1.))}};
+    setitimer(ITIMER_REAL, &once, nullptr);
   }
 } // namespace Squeal

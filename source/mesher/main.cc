@@ -6,11 +6,13 @@
 #include <squeal/geometry/gmsh_mesh.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <string>
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <unistd.h>
 
@@ -18,16 +20,12 @@ namespace
 {
   using namespace Squeal;
 
-  void send(const MesherReply reply, const std::string &content)
+  /// To what was standard output when the process began: what Gmsh prints there goes to the log.
+  void send(std::FILE *answer, const MesherReply reply, const std::string &content)
   {
-    const std::string message = static_cast<char>(reply) + content;
-    for (std::size_t sent = 0; sent < message.size();)
-      {
-        const ssize_t n = write(mesher_reply_descriptor, message.data() + sent, message.size() - sent);
-        if (n <= 0)
-          _exit(1);
-        sent += n;
-      }
+    std::fputc(static_cast<char>(reply), answer);
+    std::fwrite(content.data(), 1, content.size(), answer);
+    std::fflush(answer);
   }
 } // namespace
 
@@ -37,7 +35,9 @@ int main(int argc, char **argv)
   if (argc < 5)
     return 2;
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  close_range(mesher_script_descriptor + 1, ~0u, 0);
+  close_range(STDERR_FILENO + 1, ~0u, 0);
+  std::FILE *const answer = fdopen(fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0), "w");
+  dup2(STDERR_FILENO, STDOUT_FILENO);
   limit_resources(std::atof(argv[2]), std::atof(argv[3]));
   try
     {
@@ -54,17 +54,17 @@ int main(int argc, char **argv)
           {
             why_not_confined = error.what();
           }
-      GmshMesh mesh         = mesh_geometry(mesher_script_name, argv[1]);
+      GmshMesh mesh         = mesh_geometry("/dev/stdin", argv[1]);
       mesh.why_not_confined = why_not_confined;
-      send(MesherReply::mesh, to_bytes(mesh));
+      send(answer, MesherReply::mesh, to_bytes(mesh));
     }
   catch (const GmshError &error)
     {
-      send(MesherReply::failure, error.what());
+      send(answer, MesherReply::failure, error.what());
     }
   catch (const std::bad_alloc &)
     {
-      send(MesherReply::out_of_memory, "");
+      send(answer, MesherReply::out_of_memory, "");
     }
   _exit(0); // Gmsh has nothing to tidy up that anyone needs
 }

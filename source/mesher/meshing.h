@@ -44,7 +44,7 @@ namespace Squeal
   void confine();
 
   /**
-   * Ends this process where it takes more than @p seconds of processor time, and lets
+   * Ends this process by SIGALRM after @p seconds, and lets
    * allocations beyond @p bytes of address space fail. No core is dumped.
    */
   void limit_resources(double bytes, double seconds);

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <boost/process/child.hpp>
+
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <sys/types.h>
 
 namespace Squeal
 {
@@ -40,7 +40,6 @@ namespace Squeal
     std::optional<std::string> end();
 
   private:
-    pid_t                      process = 0;
-    std::optional<std::string> how_it_ended;
+    boost::process::child worker;
   };
 } // namespace Squeal

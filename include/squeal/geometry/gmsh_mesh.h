@@ -66,8 +66,8 @@ namespace Squeal
   GmshMesh from_bytes(const std::string &bytes);
 
   /**
-   * What the mesher, a process of its own, says to the program: one letter on
-   * the file descriptor below, then the text or bytes that belong to it.
+   * What the mesher, a process of its own that reads a script as standard input, says to the program: one
+   * letter on standard output, then the text or bytes that belong to it.
    */
   enum class MesherReply : char
   {
@@ -75,12 +75,6 @@ namespace Squeal
     failure       = 'f', ///< what Gmsh reports
     out_of_memory = 'o'  ///< nothing follows
   };
-
-  inline constexpr int mesher_reply_descriptor = 3;
-
-  /// Where the mesher finds a script, and the name by which Gmsh opens it.
-  inline constexpr int         mesher_script_descriptor = 4;
-  inline constexpr const char *mesher_script_name       = "/proc/self/fd/4";
 
   /// Arguments of the mesher that say whether the geometry may do what confine() forbids.
   inline constexpr const char *mesher_confined = "confined", *mesher_free = "free";
