@@ -13,14 +13,6 @@ namespace Squeal
                             " columns, or with rows and columns distributed differently, cannot be factorised",
                           what, "this is a mistake in the program: please report it");
     }
-
-    void check_one_process(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
-    {
-      if (A.rows().n_processes() > 1)
-        throw SolverError(to_string(library) + " was asked for on " + std::to_string(A.rows().n_processes()) +
-                            " processes but works on one",
-                          what, "choose MUMPS or automatic as factorisation library, or run on one process");
-    }
   } // namespace
 
   void throw_not_positive_definite(const std::string &library, const std::string &what)
@@ -46,45 +38,18 @@ namespace Squeal
                                                              const std::string         &what)
   {
     check_square(A, what);
-    switch (library)
-      {
-        case FactorizationLibrary::automatic:
-          if (A.rows().n_processes() == 1)
-            return cholmod_factorization(A, what);
-          return mumps_factorization(A, true, what);
-        case FactorizationLibrary::cholmod:
-          check_one_process(A, library, what);
-          return cholmod_factorization(A, what);
-        case FactorizationLibrary::umfpack:
-          // LU factors serve as well but cannot tell whether the matrix is positive definite.
-          check_one_process(A, library, what);
-          if (count_negative_eigenvalues(A, what) > 0)
-            throw_not_positive_definite("UMFPACK", what);
-          return umfpack_factorization(A, what);
-        case FactorizationLibrary::mumps:
-          break;
-      }
-    return mumps_factorization(A, true, what);
+    const int n_processes = A.rows().n_processes();
+    if (library == FactorizationLibrary::cholmod && n_processes > 1)
+      throw SolverError("CHOLMOD was asked for on " + std::to_string(n_processes) + " processes but works on one", what,
+                        "choose MUMPS or automatic as factorisation library, or run on one process");
+    if (library == FactorizationLibrary::mumps || n_processes > 1)
+      return mumps_factorization(A, true, what);
+    return cholmod_factorization(A, what);
   }
 
-  std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const FactorizationLibrary library, const std::string &what)
+  std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const std::string &what)
   {
     check_square(A, what);
-    switch (library)
-      {
-        case FactorizationLibrary::automatic:
-          if (A.rows().n_processes() == 1)
-            return umfpack_factorization(A, what);
-          break;
-        case FactorizationLibrary::umfpack:
-          check_one_process(A, library, what);
-          return umfpack_factorization(A, what);
-        case FactorizationLibrary::cholmod:
-          throw SolverError(to_string(library) + " was asked for but serves positive definite matrices only", what,
-                            "choose automatic, UMFPACK or MUMPS as factorisation library");
-        case FactorizationLibrary::mumps:
-          break;
-      }
     return mumps_factorization(A, false, what);
   }
 } // namespace Squeal

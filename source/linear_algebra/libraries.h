@@ -12,9 +12,6 @@ namespace Squeal
   /// Supernodal LLᵀ; one process.
   std::unique_ptr<Factorization> cholmod_factorization(const SparseMatrix &A, const std::string &what);
 
-  /// Unsymmetric multifrontal LU; one process.
-  std::unique_ptr<Factorization> umfpack_factorization(const SparseMatrix &A, const std::string &what);
-
   /// MUMPS's LDLᵀ without numerical pivoting (positive definite) or LU (general).
   std::unique_ptr<Factorization> mumps_factorization(const SparseMatrix &A, bool positive_definite, const std::string &what);
 

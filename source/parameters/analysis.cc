@@ -51,7 +51,7 @@ namespace Squeal
     declarations.add("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", {1});
 
     declarations.enter("Linear algebra");
-    declarations.add("Factorization", library, "Sparse direct solver; automatic: CHOLMOD and UMFPACK on one process, MUMPS on several.");
+    declarations.add("Factorization", library, "Sparse direct solver of symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
     declarations.add(
       "Threads", n_threads,
       "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and large factors. 0: as many as "
@@ -59,13 +59,6 @@ namespace Squeal
       {0, 1024});
     declarations.add("BLAS threads", blas_threads,
                      "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", {1, 256});
-  }
-
-  void SolverParameters::check() const
-  {
-    if (library == FactorizationLibrary::cholmod && shift_inverse == ShiftInverse::sparse_lu && complex_solver == ComplexSolver::krylov)
-      throw ParameterError("CHOLMOD cannot factorise the nonsymmetric matrix that `Shift inverse = sparse LU` asks for",
-                           "parameter Linear algebra/Factorization", "set it to automatic, UMFPACK or MUMPS");
   }
 
   void OutputParameters::declare(Declarations &declarations)

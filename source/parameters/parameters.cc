@@ -343,6 +343,5 @@ namespace Squeal
     if (study->check != nullptr)
       study->check(*this);
     check_damping_in_band();
-    solvers.check();
   }
 } // namespace Squeal

@@ -223,7 +223,7 @@ TEST_P(Contact, UpdatedInverseEqualsSparseFactors)
       for (const double mu : {0., 0.4, 1.3, 0.2})
         {
           MultiVector X(B), Y(B);
-          factorize_general(*dynamic_stiffness(with_friction(s.coupled, mu), shift), FactorizationLibrary::automatic, "test")->apply(B, Y);
+          factorize_general(*dynamic_stiffness(with_friction(s.coupled, mu), shift), "test")->apply(B, Y);
           for (UpdatedInverse *each : {&inverse, &frugal})
             {
               each->set_friction_coefficient(mu);

@@ -177,7 +177,6 @@ class Refusals(ProgramTest):
         self.scene_refused(["'disc_ear'", "disc_bore", "disc_rim"], "Mounts/Elastic mounts=disc_ear: 0, 1e10, 1e10")
 
     def test_linear_algebra(self):
-        self.scene_refused(["CHOLMOD", "sparse LU"], "Linear algebra/Factorization=CHOLMOD", "Complex modes/Shift inverse=sparse LU")
         self.scene_refused(["CHOLMOD", "on 2 processes", "MUMPS"], "Linear algebra/Factorization=CHOLMOD", n_processes=2)
 
     # ---------------------------------------------------------------- geometry

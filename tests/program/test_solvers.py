@@ -24,7 +24,6 @@ class Solvers(ProgramTest):
     def test_linear_algebra(self):
         for overrides in (["Linear algebra/Factorization=CHOLMOD"],
                           ["Linear algebra/Factorization=MUMPS"],
-                          ["Linear algebra/Factorization=UMFPACK"],
                           ["Complex modes/Shift inverse=sparse LU"],
                           ["Complex modes/Shift inverse=sparse LU", "Linear algebra/Factorization=MUMPS"],
                           ["Real modes/Solver=Anasazi"],

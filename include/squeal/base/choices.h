@@ -17,19 +17,17 @@ namespace Squeal
                                                                     {RealSolver::anasazi, "Anasazi"},
                                                                     {RealSolver::arpack, "ARPACK"}};
 
-  /// Libraries that factorise sparse matrices.
+  /// Libraries that factorise positive definite matrices.
   enum class FactorizationLibrary
   {
-    automatic, ///< CHOLMOD or UMFPACK on one process, MUMPS on several
-    cholmod,   ///< symmetric positive definite, one process
-    umfpack,   ///< general, one process
-    mumps      ///< any matrix, any number of processes
+    automatic, ///< CHOLMOD on one process, MUMPS on several
+    cholmod,   ///< one process
+    mumps      ///< any number of processes
   };
 
   template <>
   inline constexpr EnumName<FactorizationLibrary> enum_table<FactorizationLibrary>[] = {{FactorizationLibrary::automatic, "automatic"},
                                                                                         {FactorizationLibrary::cholmod, "CHOLMOD"},
-                                                                                        {FactorizationLibrary::umfpack, "UMFPACK"},
                                                                                         {FactorizationLibrary::mumps, "MUMPS"}};
 
   /// Hexahedra.

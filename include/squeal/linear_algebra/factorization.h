@@ -29,9 +29,8 @@ namespace Squeal
    */
   std::unique_ptr<Factorization> factorize_positive_definite(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
 
-  /// LU factors of a square nonsymmetric matrix (UMFPACK or MUMPS). Throws SolverError naming @p what if it is singular to working
-  /// precision or the library cannot be used here.
-  std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, FactorizationLibrary library, const std::string &what);
+  /// LU factors of a square nonsymmetric matrix (MUMPS). Throws SolverError naming @p what if it is singular to working precision.
+  std::unique_ptr<Factorization> factorize_general(const SparseMatrix &A, const std::string &what);
 
   /**
    * Number of negative eigenvalues of a symmetric matrix by Sylvester's law of

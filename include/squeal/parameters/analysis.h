@@ -58,9 +58,6 @@ namespace Squeal
     unsigned int         blas_threads        = 1;
 
     void declare(Declarations &declarations);
-
-    /// Throws ParameterError.
-    void check() const;
   };
 
   /// Which complex modes are written as fields.
