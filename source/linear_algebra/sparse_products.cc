@@ -2,16 +2,6 @@
 
 #include <squeal/base/tasks.h>
 
-#include <deal.II/base/aligned_vector.h>
-
-// The program is compiled for any processor of its family. A function marked so is compiled for newer ones, too; which of its versions runs is
-// chosen when the program starts. What it calls has to be inlined, or is compiled for the oldest processor.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#  define SQUEAL_PROCESSORS __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#  define SQUEAL_PROCESSORS
-#endif
-
 namespace Squeal
 {
   namespace
@@ -19,57 +9,17 @@ namespace Squeal
     /// Rows of a product that are a task.
     constexpr int rows_of_task = 2048;
 
-    /// Entries of a row of some vectors, in a register of the processor.
-    constexpr int  lanes = 8;
-    typedef double Lanes __attribute__((vector_size(lanes * sizeof(double))));
-
-    /// Rows [first, end) of A X, @p width registers for a row of X.
+    /// Some columns of A X, at most @p width, with their rows side by side, so that the entries of A are read once for all of them.
     template <int width>
-    __attribute__((always_inline)) inline void rows_of_product(const int     first,
-                                                               const int     end,
-                                                               const int    *start,
-                                                               const int    *column,
-                                                               const double *value,
-                                                               const Lanes  *X,
-                                                               Lanes        *Y)
+    void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {
-      for (int i = first; i < end; ++i)
-        {
-          // Two sums side by side, since one has to wait for its last addition
-          Lanes even[width] = {}, odd[width] = {};
-          int   k = start[i];
-          for (; k + 1 < start[i + 1]; k += 2)
-            for (int w = 0; w < width; ++w)
-              {
-                even[w] += value[k] * X[std::size_t(column[k]) * width + w];
-                odd[w] += value[k + 1] * X[std::size_t(column[k + 1]) * width + w];
-              }
-          for (int w = 0; w < width; ++w)
-            Y[std::size_t(i) * width + w] =
-              even[w] + odd[w] + (k < start[i + 1] ? value[k] * X[std::size_t(column[k]) * width + w] : Lanes{});
-        }
-    }
-
-    SQUEAL_PROCESSORS void multiply_8(const int     first,
-                                      const int     end,
-                                      const int    *start,
-                                      const int    *column,
-                                      const double *value,
-                                      const Lanes  *X,
-                                      Lanes        *Y)
-    {
-      rows_of_product<1>(first, end, start, column, value, X, Y);
-    }
-
-    SQUEAL_PROCESSORS void multiply_16(const int     first,
-                                       const int     end,
-                                       const int    *start,
-                                       const int    *column,
-                                       const double *value,
-                                       const Lanes  *X,
-                                       Lanes        *Y)
-    {
-      rows_of_product<2>(first, end, start, column, value, X, Y);
+      using SideBySide = Eigen::Matrix<double, Eigen::Dynamic, width, Eigen::RowMajor>;
+      SideBySide rows(X.rows(), width);
+      run_parts(X.rows(), rows_of_task, [&](const int first, const int n) { rows.block(first, 0, n, X.cols()) = X.middleRows(first, n); });
+      run_parts(A.rows(), rows_of_task, [&](const int first, const int n) {
+        const SideBySide image = A.middleRows(first, n) * rows;
+        Y.middleRows(first, n) = image.leftCols(X.cols());
+      });
     }
   } // namespace
 
@@ -81,24 +31,11 @@ namespace Squeal
         run_parts(A.rows(), rows_of_task, [&](const int first, const int n) { Y.middleRows(first, n) = A.middleRows(first, n) * X; });
         return;
       }
-    // Rows of some columns side by side, so that the entries of A are read once for all of them
-    using SideBySide   = Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>, Eigen::Aligned64>;
-    constexpr int most = 2 * lanes;
-    for (Eigen::Index first_column = 0; first_column < X.cols(); first_column += most)
+    constexpr int few = 8, most = 16;
+    for (Eigen::Index first = 0; first < X.cols(); first += most)
       {
-        const Eigen::Index           n_columns = std::min<Eigen::Index>(X.cols() - first_column, most);
-        const int                    width     = n_columns <= lanes ? 1 : 2;
-        dealii::AlignedVector<Lanes> rows(X.rows() * width), image;
-        image.resize_fast(A.rows() * width);
-        SideBySide x(reinterpret_cast<double *>(rows.data()), X.rows(), lanes * width);
-        SideBySide y(reinterpret_cast<double *>(image.data()), A.rows(), lanes * width);
-        run_parts(X.rows(), rows_of_task,
-                  [&](const int first, const int n) { x.block(first, 0, n, n_columns) = X.block(first, first_column, n, n_columns); });
-        run_parts(A.rows(), rows_of_task, [&](const int first, const int n) {
-          (width == 1 ? multiply_8 : multiply_16)(first, first + n, A.outerIndexPtr(), A.innerIndexPtr(), A.valuePtr(), rows.data(),
-                                                  image.data());
-          Y.block(first, first_column, n, n_columns) = y.block(first, 0, n, n_columns);
-        });
+        const Eigen::Index n = std::min<Eigen::Index>(X.cols() - first, most);
+        (n <= few ? multiply_columns<few> : multiply_columns<most>)(A, X.middleCols(first, n), Y.middleCols(first, n));
       }
   }
 
