@@ -54,5 +54,5 @@ class VtuFile:
 
 def arrays(path):
     """Names of the fields of a file."""
-    return set(re.findall(r'<DataArray[^>]* Name="([a-z_]+)"', path.read_bytes().partition(b"<AppendedData")[0].decode())) - {
+    return set(re.findall(r'<DataArray[^>]* Name="([^"]+)"', path.read_bytes().partition(b"<AppendedData")[0].decode())) - {
         "points", "connectivity", "offsets", "types", "mode"}

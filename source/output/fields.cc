@@ -18,8 +18,14 @@ namespace Squeal
     /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
-    /// Steps of displacements of animations in their largest: finer ones are not seen, and take room.
-    constexpr float steps_of_animations = 4096.f;
+    /// Of the largest displacement, or of the unit of angles.
+    constexpr double steps_of_fields = 65536., steps_of_animations = 4096.;
+
+    /// A value in steps of one in @p n, so many that they are not seen: finer ones would take room.
+    double in_steps(const double n, const double value)
+    {
+      return std::round(n * value) / n + 0.;
+    }
 
     /// Largest |u| of the dofs of all processes, by which fields are divided; one where nothing moves.
     template <typename Number>
@@ -89,7 +95,8 @@ namespace Squeal
     {
       VertexField result{"amplitude", 1, {}};
       for (const auto &[x, y, z] : displacement)
-        result.values.push_back(static_cast<float>(scale * std::sqrt(std::norm(x) + std::norm(y) + std::norm(z))));
+        result.values.push_back(
+          static_cast<float>(in_steps(steps_of_fields, scale * std::sqrt(std::norm(x) + std::norm(y) + std::norm(z)))));
       return result;
     }
 
@@ -148,9 +155,10 @@ namespace Squeal
     const Stage &stage  = bodies({});
     const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
     write(stage, "modes/" + mode.name, mode.title,
-          {vector_field("displacement_real", values, [&](const Complex &u) { return scale * u.real(); }),
-           vector_field("displacement_imag", values, [&](const Complex &u) { return scale * u.imag(); }), amplitude(values, scale),
-           vector_field("phase", values, [](const Complex &u) { return std::arg(u); })});
+          {vector_field("displacement_real", values, [&](const Complex &u) { return in_steps(steps_of_fields, scale * u.real()); }),
+           vector_field("displacement_imag", values, [&](const Complex &u) { return in_steps(steps_of_fields, scale * u.imag()); }),
+           amplitude(values, scale),
+           vector_field("phase", values, [](const Complex &u) { return in_steps(steps_of_fields, std::arg(u)); })});
 
     std::vector<double> re, im;
     for (const Complex &r : mode.reactions)
@@ -172,7 +180,8 @@ namespace Squeal
     const Stage &stage  = bodies(mode.component);
     const auto   values = vertex_values(stage.mesh, dofs, mode.displacement);
     write(stage, "modes/" + mode.name, mode.title,
-          {vector_field("displacement", values, [&](const double u) { return scale * u; }), amplitude(values, scale)});
+          {vector_field("displacement", values, [&](const double u) { return in_steps(steps_of_fields, scale * u); }),
+           amplitude(values, scale)});
   }
 
   void FieldWriter::write_list(const std::string &name, const std::vector<ListedMode> &modes) const
@@ -192,30 +201,38 @@ namespace Squeal
       write_pvd(folder, name + "_contact", faces);
   }
 
-  void FieldWriter::write_animation(const ModeField &mode, const AnimationOptions &options)
+  void FieldWriter::write_animation(const std::string &name, const std::vector<ModeField> &modes, const AnimationOptions &options)
   {
     if (!surface)
       surface.emplace(surface_mesh(model));
-    const auto         values   = vertex_values(surface->mesh, dofs, mode.displacement);
-    const double       scale    = 1. / largest_modulus(mode.displacement, model.communicator());
-    const double       period   = 2. * M_PI / mode.lambda.imag();
-    const unsigned int n_frames = options.frames_per_period * options.periods + (options.grows ? 1 : 0);
-    const double       growth   = options.grows ? mode.lambda.real() : 0.;
-    // When the amplitude is largest: scaled to this time, growth cannot overflow
-    const double                                largest_at = growth > 0. ? options.periods * period : 0.;
+    std::vector<Vectors<Complex>> shapes;
+    std::vector<double>           scales;
+    for (const ModeField &mode : modes)
+      {
+        shapes.push_back(vertex_values(surface->mesh, dofs, mode.displacement));
+        scales.push_back(1. / largest_modulus(mode.displacement, model.communicator()));
+      }
+    const unsigned int                          n_frames = options.frames_per_period * options.periods + (options.grows ? 1 : 0);
     std::vector<std::pair<double, std::string>> files;
     for (unsigned int frame = 0; frame < n_frames; ++frame)
       {
-        const double       time = period * frame / options.frames_per_period;
-        const Complex      turn = std::polar(scale * std::exp(growth * (time - largest_at)), mode.lambda.imag() * time);
-        std::ostringstream name;
-        name << mode.name << "_frames/" << std::setw(3) << std::setfill('0') << frame;
-        write(*surface, "animations/" + name.str(), {}, {vector_field("displacement", values, [&](const Complex &u) {
-          return std::round(steps_of_animations * (turn * u).real()) / steps_of_animations;
-        })});
-        files.emplace_back(time, name.str() + ".vtu");
+        const double             periods = static_cast<double>(frame) / options.frames_per_period;
+        std::vector<VertexField> fields;
+        for (std::size_t j = 0; j < modes.size(); ++j)
+          {
+            const double growth = options.grows ? 2. * M_PI * modes[j].lambda.real() / modes[j].lambda.imag() : 0.; // in a period
+            // When the amplitude is largest: scaled to this time, growth cannot overflow
+            const double  largest_at = growth > 0. ? options.periods : 0.;
+            const Complex turn       = std::polar(scales[j] * std::exp(growth * (periods - largest_at)), 2. * M_PI * periods);
+            fields.push_back(
+              vector_field(modes[j].name, shapes[j], [&](const Complex &u) { return in_steps(steps_of_animations, (turn * u).real()); }));
+          }
+        std::ostringstream file;
+        file << name << "_frames/" << std::setw(3) << std::setfill('0') << frame;
+        write(*surface, "animations/" + file.str(), {}, fields);
+        files.emplace_back(periods, file.str() + ".vtu");
       }
-    write_pvd(folder, "animations/" + mode.name, files);
+    write_pvd(folder, "animations/" + name, files);
   }
 
   void FieldWriter::write_contact(const std::string                                                       &name,

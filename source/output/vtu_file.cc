@@ -198,6 +198,24 @@ namespace Squeal
             corners.push_back(nodes[origin + (i + right) * along + (j + back) * across]);
     }
 
+    /// Cells of this process by their angle about z and radius, those above each other upwards.
+    std::vector<ActiveCell> in_columns(const Model &model)
+    {
+      constexpr double                                          together = 1e-6; // [rad], [m]
+      std::multimap<std::tuple<long, long, double>, ActiveCell> cells;
+      for (const auto &cell : model.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          {
+            const Point<3> x = cell->center();
+            cells.emplace(
+              std::make_tuple(std::lround(std::atan2(x[1], x[0]) / together), std::lround(std::hypot(x[0], x[1]) / together), x[2]), cell);
+          }
+      std::vector<ActiveCell> result;
+      for (const auto &[place, cell] : cells)
+        result.push_back(cell);
+      return result;
+    }
+
     /// Numbers vertices in the order of the cells. @p add(cell, nodes, corners) appends the corners of what a file has of a cell, from its
     /// (p + 1)³ nodes, x fastest.
     template <typename Add>
@@ -207,25 +225,24 @@ namespace Squeal
       std::vector<types::global_dof_index> dofs(model.dof_handler().get_fe().n_dofs_per_cell());
       std::vector<std::int32_t>            numbers(model.nodes().size(), -1);
       FieldMesh                            mesh{n_corners, {}, {}, {}};
-      for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            Places nodes, corners;
-            cell->get_dof_indices(dofs);
-            for (const unsigned int i : order)
-              nodes.push_back(model.node_of_dof(dofs[cell->get_fe().component_to_system_index(0, i)]));
-            add(cell, nodes, corners);
-            for (const unsigned int node : corners)
-              {
-                if (numbers[node] < 0)
-                  {
-                    numbers[node] = static_cast<std::int32_t>(mesh.nodes.size());
-                    mesh.nodes.push_back(model.nodes()[node]);
-                  }
-                mesh.cells.push_back(numbers[node]);
-              }
-            mesh.components.resize(mesh.cells.size() / n_corners, static_cast<std::int32_t>(cell->material_id()));
-          }
+      for (const ActiveCell &cell : in_columns(model))
+        {
+          Places nodes, corners;
+          cell->get_dof_indices(dofs);
+          for (const unsigned int i : order)
+            nodes.push_back(model.node_of_dof(dofs[cell->get_fe().component_to_system_index(0, i)]));
+          add(cell, nodes, corners);
+          for (const unsigned int node : corners)
+            {
+              if (numbers[node] < 0)
+                {
+                  numbers[node] = static_cast<std::int32_t>(mesh.nodes.size());
+                  mesh.nodes.push_back(model.nodes()[node]);
+                }
+              mesh.cells.push_back(numbers[node]);
+            }
+          mesh.components.resize(mesh.cells.size() / n_corners, static_cast<std::int32_t>(cell->material_id()));
+        }
       return mesh;
     }
 

@@ -67,8 +67,8 @@ namespace Squeal
       const OutputParameters &output = run.parameters.output;
       const ComplexModes     &modes  = friction.modes;
       std::vector<ListedMode> list;
-      unsigned int            n_animations = 0;
-      double                  highest      = 0.; // divergence rate of what is animated
+      std::vector<ModeField>  animated;
+      double                  highest = 0.; // divergence rate of what is animated
       run.progress.begin("Mode shapes");
       for (std::size_t j = 0; j < friction.labels.size(); ++j)
         {
@@ -87,18 +87,19 @@ namespace Squeal
           list.push_back({field.name, frequency});
           if (friction.unstable[j] && output.animation_frames > 0)
             {
-              writer.write_animation(field, animation_options(output));
-              ++n_animations;
+              animated.push_back(field);
               highest = std::max(highest, modal_quantities(modes.lambda[j]).divergence_rate);
             }
         }
       if (!list.empty())
         writer.write_list("modes", list);
+      if (!animated.empty())
+        writer.write_animation("unstable_modes", animated, animation_options(output));
       std::string growth; // e^{2π ξ n} in n periods
       if (const double exponent = 2. * M_PI * highest; output.animation_growth && highest > 0.)
         growth = text("; the fastest grows by a factor of ", std::exp(exponent * output.animation_periods), ", and of e in ", 1. / exponent,
                       " periods");
-      run.progress.finish(text(list.size(), " modes, ", n_animations, " animations", growth));
+      run.progress.finish(text(list.size(), " modes, ", animated.size(), " animated", growth));
     }
 
     void write_real_modes(const FrictionlessModes &modes, FieldWriter &writer, Run &run)

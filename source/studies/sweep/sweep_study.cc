@@ -170,7 +170,7 @@ namespace Squeal
           field.title         = mode_title(label, point.lambda[mode]);
           writer.write_mode(field);
           if (run.parameters.output.animation_frames > 0)
-            writer.write_animation(field, animation_options(run.parameters.output));
+            writer.write_animation(name, {field}, animation_options(run.parameters.output));
           ++n_written;
         }
       run.progress.finish(text(n_written, " leading modes"));
