@@ -54,9 +54,10 @@ namespace Squeal
             const double before = norm(j);
             for (int pass = 0; pass < 2 && j > 0; ++pass)
               {
-                const Eigen::VectorXd c = summed(communicator, Q.leftCols(j).transpose() * Q.col(j));
-                R.col(j).head(j) += c;
-                Q.col(j).noalias() -= Q.leftCols(j) * c;
+                // A matrix of one column, not a vector: of a process without rows Eigen hands only the latter to BLAS, which refuses it
+                const DenseMatrix c = summed(communicator, Q.leftCols(j).transpose() * Q.middleCols(j, 1));
+                R.col(j).head(j) += c.col(0);
+                Q.middleCols(j, 1).noalias() -= Q.leftCols(j) * c;
               }
             const double after = norm(j);
             if (after / before > smallest_rest)
@@ -191,10 +192,8 @@ namespace Squeal
         return fields;
       }
 
-      /**
-       * Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their common direction in
-       * the cosine-sine plane, as the nodal line pattern may be turned.
-       */
+      /// Sign changes of the radial profile of harmonic n: of its cosine and sine amplitudes in narrow rings, along their common direction
+      /// in the cosine-sine plane, as the nodal line pattern may be turned.
       int nodal_circles(const Eigen::VectorXd &coefficients, const int n) const
       {
         // Profile a(r) cos nθ + b(r) sin nθ

@@ -34,10 +34,8 @@ namespace Squeal
       return {Y * ritz.vectors, ritz.values};
     }
 
-    /**
-     * The inverse of K magnifies a motion at ω_1 by (ω/ω_1)² over a mode at ω, and rounding errors with it: from ω_1 < s on
-     * that of K + s² M does so less.
-     */
+    /// The inverse of K magnifies a motion at ω_1 by (ω/ω_1)² over a mode at ω, and rounding errors with it: from ω_1 < s on that of K + s²
+    /// M does so less.
     double shift_for(const std::vector<double> &eigenvalues, const double largest_circular_frequency)
     {
       const double s = largest_circular_frequency / band_per_stabilizing_shift;

@@ -20,10 +20,7 @@ namespace Squeal
       return k;
     }
 
-    /**
-     * Eliminates one dof of @p node from n·u = s: its other directions,
-     * and those of @p partner (s = n·u_partner) where there is one.
-     */
+    /// Eliminates one dof of @p node from n·u = s: its other directions, and those of @p partner (s = n·u_partner) where there is one.
     void eliminate(SlaveRows &rows, const ContactNode &contact, const Node &node, const Node *partner)
     {
       const unsigned int k     = eliminated_direction(contact);

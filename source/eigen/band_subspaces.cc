@@ -50,10 +50,8 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge. Each step also takes the combination
-     * of the last few that would have left the least (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
-     */
+    /// X of residual(X) = 0 by steps X −= divided(residual(X)), from X = 0; whether they converge. Each step also takes the combination of
+    /// the last few that would have left the least (D. G. Anderson, Journal of the ACM 12 (1965) 547–560).
     template <typename Residual, typename Divided>
     bool solve_step_by_step(DenseMatrix &X, const Residual &residual, const Divided &divided)
     {
@@ -153,10 +151,8 @@ namespace Squeal
       return false;
     }
 
-    /**
-     * A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ where rows and columns are
-     * of different modes. Products cost half of those of a dense block.
-     */
+    /// A block [0, Σ; −Σ_i⁻¹ B, −Σ_i⁻¹ D Σ_j] of the companion form in coordinates (x, λ x / σ); without Σ where rows and columns are of
+    /// different modes. Products cost half of those of a dense block.
     class CompanionBlock
     {
     public:
@@ -256,9 +252,7 @@ namespace Squeal
       return result;
     }
 
-    /**
-     * X of ω_i J X_ij − ω_j X_ij J = R_ij, 2 × 2 blocks ij; and, with negative sums, of ω_j X_ij J − ω_i J X_ij = R_ij.
-     */
+    /// X of ω_i J X_ij − ω_j X_ij J = R_ij, 2 × 2 blocks ij; and, with negative sums, of ω_j X_ij J − ω_i J X_ij = R_ij.
     DenseMatrix divided_pairs(const DenseMatrix &R, const DenseMatrix &differences, const DenseMatrix &sums)
     {
       const Eigen::Index p = differences.rows(), q = differences.cols();

@@ -9,11 +9,8 @@
 
 namespace Squeal
 {
-  /**
-   * S and its eigenvalues: the only place where λ becomes θ and ν. In units
-   * of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ = ρ² θ̂ with
-   * λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
-   */
+  /// S and its eigenvalues: the only place where λ becomes θ and ν. In units of the radius ρ: θ = ρ θ̂ with λ = s + θ for degree two, θ =
+  /// ρ² θ̂ with λ² = s² + θ for degree one; ν̂ = 1 / θ̂.
   class InverseAtShift
   {
   public:

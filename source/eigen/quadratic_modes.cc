@@ -250,10 +250,8 @@ namespace Squeal
         return krylov.dimension + n_more;
       }
 
-      /**
-       * Vectors until the next look. All values converge within a few steps, each of which costs more than a look. The worst one tells
-       * how many it needs if it goes on to fall as since the last look; three quarters of these, for it falls faster in the end.
-       */
+      /// Vectors until the next look. All values converge within a few steps, each of which costs more than a look. The worst one tells how
+      /// many it needs if it goes on to fall as since the last look; three quarters of these, for it falls faster in the end.
       int n_until_next_look() const
       {
         const int n_missing = state.n_inside - state.n_converged, least = transformation.degree * std::max(krylov.block_size, 1);

@@ -9,11 +9,8 @@
 
 namespace Squeal
 {
-  /**
-   * (K + s M)⁻¹ M on the M-orthogonal complement of given modes: its largest
-   * eigenvalues 1 / (ω² + s) belong to the lowest other modes. Self-adjoint in
-   * the inner product of M.
-   */
+  /// (K + s M)⁻¹ M on the M-orthogonal complement of given modes: its largest eigenvalues 1 / (ω² + s) belong to the lowest other modes.
+  /// Self-adjoint in the inner product of M.
   class ShiftInvert : public LinearOperator
   {
   public:

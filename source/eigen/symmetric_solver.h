@@ -55,10 +55,8 @@ namespace Squeal
     /// Puts fresh vectors to the pairs where modes in the band come with them; how many are in the band then.
     int merge(const MultiVector &fresh, RitzPairs &pairs) const;
 
-    /**
-     * Where a mode lies on the limit to rounding, count and search may see it
-     * on different sides: counts again a little higher. Whether it did.
-     */
+    /// Where a mode lies on the limit to rounding, count and search may see it on different sides: counts again a little higher. Whether it
+    /// did.
     bool lift_limit();
 
     const LinearOperator &inverse();

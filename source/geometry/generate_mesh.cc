@@ -75,10 +75,7 @@ namespace Squeal
       return input;
     }
 
-    /**
-     * Runs Gmsh on the geometry, which may only read unless the parameters allow it more; the program's own geometries
-     * are trusted.
-     */
+    /// Runs Gmsh on the geometry, which may only read unless the parameters allow it more; the program's own geometries are trusted.
     GmshMesh run_gmsh(const GeometryParameters &parameters, const std::string &geometry)
     {
       const bool         is_trusted = parameters.allow_shell_commands || is_supplied(geometry);
@@ -120,11 +117,8 @@ namespace Squeal
 
     // ---------------------------------------------------------- unit of length
 
-    /**
-     * Exponent of the power of ten that is 1 for a disc of some decimetres. The plan that comes with the program
-     * is drawn and extruded in this unit: Gmsh's tolerances are lengths, so that
-     * the same plan in another size would be meshed otherwise.
-     */
+    /// Exponent of the power of ten that is 1 for a disc of some decimetres. The plan that comes with the program is drawn and extruded in
+    /// this unit: Gmsh's tolerances are lengths, so that the same plan in another size would be meshed otherwise.
     int decimal_exponent(const double disc_outer_radius)
     {
       return 1 + static_cast<int>(std::floor(std::log10(disc_outer_radius)));

@@ -185,10 +185,8 @@ namespace Squeal
 
     // --------------------------------------------------------- nodes in elements
 
-    /**
-     * Nodes where faces of the outline meet in several fans, or more than two at an edge. There, parts of a body are joined by single
-     * nodes or edges, as on both sides of hanging nodes.
-     */
+    /// Nodes where faces of the outline meet in several fans, or more than two at an edge. There, parts of a body are joined by single
+    /// nodes or edges, as on both sides of hanging nodes.
     std::vector<bool> pinched_nodes(const HexMesh &mesh, const std::vector<HexFace> &outline)
     {
       struct Edge

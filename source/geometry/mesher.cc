@@ -93,9 +93,6 @@ namespace Squeal
     /// What became of a process that said nothing.
     [[noreturn]] void explain_end(const int status, const std::string &log, const MesherLimits &limits, const std::string &where)
     {
-      // Its allocator says so, and goes on without the memory
-      if (log.find("Out of memory") != std::string::npos)
-        refuse_memory(limits, where);
       if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM)
         throw MeshError("Gmsh did not finish within " + exact_text(limits.seconds) + " s", where,
                         "use larger elements, look for an endless loop in the geometry, or raise Geometry/Meshing time limit");

@@ -9,10 +9,8 @@ namespace Squeal
 {
   namespace
   {
-    /**
-     * Moves a point to where a function of it is less than @p least, by steps in eight directions that become half as
-     * long again and again. Returns the least value found.
-     */
+    /// Moves a point to where a function of it is less than @p least, by steps in eight directions that become half as long again and
+    /// again. Returns the least value found.
     template <typename Function>
     double move_to_least(Plan::Point &point, const double longest_step, const double shortest_step, double least, const Function &function)
     {

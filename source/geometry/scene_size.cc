@@ -97,10 +97,8 @@ namespace Squeal
 
   namespace
   {
-    /**
-     * Share of the disc's faces that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0: of the lateral ones, which tell where
-     * the axis is, or of the others, which tell how it is inclined, whichever is less.
-     */
+    /// Share of the disc's faces that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0: of the lateral ones, which
+    /// tell where the axis is, or of the others, which tell how it is inclined, whichever is less.
     double round_share(const HexMesh &mesh, const std::vector<HexFace> &faces, const HexMesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;

@@ -58,10 +58,8 @@ namespace Squeal
       return groups;
     }
 
-    /**
-     * Whether a file is a mesh of a format before 4, where every element has its own physical tag next to that of its entity. Gmsh
-     * gives the elements of an entity all groups of any of them, and converters write one entity for all.
-     */
+    /// Whether a file is a mesh of a format before 4, where every element has its own physical tag next to that of its entity. Gmsh gives
+    /// the elements of an entity all groups of any of them, and converters write one entity for all.
     bool has_physical_tags(const std::string &file)
     {
       std::ifstream stream(file, std::ios::binary);

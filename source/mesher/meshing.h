@@ -14,20 +14,16 @@ namespace Squeal
     using std::runtime_error::runtime_error;
   };
 
-  /**
-   * Starts Gmsh without the user's configuration files, on one thread and with fixed seeds, so that the same input gives
-   * the same mesh. Once in a process.
-   */
+  /// Starts Gmsh without the user's configuration files, on one thread and with fixed seeds, so that the same input gives the same mesh.
+  /// Once in a process.
   void start_gmsh();
 
   /// Gives a parameter a value that DefineNumber[..., Name "..."] takes over. Throws GmshError.
   void set_number(const std::string &name, double value);
 
-  /**
-   * Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as
-   * the file itself prescribes, a plan with quadrilaterals only, every element halved. Groups with the same name become one. Throws
-   * GmshError, and std::bad_alloc where memory ends.
-   */
+  /// Opens a script that sets variables, then a geometry or mesh if there is one, and meshes what is not meshed yet: a solid as the file
+  /// itself prescribes, a plan with quadrilaterals only, every element halved. Groups with the same name become one. Throws GmshError, and
+  /// std::bad_alloc where memory ends.
   GmshMesh mesh_geometry(const std::string &script, const std::string &file);
 
   /**
@@ -43,9 +39,6 @@ namespace Squeal
    */
   void confine();
 
-  /**
-   * Ends this process by SIGALRM after @p seconds, and lets
-   * allocations beyond @p bytes of address space fail. No core is dumped.
-   */
+  /// Ends this process by SIGALRM after @p seconds, and lets allocations beyond @p bytes of address space fail. No core is dumped.
   void limit_resources(double bytes, double seconds);
 } // namespace Squeal

@@ -70,10 +70,8 @@ namespace Squeal
     /// Cells that one thread integrates with the same integrals, and those whose matrices are kept until they are added.
     constexpr int cells_of_task = 256, cells_together = 8 * cells_of_task;
 
-    /**
-     * The sums over all cells. Of some cells at a time, threads first integrate, each other cells, then add, each to another matrix:
-     * always in the order of the cells.
-     */
+    /// The sums over all cells. Of some cells at a time, threads first integrate, each other cells, then add, each to another matrix:
+    /// always in the order of the cells.
     void integrate_and_add(const std::vector<IntegratedCell>         &cells,
                            const MakeIntegrals                       &make_integrals,
                            const unsigned int                         n_dofs_of_cell,

@@ -50,8 +50,7 @@ namespace Squeal
       if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || options.shift == 0.))
         inverse.set_friction_coefficient(mu);
       else
-        lu =
-          factorize_general(*pencil_at(sparse_matrices(sparse, values), options.shift), "stiffness of the coupled system with friction");
+        lu = factorize_general(*pencil_at(sparse_matrices(sparse, values), options.shift), "stiffness of the coupled system with friction");
       const QuadraticModes found = quadratic_modes(pencil, lu ? *lu : inverse, options);
       ComplexModes         modes;
       modes.lambda         = found.values;

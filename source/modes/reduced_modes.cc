@@ -32,10 +32,8 @@ namespace Squeal
       return std::max(model.full_order().hidden_square, rounding * stiffest);
     }
 
-    /**
-     * Leaves only oscillating modes: real values of rounding join the others
-     * of their kind, zeros, those of rigid-body motions, are counted.
-     */
+    /// Leaves only oscillating modes: real values of rounding join the others of their kind, zeros, those of rigid-body motions, are
+    /// counted.
     void separate_real(ReducedModes &modes, const ReducedModel &model, const double largest_circular_frequency)
     {
       const double hidden = hidden_square(model);

@@ -170,23 +170,22 @@ namespace Squeal
   void AccuracyStudyParameters::declare(Declarations &declarations)
   {
     declarations.enter("Accuracy study");
-    declarations.add("Mesh factors", factors,
-                     "How many times as fine as the mesh of the section Geometry the meshes are, in every direction, separated by commas: "
-                     "element size, layers and nodes per pin face follow. Two or more; three give an order of convergence. Units: none.",
+    declarations.add("Mesh factors", factors, "none",
+                     "How many times as fine as the mesh of the section Geometry the meshes are, in every direction, separated by "
+                     "commas: element size, layers and nodes per pin face follow. Two or more; three give an order of convergence.",
                      {0.1, 10.}, 20);
     add_list(declarations, "Elements", elements, "Elements that are compared.");
     add_list(declarations, "Outlines", outlines, "Outlines of meshes with straight edges; quadratic elements follow the circles.");
     declarations.add_text(
       "Bases", "Names of reduced bases that are measured beside full order, separated by commas, as in the section Reduction; empty: none.",
       [this] { return boost::algorithm::join(bases, ", "); }, [this](const std::string &text) { bases = split(text); });
-    declarations.add("Grown tolerance", grown_tolerance,
-                     "Bases `residual-grown`: estimated relative error of lambda at which they stop to grow. Units: none.", {1e-11, 1e-1});
-    declarations.add("Largest number of dofs", largest_dofs, "Meshes with more dofs are left out. Units: none.", {1.});
-    declarations.add(
-      "Band margin", margin,
-      "Part of the band by which all modes are found beyond its end, so that modes of coarse meshes, whose frequencies are too "
-      "high, do not lack partners. Units: none.",
-      {0., 1.});
+    declarations.add("Grown tolerance", grown_tolerance, "none",
+                     "Bases `residual-grown`: estimated relative error of lambda at which they stop to grow.", {1e-11, 1e-1});
+    declarations.add("Largest number of dofs", largest_dofs, "none", "Meshes with more dofs are left out.", {1.});
+    declarations.add("Band margin", margin, "none",
+                     "Part of the band by which all modes are found beyond its end, so that modes of coarse meshes, whose frequencies "
+                     "are too high, do not lack partners.",
+                     {0., 1.});
   }
 
   void AccuracyStudyParameters::check() const

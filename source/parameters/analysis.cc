@@ -12,9 +12,9 @@ namespace Squeal
                      "each element (Wilson, Taylor), which bend: a system of the same size. quadratic: 27 nodes, on curved boundaries.");
 
     declarations.enter("Band");
-    declarations.add("Maximum frequency", maximum_frequency,
-                     "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine "
-                     "meshes: results hold in a stated band. Units: Hz.",
+    declarations.add("Maximum frequency", maximum_frequency, "Hz",
+                     "Upper end of the band in which all modes are found. Coulomb friction is ill-posed in the limit of fine meshes: "
+                     "results hold in a stated band.",
                      {0.});
   }
 
@@ -31,10 +31,10 @@ namespace Squeal
     declarations.add("Solver", real_solver,
                      "Shift-invert eigensolver of the symmetric problem: block Lanczos; block Krylov-Schur (Anasazi) and implicitly "
                      "restarted Lanczos (ARPACK) as independent checks.");
-    declarations.add("Tolerance", real_tolerance, "Largest relative residual of a real mode. Units: none.", {1e-14, 1e-4});
-    declarations.add("Maximum number of modes", maximum_modes,
+    declarations.add("Tolerance", real_tolerance, "none", "Largest relative residual of a real mode.", {1e-14, 1e-4});
+    declarations.add("Maximum number of modes", maximum_modes, "none",
                      "Modes of the coupled system in the band above which a run ends before any is computed: 500 take minutes and "
-                     "gigabytes, twice as many up to eight times the time. Units: none.",
+                     "gigabytes, twice as many up to eight times the time.",
                      {1});
 
     declarations.enter("Complex modes");
@@ -44,21 +44,20 @@ namespace Squeal
     declarations.add("Shift inverse", shift_inverse,
                      "How the Krylov solver inverts the nonsymmetric stiffness: Cholesky factor of the frictionless system with a "
                      "correction of rank n_c, or LU factors of the nonsymmetric sparse matrix.");
-    declarations.add("Tolerance", complex_tolerance, "Largest relative residual of a complex mode found by Krylov. Units: none.",
-                     {1e-13, 1e-4});
-    declarations.add("Iteration tolerance", iteration_tolerance,
-                     "Largest estimated relative error of lambda at which the residual iteration ends. Units: none.", {1e-12, 1e-2});
-    declarations.add("Maximum basis", maximum_basis, "Largest basis of the residual iteration. Units: vectors.", {1});
+    declarations.add("Tolerance", complex_tolerance, "none", "Largest relative residual of a complex mode found by Krylov.", {1e-13, 1e-4});
+    declarations.add("Iteration tolerance", iteration_tolerance, "none",
+                     "Largest estimated relative error of lambda at which the residual iteration ends.", {1e-12, 1e-2});
+    declarations.add("Maximum basis", maximum_basis, "vectors", "Largest basis of the residual iteration.", {1});
 
     declarations.enter("Linear algebra");
-    declarations.add("Factorization", library, "Sparse direct solver of symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
-    declarations.add(
-      "Threads", n_threads,
-      "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and large factors. 0: as many as "
-      "OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it. Units: none.",
-      {0, 1024});
-    declarations.add("BLAS threads", blas_threads,
-                     "Threads of the dense kernels per process; more than one only pays on idle cores. Units: none.", {1, 256});
+    declarations.add("Factorization", library,
+                     "Sparse direct solver of symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
+    declarations.add("Threads", n_threads, "none",
+                     "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and "
+                     "large factors. 0: as many as OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it.",
+                     {0, 1024});
+    declarations.add("BLAS threads", blas_threads, "none",
+                     "Threads of the dense kernels per process; more than one only pays on idle cores.", {1, 256});
   }
 
   void OutputParameters::declare(Declarations &declarations)
@@ -68,9 +67,9 @@ namespace Squeal
     declarations.add("Component mode shapes", component_fields,
                      "Writes the shapes of the modes of the disc alone and of the pins alone, free and sliding, too.");
     declarations.add("Real mode shapes", real_fields, "Writes the shapes of the coupled modes without friction, too.");
-    declarations.add("Animation frames", animation_frames,
-                     "Pictures per period in the animation of an unstable mode; 0: none. Units: none.", {0, 1000});
-    declarations.add("Animation periods", animation_periods, "Periods that an animation shows. Units: none.", {1, 1000});
+    declarations.add("Animation frames", animation_frames, "none", "Pictures per period in the animation of an unstable mode; 0: none.",
+                     {0, 1000});
+    declarations.add("Animation periods", animation_periods, "none", "Periods that an animation shows.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
                      "Shows the mode with its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
     declarations.add("Write matrices", write_matrices,

@@ -13,16 +13,9 @@ namespace Squeal
 {
   namespace
   {
-    /// " m" where the documentation ends with "Units: m."; nothing where it says none, or several.
-    std::string unit_in(const std::string &documentation)
+    std::string with_unit(const std::string &documentation, const std::string &unit)
     {
-      const std::string mark  = "Units: ";
-      const auto        begin = documentation.rfind(mark);
-      if (begin == std::string::npos)
-        return "";
-      const auto        start = begin + mark.size();
-      const std::string unit  = documentation.substr(start, documentation.find('.', start) - start);
-      return unit == "none" || unit.find_first_of(", ") != std::string::npos ? "" : " " + unit;
+      return documentation + (documentation.empty() ? "" : " ") + "Units: " + unit + ".";
     }
 
     [[noreturn]] void refuse(const std::string &path, const std::string &demand, const std::string &value, const std::string &accepted)
@@ -35,9 +28,15 @@ namespace Squeal
     /// A number of a certain kind, and what messages call it.
     struct NumberKind
     {
+      NumberKind(const Range &range, const bool is_integer, const std::string &unit)
+        : range(range)
+        , is_integer(is_integer)
+        , unit(unit == "none" || unit.find_first_of(", ") != std::string::npos ? "" : " " + unit)
+      {}
+
       Range       range;
       bool        is_integer;
-      std::string unit; ///< with a blank before it
+      std::string unit; ///< with a blank before it; empty where there is none, or several
 
       /// "0 ... 10", ">= 0", "<= 10", or nothing.
       std::string bounds() const
@@ -88,31 +87,40 @@ namespace Squeal
     section = name + "/";
   }
 
-  void Declarations::add(const std::string &name, double &value, const std::string &documentation, const Range &range)
+  void Declarations::add(const std::string &name,
+                         double            &value,
+                         const std::string &unit,
+                         const std::string &documentation,
+                         const Range       &range)
   {
-    const NumberKind  kind{range, false, unit_in(documentation)};
+    const NumberKind  kind(range, false, unit);
     const std::string path = section + name;
-    declared.push_back({path, documentation, kind.accepted("a number"), [&value] { return exact_text(value); },
+    declared.push_back({path, with_unit(documentation, unit), kind.accepted("a number"), [&value] { return exact_text(value); },
                         [&value, kind, path](const std::string &text) { value = kind.parse(path, text); }});
   }
 
-  void Declarations::add(const std::string &name, unsigned int &value, const std::string &documentation, const Range &range)
+  void Declarations::add(const std::string &name,
+                         unsigned int      &value,
+                         const std::string &unit,
+                         const std::string &documentation,
+                         const Range       &range)
   {
-    const NumberKind  kind{range, true, unit_in(documentation)};
+    const NumberKind  kind(range, true, unit);
     const std::string path = section + name;
-    declared.push_back({path, documentation, kind.accepted("an integer"), [&value] { return std::to_string(value); },
+    declared.push_back({path, with_unit(documentation, unit), kind.accepted("an integer"), [&value] { return std::to_string(value); },
                         [&value, kind, path](const std::string &text) { value = static_cast<unsigned int>(kind.parse(path, text)); }});
   }
 
   void Declarations::add(const std::string   &name,
                          std::vector<double> &values,
+                         const std::string   &unit,
                          const std::string   &documentation,
                          const Range         &range,
                          const std::size_t    most_numbers)
   {
-    const NumberKind  kind{range, false, unit_in(documentation)};
+    const NumberKind  kind(range, false, unit);
     const std::string path = section + name, accepted = kind.accepted("numbers") + ", separated by commas";
-    declared.push_back({path, documentation, accepted, [&values] { return exact_text(values); },
+    declared.push_back({path, with_unit(documentation, unit), accepted, [&values] { return exact_text(values); },
                         [&values, kind, path, accepted, most_numbers](const std::string &text) {
                           const auto parts = split_numbers(text, path, "");
                           if (parts.size() > most_numbers)

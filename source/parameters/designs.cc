@@ -18,11 +18,10 @@ namespace Squeal
     declarations.add("File", file,
                      "CSV file of designs: names of the first line as in Variables, a design in each of the others. Looked for beside the "
                      "parameter file.");
-    declarations.add("Number of designs", n_samples, "Samples of a Latin hypercube or a Sobol sequence. Units: none.", {1., 1e5});
-    declarations.add("Seed", seed, "Of the random numbers of samples: equal seeds give equal designs. Units: none.", {0., 2147483647.});
-    declarations.add("Processes", n_processes,
-                     "Designs that are solved side by side on this machine, or by every MPI process; 0: one for each core. Units: none.",
-                     {0., 1024.});
+    declarations.add("Number of designs", n_samples, "none", "Samples of a Latin hypercube or a Sobol sequence.", {1., 1e5});
+    declarations.add("Seed", seed, "none", "Of the random numbers of samples: equal seeds give equal designs.", {0., 2147483647.});
+    declarations.add("Processes", n_processes, "none",
+                     "Designs that are solved side by side on this machine, or by every MPI process; 0: one for each core.", {0., 1024.});
   }
 
   void SearchParameters::declare(Declarations &declarations)
@@ -34,11 +33,11 @@ namespace Squeal
       "which on a divergence rate exceeds 0.01 %, as large as possible. divergence rate: the largest one between the first "
       "and the last friction coefficient of the section Sweep, as small as possible.");
     declarations.add("Method", method, "Method of NLopt, none of which needs derivatives.");
-    declarations.add("Samples", n_samples, "Points of Sobol's sequence that are tried first; the method starts from the best. Units: none.",
+    declarations.add("Samples", n_samples, "none", "Points of Sobol's sequence that are tried first; the method starts from the best.",
                      {1., 1e5});
-    declarations.add("Evaluations", n_evaluations, "Designs that are solved at most, samples included. Units: none.", {1., 1e5});
-    declarations.add("First step", first_step, "First step of the method, a part of each range. Units: none.", {1e-6, 0.5});
-    declarations.add("Smallest step", smallest_step, "The method ends when its steps are smaller, parts of each range. Units: none.",
+    declarations.add("Evaluations", n_evaluations, "none", "Designs that are solved at most, samples included.", {1., 1e5});
+    declarations.add("First step", first_step, "none", "First step of the method, a part of each range.", {1e-6, 0.5});
+    declarations.add("Smallest step", smallest_step, "none", "The method ends when its steps are smaller, parts of each range.",
                      {1e-9, 0.5});
   }
 

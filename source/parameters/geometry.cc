@@ -188,57 +188,53 @@ namespace Squeal
   {
     declarations.enter("Geometry");
     declarations.add("File", file,
-                     "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the "
-                     "parameter file, in the current directory, then among the geometries that come with "
-                     "the program. A file with physical volumes is a solid and is used as it is; one with physical "
-                     "surfaces and curves only is a plan that is extruded. A .geo can use every parameter below, and its "
-                     "own variables (DefineConstant, DefineNumber) are parameters of this section. Units: none.");
-    declarations.add("Disc inner radius", disc_inner_radius, "Radius of the bore of the disc. Units: m.", {0.});
-    declarations.add("Disc outer radius", disc_outer_radius, "Radius of the rim of the disc. Units: m.", {0.});
-    declarations.add("Disc thickness", disc_thickness, "Thickness of the disc, half of it on each side of z = 0. Units: m.", {0.});
-    declarations.add("Pin diameter", pin_diameter, "Diameter of every pin. Units: m.", {0.});
-    declarations.add("Pin height", pin_height, "Height of every pin above the disc's face. Units: m.", {0.});
-    declarations.add("Top pin radii", top.radii,
-                     "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, "
-                     "separated by commas; empty for none. Units: m.",
+                     "Plan or mesh of disc and pins: a Gmsh geometry (.geo) or mesh (.msh). It is looked for beside the parameter "
+                     "file, in the current directory, then among the geometries that come with the program. A file with physical "
+                     "volumes is a solid and is used as it is; one with physical surfaces and curves only is a plan that is extruded. "
+                     "A .geo can use every parameter below, and its own variables (DefineConstant, DefineNumber) are parameters of "
+                     "this section.");
+    declarations.add("Disc inner radius", disc_inner_radius, "m", "Radius of the bore of the disc.", {0.});
+    declarations.add("Disc outer radius", disc_outer_radius, "m", "Radius of the rim of the disc.", {0.});
+    declarations.add("Disc thickness", disc_thickness, "m", "Thickness of the disc, half of it on each side of z = 0.", {0.});
+    declarations.add("Pin diameter", pin_diameter, "m", "Diameter of every pin.", {0.});
+    declarations.add("Pin height", pin_height, "m", "Height of every pin above the disc's face.", {0.});
+    declarations.add("Top pin radii", top.radii, "m",
+                     "Distances of the axes of the pins on the upper face (z > 0) from the axis of the disc, separated by commas; "
+                     "empty for none.",
                      {0.});
-    declarations.add("Top pin angles", top.angles, "Angles of the axes of the pins on the upper face, as many as radii. Units: degree.");
-    declarations.add("Bottom pin radii", bottom.radii,
-                     "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, "
-                     "separated by commas; empty for none. Units: m.",
+    declarations.add("Top pin angles", top.angles, "degree", "Angles of the axes of the pins on the upper face, as many as radii.");
+    declarations.add("Bottom pin radii", bottom.radii, "m",
+                     "Distances of the axes of the pins on the lower face (z < 0) from the axis of the disc, separated by commas; "
+                     "empty for none.",
                      {0.});
-    declarations.add("Bottom pin angles", bottom.angles,
-                     "Angles of the axes of the pins on the lower face, as many as radii. Units: degree.");
-    declarations.add("Nodes per pin face", nodes_per_pin_face,
-                     "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1. Units: none.", {1});
-    declarations.add("Pin layers", pin_layers, "Layers of elements over the height of a pin. Units: none.", {1});
-    declarations.add("Disc layers", disc_layers, "Layers of elements through the disc. Units: none.", {1});
-    declarations.add("Element size", element_size,
-                     "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes "
-                     "smaller ones where these do not fit between the pins. Units: m.",
+    declarations.add("Bottom pin angles", bottom.angles, "degree", "Angles of the axes of the pins on the lower face, as many as radii.");
+    declarations.add("Nodes per pin face", nodes_per_pin_face, "none",
+                     "Nodes on each contact face of a pin: 7, 19, 37, 61, ..., that is 3 k (k + 1) + 1.", {1});
+    declarations.add("Pin layers", pin_layers, "none", "Layers of elements over the height of a pin.", {1});
+    declarations.add("Disc layers", disc_layers, "none", "Layers of elements through the disc.", {1});
+    declarations.add("Element size", element_size, "m",
+                     "Length of the elements of the disc, in its plane and away from the pins; disc_pins.geo takes smaller ones where "
+                     "these do not fit between the pins.",
                      {0.});
-    declarations.add(
-      "Outlines", outlines,
-      "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are smaller. true "
-      "area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements follow the circle. Units: none.");
-    declarations.add("Pin rings", pin_rings,
-                     "Rings of elements along the outline of every pin of a plan, around its blocks; each adds 6 k nodes to the face, k of "
-                     "Nodes per pin face = 3 k (k + 1) + 1. Units: none.",
+    declarations.add("Outlines", outlines,
+                     "Straight edges of round pins, bore and rim of a plan. inscribed: nodes on the circle, so that polygons are "
+                     "smaller. true area: nodes moved outwards until area and moments of area are the circle's. Quadratic elements "
+                     "follow the circle.");
+    declarations.add("Pin rings", pin_rings, "none",
+                     "Rings of elements along the outline of every pin of a plan, around its blocks; each adds 6 k nodes to the face, "
+                     "k of Nodes per pin face = 3 k (k + 1) + 1.",
                      {0, 20});
-    declarations.add("Pin grading", pin_grading,
+    declarations.add("Pin grading", pin_grading, "none",
                      "Size of a layer or ring of a pin over that of the next one towards the edge where the pin is held; 1: all alike. "
-                     "Stresses are singular there. Units: none.",
+                     "Stresses are singular there.",
                      {1., 4.});
-    declarations.add("Pairing tolerance", pairing_tolerance,
-                     "Greatest distance at which a node of the disc and a node of a pin form a contact pair. "
-                     "Units: m.",
-                     {0.});
+    declarations.add("Pairing tolerance", pairing_tolerance, "m",
+                     "Greatest distance at which a node of the disc and a node of a pin form a contact pair.", {0.});
     declarations.add("Allow shell commands", allow_shell_commands,
                      "Whether a .geo may run programs, make, write and remove files and use the network, as Gmsh lets it. Where the "
-                     "system cannot forbid that, a note says so. "
-                     "Only for files whose every line you trust. Units: none.");
-    declarations.add("Meshing time limit", meshing_time_limit, "Longest time that Gmsh may take. Units: s.", {0.});
-    declarations.add("Meshing memory limit", meshing_memory_limit, "Most memory that Gmsh may take. Units: GB.", {0.});
+                     "system cannot forbid that, a note says so. Only for files whose every line you trust.");
+    declarations.add("Meshing time limit", meshing_time_limit, "s", "Longest time that Gmsh may take.", {0.});
+    declarations.add("Meshing memory limit", meshing_memory_limit, "GB", "Most memory that Gmsh may take.", {0.});
     for (Variable &variable : variables)
       declare_variable(declarations, variable);
   }

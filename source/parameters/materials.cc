@@ -32,16 +32,16 @@ namespace Squeal
     void declare_material(Declarations &declarations, const std::string &section, Material &material)
     {
       declarations.enter(section);
-      declarations.add("Young modulus", material.young_modulus, "Young's modulus E. Units: Pa.", {0.});
-      declarations.add("Poisson ratio", material.poisson_ratio, "Poisson's ratio. Units: none.", {-1., 0.5});
-      declarations.add("Density", material.density, "Mass density. Units: kg/m^3.", {0.});
-      declarations.add("Rayleigh alpha", material.rayleigh_alpha,
-                       "Damping in proportion to the mass, C = alpha M + beta K: modes of omega are damped by the ratio "
-                       "alpha / (2 omega). Units: 1/s.",
+      declarations.add("Young modulus", material.young_modulus, "Pa", "Young's modulus E.", {0.});
+      declarations.add("Poisson ratio", material.poisson_ratio, "none", "Poisson's ratio.", {-1., 0.5});
+      declarations.add("Density", material.density, "kg/m^3", "Mass density.", {0.});
+      declarations.add("Rayleigh alpha", material.rayleigh_alpha, "1/s",
+                       "Damping in proportion to the mass, C = alpha M + beta K: modes of omega are damped by the ratio alpha / (2 "
+                       "omega).",
                        {0.});
-      declarations.add("Rayleigh beta", material.rayleigh_beta,
-                       "Damping in proportion to the stiffness of the material, mounts excluded: modes of omega are damped by the "
-                       "ratio beta omega / 2. Units: s.",
+      declarations.add("Rayleigh beta", material.rayleigh_beta, "s",
+                       "Damping in proportion to the stiffness of the material, mounts excluded: modes of omega are damped by the ratio "
+                       "beta omega / 2.",
                        {0.});
     }
 

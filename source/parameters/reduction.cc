@@ -69,17 +69,15 @@ namespace Squeal
         for (const ListEntry &entry : parse_list(text, truncation_list))
           truncations.push_back(parse_truncation(entry));
       });
-    declarations.add("Coupled frequency", coupled_frequencies,
-                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band. Units: Hz.",
-                     {0.});
-    declarations.add("Rank tolerance", rank_tolerance,
-                     "Directions of a basis whose M-norm is below this part of the largest are dropped. Units: none.", {1e-14, 1e-2});
-    declarations.add(
-      "Grown tolerances", grown_tolerances,
-      "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these. Units: none.");
-    declarations.add("Snapshots", snapshots, "Friction coefficients whose complex modes make the basis `POD`. Units: none.");
-    declarations.add("POD tolerance", pod_tolerance,
-                     "Principal axes of the snapshots below this part of the largest are left out. Units: none.", {1e-13, 1.});
+    declarations.add("Coupled frequency", coupled_frequencies, "Hz",
+                     "Real coupled modes below each of these frequencies make the bases `real ...`; 0: those of the band.", {0.});
+    declarations.add("Rank tolerance", rank_tolerance, "none",
+                     "Directions of a basis whose M-norm is below this part of the largest are dropped.", {1e-14, 1e-2});
+    declarations.add("Grown tolerances", grown_tolerances, "none",
+                     "Bases `residual-grown`: grown until the estimated relative error of every lambda is below each of these.");
+    declarations.add("Snapshots", snapshots, "none", "Friction coefficients whose complex modes make the basis `POD`.");
+    declarations.add("POD tolerance", pod_tolerance, "none", "Principal axes of the snapshots below this part of the largest are left out.",
+                     {1e-13, 1.});
   }
 
   void ReductionParameters::check() const

@@ -25,11 +25,10 @@ namespace Squeal
     declarations.add("Control", control,
                      "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
                      "displacement, the travel of every backplate; load per pin, a force on each pin.");
-    declarations.add(
-      "Displacement", displacement,
-      "Travel of each backplate towards the disc, along the axis (a shoe on a rim: along its mean contact normal), from where a "
-      "pin without gap touches the disc, for Control = displacement. Units: m.",
-      {0.});
+    declarations.add("Displacement", displacement, "m",
+                     "Travel of each backplate towards the disc, along the axis (a shoe on a rim: along its mean contact normal), from "
+                     "where a pin without gap touches the disc, for Control = displacement.",
+                     {0.});
     declare_list(declarations, "Loads", pin_loads,
                  "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
                  "share of Operation/Load per side, a shoe on a rim all of it. Units: N.",

@@ -59,37 +59,35 @@ namespace Squeal
     constexpr Range       coefficients      = {0., 10.};
     constexpr std::size_t most_coefficients = 1000;
     declarations.enter("Sweep");
-    declarations.add("First friction coefficient", friction_coefficients.first, "Where the sweep begins. Units: none.", coefficients);
-    declarations.add("Last friction coefficient", friction_coefficients.last, "End of the sweep. Units: none.", coefficients);
-    declarations.add("Number of friction coefficients", friction_coefficients.number,
-                     "Values of the sweep, equally spaced; steps in which modes meet are refined. Units: none.", {1, 100000});
-    declarations.add("Tolerance", tolerance,
-                     "Largest estimated relative error of lambda of every mode at every value of the sweep. Units: none.", {1e-10, 1e-2});
-    declarations.add(
-      "Maximum basis", maximum_basis,
-      "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance. Units: vectors.", {1});
-    declarations.add("Threshold tolerance", threshold_tolerance,
-                     "Width of the interval of the friction coefficient to which a threshold is located. Units: none.", {1e-13, 1e-2});
+    declarations.add("First friction coefficient", friction_coefficients.first, "none", "Where the sweep begins.", coefficients);
+    declarations.add("Last friction coefficient", friction_coefficients.last, "none", "End of the sweep.", coefficients);
+    declarations.add("Number of friction coefficients", friction_coefficients.number, "none",
+                     "Values of the sweep, equally spaced; steps in which modes meet are refined.", {1, 100000});
+    declarations.add("Tolerance", tolerance, "none",
+                     "Largest estimated relative error of lambda of every mode at every value of the sweep.", {1e-10, 1e-2});
+    declarations.add("Maximum basis", maximum_basis, "vectors",
+                     "Largest reduced basis, at least the real modes; a sweep that would need more keeps what meets the tolerance.", {1});
+    declarations.add("Threshold tolerance", threshold_tolerance, "none",
+                     "Width of the interval of the friction coefficient to which a threshold is located.", {1e-13, 1e-2});
     declarations.add("Compare dissipation", compare_dissipation, "With radial dissipation, sweep also without it and show both.");
-    declarations.add("Mode shapes at", mode_shapes,
-                     "Friction coefficients at which the leading mode is written as a field, separated by commas. Units: none.",
+    declarations.add("Mode shapes at", mode_shapes, "none",
+                     "Friction coefficients at which the leading mode is written as a field, separated by commas.", coefficients,
+                     most_coefficients);
+    declarations.add("Complex plane at", planes, "none",
+                     "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and "
+                     "drawn in the complex plane, separated by commas; empty: those of Mode shapes at.",
                      coefficients, most_coefficients);
-    declarations.add(
-      "Complex plane at", planes,
-      "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and drawn in "
-      "the complex plane, separated by commas; empty: those of Mode shapes at. Units: none.",
-      coefficients, most_coefficients);
-    declarations.add("Count modes at", counts,
+    declarations.add("Count modes at", counts, "none",
                      "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
-                     "in finding them, separated by commas. Units: none.",
+                     "in finding them, separated by commas.",
                      coefficients, most_coefficients);
     declarations.add("Map parameter", map_parameter,
                      "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
-    declarations.add("First map value", map_values.first, "Smallest load or speed of the map. Units: N or rad/s.", {0.});
-    declarations.add("Last map value", map_values.last, "Largest load or speed of the map. Units: N or rad/s.", {0.});
-    declarations.add("Number of map values", map_values.number, "Loads or speeds of the map, of equal ratio. Units: none.", {1, 10000});
-    declarations.add("Map friction coefficients", map_friction_coefficients,
-                     "Friction coefficients of the map, equally spaced over the sweep. Units: none.", {1, 10000});
+    declarations.add("First map value", map_values.first, "N or rad/s", "Smallest load or speed of the map.", {0.});
+    declarations.add("Last map value", map_values.last, "N or rad/s", "Largest load or speed of the map.", {0.});
+    declarations.add("Number of map values", map_values.number, "none", "Loads or speeds of the map, of equal ratio.", {1, 10000});
+    declarations.add("Map friction coefficients", map_friction_coefficients, "none",
+                     "Friction coefficients of the map, equally spaced over the sweep.", {1, 10000});
   }
 
   void SweepParameters::check() const

@@ -51,10 +51,8 @@ namespace Squeal
       return best;
     }
 
-    /**
-     * Moves the interval of a threshold to where the function itself changes
-     * sign: the growth of a mode is seen only beyond what is negligible.
-     */
+    /// Moves the interval of a threshold to where the function itself changes sign: the growth of a mode is seen only beyond what is
+    /// negligible.
     void enclose(const TrackedModes &modes, EventSearch &search)
     {
       const int direction = search.upward ? -1 : 1;
@@ -139,10 +137,8 @@ namespace Squeal
       return fl && fr ? std::abs(*fr - *fl) / (modes.mu(last) - modes.mu(first)) : 0.;
     }
 
-    /**
-     * What corrections change of Re λ (growth) or Im λ to second order, the latter without regard to its sign; no more than the
-     * uncertainty of λ, which is what remains at the real axis and where no corrections are known.
-     */
+    /// What corrections change of Re λ (growth) or Im λ to second order, the latter without regard to its sign; no more than the
+    /// uncertainty of λ, which is what remains at the real axis and where no corrections are known.
     double uncertainty_of_lambda(const TrackedModes &modes, const EventSearch &search)
     {
       double result = 0.;

@@ -102,11 +102,8 @@ namespace Squeal
   /// The function whose zero is searched, where the branches exist.
   std::optional<double> search_value(const TrackedModes &modes, const EventSearch &search, int k);
 
-  /**
-   * Whether a branch that is neutral at the first point grows from there on:
-   * Re λ ~ μ, or δ² ~ μ² of a double mode, with a factor that linear
-   * extrapolation leaves positive.
-   */
+  /// Whether a branch that is neutral at the first point grows from there on: Re λ ~ μ, or δ² ~ μ² of a double mode, with a factor that
+  /// linear extrapolation leaves positive.
   bool grows_at_once(const TrackedModes &modes, const EventSearch &search);
 
   /// Friction coefficients that would tell more; @p predict may be empty.

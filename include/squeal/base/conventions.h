@@ -38,10 +38,8 @@ namespace Squeal
     return circular_frequency / (2. * M_PI);
   }
 
-  /**
-   * How an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K is reported. This is
-   * the only place where rad/s become Hz and rates become per cent.
-   */
+  /// How an eigenvalue λ = R + iω of Q(λ) = λ² M + λ C + K is reported. This is the only place where rad/s become Hz and rates become per
+  /// cent.
   struct ModalQuantities
   {
     double frequency;       ///< ω / 2π [Hz]

@@ -5,11 +5,8 @@
 
 namespace Squeal
 {
-  /**
-   * What the user reads when a run cannot go on: what is wrong, where, and
-   * what to change. Thrown by everything that checks input, meshes or the
-   * outcome of a solver; main() prints it as one message and returns 1.
-   */
+  /// What the user reads when a run cannot go on: what is wrong, where, and what to change. Thrown by everything that checks input, meshes
+  /// or the outcome of a solver; main() prints it as one message and returns 1.
   struct Error : std::runtime_error
   {
     /**

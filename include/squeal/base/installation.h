@@ -4,10 +4,8 @@
 
 namespace Squeal
 {
-  /**
-   * Where the program finds what belongs to it: seen from the executable as `cmake --install` lays it out, so that an
-   * installation may be moved as a whole; in the trees that it was built from, if it is not installed.
-   */
+  /// Where the program finds what belongs to it: seen from the executable as `cmake --install` lays it out, so that an installation may be
+  /// moved as a whole; in the trees that it was built from, if it is not installed.
   struct Installation
   {
     std::filesystem::path geometries; ///< folder of the geometries that come with the program

@@ -27,11 +27,9 @@ namespace Squeal
   /// Peak of it since the beginning of the process or since reset_peak_memory() [byte]; 0 where the system does not tell.
   double peak_resident_memory();
 
-  /**
-   * Lets freed memory go back to the system where it is more than 256 MB at the end of the heap. SuperLU_dist, which comes with the packages
-   * of deal.II, tells the allocator to keep everything: a process would hold the sum of what its steps ever used. Large blocks are not mapped
-   * one by one, since clearing new pages for each temporary vector takes a tenth of a large run. To be called once, first.
-   */
+  /// Lets freed memory go back to the system where it is more than 256 MB at the end of the heap. SuperLU_dist, which comes with the
+  /// packages of deal.II, tells the allocator to keep everything: a process would hold the sum of what its steps ever used. Large blocks
+  /// are not mapped one by one, since clearing new pages for each temporary vector takes a tenth of a large run. To be called once, first.
   void return_freed_blocks();
 
   /// Gives all freed memory back to the system.

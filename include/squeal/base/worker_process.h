@@ -12,10 +12,8 @@ namespace Squeal
   /// Cores that this process may use, as the system and whoever started it leave them.
   unsigned int n_usable_cores();
 
-  /**
-   * This program once more, in a process of its own: whatever happens to it leaves this one alone. It knows nothing of the MPI job that
-   * this process belongs to, and is told to end (SIGTERM) when this process ends in whatever way.
-   */
+  /// This program once more, in a process of its own: whatever happens to it leaves this one alone. It knows nothing of the MPI job that
+  /// this process belongs to, and is told to end (SIGTERM) when this process ends in whatever way.
   class WorkerProcess
   {
   public:

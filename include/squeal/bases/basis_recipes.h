@@ -54,10 +54,7 @@ namespace Squeal
     int                        contact    = 0; ///< n_c
   };
 
-  /**
-   * What bases are made from. What a basis does not need may be
-   * missing; what is pointed to must outlive the call only.
-   */
+  /// What bases are made from. What a basis does not need may be missing; what is pointed to must outlive the call only.
   struct BasisIngredients
   {
     std::map<BasisSource, const MultiVector *> sets; ///< of modes

@@ -19,16 +19,11 @@ namespace Squeal
   /// Displacements along and rotations about x, y, z of one component, the others at rest: n × 6 on the uncoupled dofs.
   MultiVector rigid_motions(const Model &model, unsigned int component);
 
-  /**
-   * The six rigid-body motions of the disc with the pins following where the
-   * contact makes them, in coupled coordinates, n × 6.
-   */
+  /// The six rigid-body motions of the disc with the pins following where the contact makes them, in coupled coordinates, n × 6.
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
 
-  /**
-   * Rigid-body motions of the uncoupled disc that its mounts leave free
-   * (up to rounding errors of K), M-orthonormal; nothing if they hold it.
-   */
+  /// Rigid-body motions of the uncoupled disc that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if they hold
+  /// it.
   std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system);
 
   /// Combinations of rigid-body motions, M-orthonormal as these are, by what they do to the contact nodes.

@@ -38,10 +38,8 @@ namespace Squeal
     /// Ψ_an^D or Ψ_an^P: responses of one component to unit forces along n, the other at rest.
     MultiVector normal_attachment(Component component) const;
 
-    /**
-     * Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit
-     * normal forces together with the friction that they cause, r_t = μ r_n.
-     */
+    /// Ψ_aμ^D − Ψ_aμ^P = K⁻¹ (P_nᵀ + μ P_tᵀ), eq. (23): responses to unit normal forces together with the friction that they cause, r_t = μ
+    /// r_n.
     MultiVector rubbing_attachment(double friction_coefficient) const;
 
     /**
@@ -87,10 +85,8 @@ namespace Squeal
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /**
-   * Responses of first order of real coupled modes Φ_R to damping,
-   * K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R. Throws SolverError if there is no damping.
-   */
+  /// Responses of first order of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R. Throws SolverError if there is no
+  /// damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,

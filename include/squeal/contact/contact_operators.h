@@ -52,18 +52,14 @@ namespace Squeal
     sliding ///< fixed along n, free in the tangent plane
   };
 
-  /**
-   * Matrix whose columns span the admissible displacements of a component, the other being at rest: n × n_component.
-   * It selects the dofs of the component; with `sliding` n·u = 0 holds at its contact nodes.
-   */
+  /// Matrix whose columns span the admissible displacements of a component, the other being at rest: n × n_component. It selects the dofs
+  /// of the component; with `sliding` n·u = 0 holds at its contact nodes.
   std::shared_ptr<SparseMatrix> component_kernel(const Model            &model,
                                                  const ContactInterface &interface,
                                                  Component               component,
                                                  ContactBoundary         boundary);
 
-  /**
-   * q with T q = u for displacements u, n × k, in the range of a kernel T (T_c
-   * or one of component_kernel()): the entries of u at the dofs that T selects.
-   */
+  /// q with T q = u for displacements u, n × k, in the range of a kernel T (T_c or one of component_kernel()): the entries of u at the dofs
+  /// that T selects.
   MultiVector coordinates(const SparseMatrix &T, const MultiVector &u);
 } // namespace Squeal

@@ -71,11 +71,8 @@ namespace Squeal
     bool has_damping() const;
   };
 
-  /**
-   * C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs;
-   * null if all coefficients vanish. With a friction coefficient μ(w) that falls
-   * with the sliding speed, c_t = μ'(w_0) |R_n0| is negative.
-   */
+  /// C_f = P_bᵀ diag(c_b) P_b + P_tᵀ diag(c_t) P_t [N s/m] on the uncoupled dofs; null if all coefficients vanish. With a friction
+  /// coefficient μ(w) that falls with the sliding speed, c_t = μ'(w_0) |R_n0| is negative.
   std::shared_ptr<const SparseMatrix> contact_damping(const ContactOperators &contact, const ContactDamping &damping);
 
   /// A term of the coupled bodies, and its part V in the normal reactions, n_c × n; null: none.
@@ -139,10 +136,8 @@ namespace Squeal
   /// V_K + s V_C + s² V_M at a real shift s [rad/s], n_c × n; null where there is no friction.
   std::shared_ptr<const SparseMatrix> normal_reactions(const CoupledSystem &system, double shift);
 
-  /**
-   * r_n = S (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal
-   * contact reactions [N] (compression negative) of complex modes, n_c × k.
-   */
+  /// r_n = S (λ² M + λ C + K) u as V_K u_c + λ V_C u_c + λ² V_M u_c: normal contact reactions [N] (compression negative) of complex modes,
+  /// n_c × k.
   ComplexDenseMatrix normal_reactions(const CoupledSystem                     &system,
                                       const std::vector<std::complex<double>> &lambda,
                                       const MultiVector                       &real_part,
@@ -155,15 +150,11 @@ namespace Squeal
     std::vector<TermShares> shares; ///< what each of its terms is made of
   };
 
-  /**
-   * The system of a family of terms: bodies coupled as couple() does, each term with its own part in the reactions. Its mass and
-   * stiffness, the parameter values with it, are those in the middle of the family.
-   */
+  /// The system of a family of terms: bodies coupled as couple() does, each term with its own part in the reactions. Its mass and
+  /// stiffness, the parameter values with it, are those in the middle of the family.
   CoupledSystem coupled_family(const TermFamily &bodies, const ContactOperators &contact, const ContactDamping &damping = {});
 
-  /**
-   * The member of a family of systems where the scales of terms have these @p values: terms of the same kind are summed. What is left
-   * free are the friction coefficient and the damping of the contact.
-   */
+  /// The member of a family of systems where the scales of terms have these @p values: terms of the same kind are summed. What is left free
+  /// are the friction coefficient and the damping of the contact.
   SystemMember member_of(const CoupledSystem &family, const ParameterValues &values);
 } // namespace Squeal

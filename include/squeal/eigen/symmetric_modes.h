@@ -29,11 +29,8 @@ namespace Squeal
     /// Vectors per step of the block solvers; 0: chosen.
     int block_size = 0;
 
-    /**
-     * s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, where
-     * that is not positive definite or almost singular, s = largest eigenvalue / 100. Giving a
-     * shift avoids an attempt that fails for bodies that can move rigidly.
-     */
+    /// s ≥ 0 in K + s M, which is factorised [rad²/s²]. 0: K itself or, where that is not positive definite or almost singular, s = largest
+    /// eigenvalue / 100. Giving a shift avoids an attempt that fails for bodies that can move rigidly.
     double shift = 0.;
 
     /// (K + s M)⁻¹ for that shift where the caller has it already; null: it is factorised here.
@@ -93,11 +90,8 @@ namespace Squeal
                                  double                       largest_eigenvalue,
                                  const SymmetricModesOptions &options = {});
 
-  /**
-   * Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ by the
-   * inertia of K - limit M: exact, multiplicities and rigid-body modes
-   * included, without computing any mode. Throws SolverError naming @p what.
-   */
+  /// Number of eigenvalues ω² ≤ @p limit of K φ = ω² M φ by the inertia of K - limit M: exact, multiplicities and rigid-body modes
+  /// included, without computing any mode. Throws SolverError naming @p what.
   ModeCount count_below(const SparseMatrix &K, const SparseMatrix &M, double limit, const std::string &what);
 
   /**

@@ -65,10 +65,8 @@ namespace Squeal
   /// The mesh of to_bytes(). Throws std::length_error where bytes are missing.
   GmshMesh from_bytes(const std::string &bytes);
 
-  /**
-   * What the mesher, a process of its own that reads a script as standard input, says to the program: one
-   * letter on standard output, then the text or bytes that belong to it.
-   */
+  /// What the mesher, a process of its own that reads a script as standard input, says to the program: one letter on standard output, then
+  /// the text or bytes that belong to it.
   enum class MesherReply : char
   {
     mesh          = 'm', ///< to_bytes() of a GmshMesh

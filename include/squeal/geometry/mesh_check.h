@@ -24,11 +24,8 @@ namespace Squeal
    */
   inline constexpr double smallest_scaled_jacobian = 0.02;
 
-  /**
-   * Scaled Jacobian: at each corner, the triple product of the three edges
-   * that meet there, each divided by its length; the smallest of the eight.
-   * Throws MeshError for a mesh without elements.
-   */
+  /// Scaled Jacobian: at each corner, the triple product of the three edges that meet there, each divided by its length; the smallest of
+  /// the eight. Throws MeshError for a mesh without elements.
   MeshQuality mesh_quality(const HexMesh &mesh);
 
   /**
@@ -56,10 +53,7 @@ namespace Squeal
    */
   void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
-  /**
-   * Throws MeshError, naming @p where, for a body in several pieces, a pin that
-   * touches nothing, that neither a clamp nor a mount holds, or whose clamp and
-   * contact are exchanged; and for a mount whose nodes are all clamped. Needs what check_parts() makes sure of.
-   */
+  /// Throws MeshError, naming @p where, for a body in several pieces, a pin that touches nothing, that neither a clamp nor a mount holds,
+  /// or whose clamp and contact are exchanged; and for a mount whose nodes are all clamped. Needs what check_parts() makes sure of.
   void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
 } // namespace Squeal

@@ -32,7 +32,7 @@ namespace Squeal
   };
 
   /**
-   * Opens a geometry or mesh in a process of its own, meshes it as GmshSession
+   * Opens a geometry or mesh in a process of its own, meshes it as mesh_geometry()
    * does (a solid where there are physical volumes, else a plan), and returns
    * what Gmsh then holds. Whatever happens to Gmsh there leaves this process and, if
    * confined, the user's files alone. The process sees none of the user's

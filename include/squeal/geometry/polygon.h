@@ -34,10 +34,8 @@ namespace Squeal
     double           radius; ///< [m]
   };
 
-  /**
-   * The circle on which all points lie, to 1e-6 of its radius, in any unit of length: by linear least squares,
-   * x² + y² = 2 a x + 2 b y + c. None if there is no such circle, and none through fewer than six different points, since four
-   * corners of a square lie on a circle as well.
-   */
+  /// The circle on which all points lie, to 1e-6 of its radius, in any unit of length: by linear least squares, x² + y² = 2 a x + 2 b y +
+  /// c. None if there is no such circle, and none through fewer than six different points, since four corners of a square lie on a circle
+  /// as well.
   std::optional<Circle> circle_through(const std::vector<dealii::Point<2>> &points);
 } // namespace Squeal

@@ -16,11 +16,9 @@ namespace Squeal
   {
     double cells, dofs, contact_nodes;
 
-    /**
-     * Memory that the scene takes until its modes are computed [byte]: the program itself, matrices and
-     * factors per dof, columns of K_c^-1 A per contact node where they are kept, and modes. Fitted to runs of
-     * 32 000 to 139 000 dofs, for which it is within a twentieth (scripts/measure_scaling.py).
-     */
+    /// Memory that the scene takes until its modes are computed [byte]: the program itself, matrices and factors per dof, columns of K_c^-1
+    /// A per contact node where they are kept, and modes. Fitted to runs of 32 000 to 139 000 dofs, for which it is within a twentieth
+    /// (scripts/measure_scaling.py).
     double memory(unsigned int degree, double n_modes) const;
   };
 
@@ -33,25 +31,19 @@ namespace Squeal
   /// Of a mesh, with elements of the given degree.
   ProblemSize expected_size(const HexMesh &mesh, unsigned int degree);
 
-  /**
-   * Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
-   */
+  /// Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
   void check_memory(const ProblemSize &size,
                     unsigned int       degree,
                     double             n_modes,
                     const std::string &where,
                     MPI_Comm           communicator = MPI_COMM_SELF);
 
-  /**
-   * Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where clearly more of
-   * it is round about another axis, which the second moments of the surface give.
-   */
+  /// Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where
+  /// clearly more of it is round about another axis, which the second moments of the surface give.
   bool is_round_about_z(const HexMesh &mesh, const std::string &where);
 
-  /**
-   * Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear
-   * wave of @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
-   */
+  /// Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear wave of
+  /// @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
   void check_wave_resolution(const HexMesh            &mesh,
                              const MaterialParameters &materials,
                              unsigned int              degree,

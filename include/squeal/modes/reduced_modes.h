@@ -30,17 +30,12 @@ namespace Squeal
     open ///< reduced modes are kept whatever their frequency: counterparts of reference modes lie among them
   };
 
-  /**
-   * All modes of @p model at friction coefficient @p mu. Real λ and zeros,
-   * those of rigid-body motions, are told apart from oscillating modes by
-   * parts of @p largest_circular_frequency [rad/s], the end of the band.
-   */
+  /// All modes of @p model at friction coefficient @p mu. Real λ and zeros, those of rigid-body motions, are told apart from oscillating
+  /// modes by parts of @p largest_circular_frequency [rad/s], the end of the band.
   ReducedModes reduced_modes(const ReducedModel &model, double mu, double largest_circular_frequency, BandEnd end = BandEnd::cut);
 
-  /**
-   * The same at any values of the parameters, on this process alone: vectors of a
-   * multiple eigenvalue may differ from those that another process finds.
-   */
+  /// The same at any values of the parameters, on this process alone: vectors of a multiple eigenvalue may differ from those that another
+  /// process finds.
   ReducedModes local_reduced_modes(const ReducedModel    &model,
                                    const ParameterValues &values,
                                    double                 largest_circular_frequency,
@@ -57,10 +52,8 @@ namespace Squeal
                                                   const ParameterValues &values,
                                                   double                 largest_circular_frequency);
 
-  /**
-   * The real eigenvalues of @p model with their vectors, zeros excluded, up to the radius of the band: static divergence and
-   * overdamped motions. Without damping that with λ > 0 stands for both of ±λ.
-   */
+  /// The real eigenvalues of @p model with their vectors, zeros excluded, up to the radius of the band: static divergence and overdamped
+  /// motions. Without damping that with λ > 0 stands for both of ±λ.
   ReducedModes real_eigenvalue_modes(const ReducedModel &model, double mu, double largest_circular_frequency);
 
   /// The same without friction and damping, λ = iω and ψ = φ, from the symmetric eigenproblem of TᵀK_cT and TᵀM_cT.

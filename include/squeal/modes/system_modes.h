@@ -24,10 +24,8 @@ namespace Squeal
   /// How the parameters want real modes of @p what to be found, shifted by @p shift [rad/s] where bodies are free.
   SymmetricModesOptions real_modes_options(const SolverParameters &solvers, const std::string &what, double shift);
 
-  /**
-   * Counts the modes of the band as a step of @p progress, and refuses more than the parameters allow before any is computed (throws
-   * ParameterError): counting them takes one factorisation.
-   */
+  /// Counts the modes of the band as a step of @p progress, and refuses more than the parameters allow before any is computed (throws
+  /// ParameterError): counting them takes one factorisation.
   ModeCount number_of_modes(const CoupledSystem    &system,
                             double                  largest_circular_frequency,
                             const SolverParameters &solvers,

@@ -54,9 +54,7 @@ namespace Squeal
   template <typename Row>
   using Columns = std::vector<Column<Row>>;
 
-  /**
-   * A table of results: comma-separated with 12 significant digits and a header "name [unit]" on disk, aligned on the screen.
-   */
+  /// A table of results: comma-separated with 12 significant digits and a header "name [unit]" on disk, aligned on the screen.
   class Table
   {
   public:

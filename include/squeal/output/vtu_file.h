@@ -11,10 +11,8 @@
 
 namespace Squeal
 {
-  /**
-   * Cells of this process, or faces of them, with shared vertices, as a file of fields has them. All nodes are vertices: an element of degree p
-   * is p³ hexahedra, a face of it p² quadrilaterals, whose normals point out of the body.
-   */
+  /// Cells of this process, or faces of them, with shared vertices, as a file of fields has them. All nodes are vertices: an element of
+  /// degree p is p³ hexahedra, a face of it p² quadrilaterals, whose normals point out of the body.
   struct FieldMesh
   {
     unsigned int              corners;    ///< of a cell: 8 for hexahedra, 4 for quadrilaterals
@@ -40,11 +38,9 @@ namespace Squeal
     std::vector<float> values;
   };
 
-  /**
-   * What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, and fields, all compressed by zlib. Copies share
-   * nothing, so that files on one mesh begin with a copy of a piece without fields. Cells stand in columns, upwards, where zlib finds
-   * that neighbours have nodes in common.
-   */
+  /// What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, and fields, all compressed by zlib. Copies share
+  /// nothing, so that files on one mesh begin with a copy of a piece without fields. Cells stand in columns, upwards, where zlib finds that
+  /// neighbours have nodes in common.
   class VtuPiece
   {
   public:

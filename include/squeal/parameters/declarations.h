@@ -38,14 +38,20 @@ namespace Squeal
     /// Begins a section, to which belongs what is declared from now on.
     void enter(const std::string &section);
 
-    void add(const std::string &name, double &value, const std::string &documentation, const Range &range = {});
-    void add(const std::string &name, unsigned int &value, const std::string &documentation, const Range &range = {0.});
+    /// A number; @p unit: "none" where it has none.
+    void add(const std::string &name, double &value, const std::string &unit, const std::string &documentation, const Range &range = {});
+    void add(const std::string &name,
+             unsigned int      &value,
+             const std::string &unit,
+             const std::string &documentation,
+             const Range       &range = {0.});
     void add(const std::string &name, bool &value, const std::string &documentation);
     void add(const std::string &name, std::string &value, const std::string &documentation);
 
     /// Numbers separated by commas.
     void add(const std::string   &name,
              std::vector<double> &values,
+             const std::string   &unit,
              const std::string   &documentation,
              const Range         &range        = {},
              std::size_t          most_numbers = std::numeric_limits<std::size_t>::max());

@@ -52,10 +52,8 @@ namespace Squeal
     /// Forgets the basis; the next extend() begins another one.
     void clear();
 
-    /**
-     * The residuals of a member of the family that is this one's system, of the model that ReducedModel::restricted() makes with the
-     * same Z. S stays that of the family: by what the stiffness of the member differs from it, energies of residuals do, too.
-     */
+    /// The residuals of a member of the family that is this one's system, of the model that ReducedModel::restricted() makes with the same
+    /// Z. S stays that of the family: by what the stiffness of the member differs from it, energies of residuals do, too.
     ProjectedResiduals restricted(const SystemMember &member, const DenseMatrix &Z) const;
 
     /// Puts the bracket together from its parts, which products() needs; it does so itself, but not for several threads that call it.

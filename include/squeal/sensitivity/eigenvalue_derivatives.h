@@ -25,11 +25,9 @@ namespace Squeal
    */
   Eigentriples on_bodies(const ContactOperators &contact, double friction_coefficient, const Eigentriples &coupled);
 
-  /**
-   * Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, from which follow its derivatives with
-   * respect to every parameter. Rates of parameters, a ParameterValues with dp/ds, give a direction s: one rate for a parameter that is a number, and
-   * one for each entry of a list, such as damping coefficients of contact nodes.
-   */
+  /// Products of the terms of Q(λ; p) = Σ θ_k(p) λ^p_k A_k with right and left vectors, from which follow its derivatives with respect to
+  /// every parameter. Rates of parameters, a ParameterValues with dp/ds, give a direction s: one rate for a parameter that is a number, and
+  /// one for each entry of a list, such as damping coefficients of contact nodes.
   class TermProducts
   {
   public:
@@ -84,10 +82,8 @@ namespace Squeal
                                                      const ComplexDenseMatrix                &D,
                                                      const std::vector<std::complex<double>> &lambda);
 
-  /**
-   * The value at 0 of an even function, or of the even part of one, from its values at h, 2h, 3h (means of both sides), and how far
-   * the value from two of them differs: an upper bound of the error unless the function has a singularity nearby.
-   */
+  /// The value at 0 of an even function, or of the even part of one, from its values at h, 2h, 3h (means of both sides), and how far the
+  /// value from two of them differs: an upper bound of the error unless the function has a singularity nearby.
   struct ValueAtCentre
   {
     std::complex<double> value;

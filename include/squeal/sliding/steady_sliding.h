@@ -132,10 +132,7 @@ namespace Squeal
     double       largest_gap;      ///< of its nodes [m]
   };
 
-  /**
-   * One entry for each pin; a pin without load has no centre of pressure, its
-   * offsets and speed are those of the centre of the face.
-   */
+  /// One entry for each pin; a pin without load has no centre of pressure, its offsets and speed are those of the centre of the face.
   std::vector<PinContact> pin_contacts(const Model               &model,
                                        const ContactInterface    &interface,
                                        const SlidingState        &state,

@@ -166,11 +166,9 @@ namespace Squeal
     std::complex<double> lambda; ///< there [rad/s]
   };
 
-  /**
-   * The smallest friction coefficient from which on a mode of the band grows by more than the uncertainty of λ at some point of
-   * the chart: the threshold or the band crossing with which that growth begins. Growth that is there at the first point began
-   * between @p before, the last friction coefficient known below the chart, and this point; the uncertainty is their distance.
-   */
+  /// The smallest friction coefficient from which on a mode of the band grows by more than the uncertainty of λ at some point of the chart:
+  /// the threshold or the band crossing with which that growth begins. Growth that is there at the first point began between @p before, the
+  /// last friction coefficient known below the chart, and this point; the uncertainty is their distance.
   std::optional<GrowthOnset> first_onset(const StabilityChart &chart, double largest_circular_frequency, double before);
 
   /**

@@ -20,11 +20,8 @@ namespace Squeal
     int             line = 0; ///< of the chart: points of one line differ in the friction coefficient, with all that follows from it
   };
 
-  /**
-   * A two-sided reduced model that serves every operating point of a chart: what
-   * it says of a mode comes with the residuals of that mode at full order, and it
-   * grows where they are too large (grow_residual_basis() says how).
-   */
+  /// A two-sided reduced model that serves every operating point of a chart: what it says of a mode comes with the residuals of that mode
+  /// at full order, and it grows where they are too large (grow_residual_basis() says how).
   class ChartModel
   {
   public:
@@ -76,11 +73,9 @@ namespace Squeal
     /// Modes with their estimates. Only this process works, and no other need. After prepare() several threads may call.
     ChartPoint evaluate(const OperatingPoint &point) const;
 
-    /**
-     * Where between two points the function of a search is zero by the reduced model in the span of the modes concerned, right and
-     * left, at both points: it has their λ and dλ/dμ there. The other parameters of the system vary linearly between the points.
-     * Only this process works, and no other need.
-     */
+    /// Where between two points the function of a search is zero by the reduced model in the span of the modes concerned, right and left,
+    /// at both points: it has their λ and dλ/dμ there. The other parameters of the system vary linearly between the points. Only this
+    /// process works, and no other need.
     std::optional<double> predicted_zero(const ZeroSearch &search, const OperatingPoint &first, const OperatingPoint &second) const;
 
     /// Largest estimated |δλ| / |λ| of the modes inside the band.
@@ -112,10 +107,8 @@ namespace Squeal
      */
     DenseMatrix principal_parts(const DenseMatrix &real_modes, const std::vector<ChartPoint> &charts, double tolerance) const;
 
-    /**
-     * A smaller basis for about the same: the real modes, and their principal_parts(), the last ones left out
-     * where there would be more than @p maximum vectors. All processes must call.
-     */
+    /// A smaller basis for about the same: the real modes, and their principal_parts(), the last ones left out where there would be more
+    /// than @p maximum vectors. All processes must call.
     MultiVector compressed_basis(const std::vector<ChartPoint> &charts, double tolerance, int maximum) const;
 
     /// Begins anew with another basis. All processes must call.

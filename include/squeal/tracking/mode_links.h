@@ -16,11 +16,8 @@ namespace Squeal
   struct ModeBlock
   {
     std::vector<int> first, second; ///< numbers of the modes, as many at either point
-    /**
-     * Whether each mode has its counterpart: a single mode; a multiple λ at one of the
-     * points, of which any order will do; two modes with an exceptional point
-     * between. Otherwise the step is too long.
-     */
+    /// Whether each mode has its counterpart: a single mode; a multiple λ at one of the points, of which any order will do; two modes with
+    /// an exceptional point between. Otherwise the step is too long.
     bool resolved;
   };
 
@@ -38,10 +35,8 @@ namespace Squeal
   /// Orthonormal basis of the span of vectors; only what is dependent up to rounding is left out.
   OrthonormalBasis<ComplexDenseMatrix> orthonormal_basis(const ComplexDenseMatrix &X);
 
-  /**
-   * The vectors with those of each cluster of λ replaced by an orthonormal basis of their span: an eigensolver chooses
-   * them within that span by rounding errors, and what is summed over them must not depend on its choice.
-   */
+  /// The vectors with those of each cluster of λ replaced by an orthonormal basis of their span: an eigensolver chooses them within that
+  /// span by rounding errors, and what is summed over them must not depend on its choice.
   ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<std::complex<double>> &lambda);
 
   /// X of Φ_b ≈ Φ_a X in the least-squares sense and its inverse, for as many columns on either side; nothing if one does not exist.
