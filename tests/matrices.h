@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/linear_algebra/communication.h>
+#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <deal.II/base/mpi.h>
@@ -201,6 +202,16 @@ namespace Squeal::Testing
       });
     };
     return {assemble(K, foundation * h * h), assemble(M, 0.)};
+  }
+
+  /// Largest relative distance of columns of @p X from those of @p Y.
+  inline double relative_difference(const MultiVector &X, const MultiVector &Y)
+  {
+    const auto norms = column_norms(X - Y), sizes = column_norms(Y);
+    double     result = 0.;
+    for (std::size_t j = 0; j < norms.size(); ++j)
+      result = std::max(result, norms[j] / sizes[j]);
+    return result;
   }
 
   /// For each of @p values the relative distance to its own neighbour in @p others; as many must there be.

@@ -1,8 +1,6 @@
 #include <squeal/base/conventions.h>
-#include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
 #include <squeal/base/progress.h>
-#include <squeal/base/choices.h>
 
 #include <gtest/gtest.h>
 
@@ -15,7 +13,7 @@
 
 using namespace Squeal;
 
-TEST(Conventions, OfAnOscillatingMode)
+TEST(Conventions, OfAMode)
 {
   const double omega = 2. * M_PI * 1234.5, R = 6.78;
   const auto   mode = modal_quantities({R, omega});
@@ -23,20 +21,12 @@ TEST(Conventions, OfAnOscillatingMode)
   EXPECT_DOUBLE_EQ(mode.growth_rate, R);
   EXPECT_DOUBLE_EQ(mode.divergence_rate, R / omega);
   EXPECT_DOUBLE_EQ(mode.damping_ratio, -2. * R / omega);
-  EXPECT_DOUBLE_EQ(hertz(circular_frequency(567.8)), 567.8);
-  EXPECT_DOUBLE_EQ(circular_frequency(1.), 2. * M_PI);
-  // A growing mode is divergent and has a negative damping ratio.
-  EXPECT_GT(modal_quantities({1., 2.}).divergence_rate, 0.);
-  EXPECT_LT(modal_quantities({1., 2.}).damping_ratio, 0.);
-}
-
-TEST(Conventions, WithoutPeriod)
-{
-  const auto mode = modal_quantities({-3., 0.});
-  EXPECT_EQ(mode.frequency, 0.);
-  EXPECT_EQ(mode.growth_rate, -3.);
-  EXPECT_EQ(mode.divergence_rate, 0.);
-  EXPECT_EQ(mode.damping_ratio, 0.);
+  // Without period
+  const auto decay = modal_quantities({-3., 0.});
+  EXPECT_EQ(decay.frequency, 0.);
+  EXPECT_EQ(decay.growth_rate, -3.);
+  EXPECT_EQ(decay.divergence_rate, 0.);
+  EXPECT_EQ(decay.damping_ratio, 0.);
 }
 
 TEST(Assignment, AgreesWithTryingAll)
@@ -70,76 +60,32 @@ TEST(Assignment, AgreesWithTryingAll)
           EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), found.size());
           double sum = 0.;
           for (int i = 0; i < n_rows; ++i)
-            {
-              ASSERT_GE(found[i], 0);
-              ASSERT_LT(found[i], n_columns);
-              sum += gain[i][found[i]];
-            }
+            sum += gain[i].at(found[i]);
           EXPECT_NEAR(sum, best, 1e-12);
         }
-  EXPECT_TRUE(best_assignment(0, 3, [](int, int) { return 1.; }).empty());
 }
 
-TEST(EnumTables, NamesThereAndBack)
-{
-  EXPECT_EQ(enum_names<RealSolver>(), (std::vector<std::string>{"block Lanczos", "Anasazi", "ARPACK"}));
-  for (const RealSolver solver : {RealSolver::lanczos, RealSolver::anasazi, RealSolver::arpack})
-    EXPECT_EQ(enum_value<RealSolver>(to_string(solver)), solver);
-}
-
-TEST(Errors, SayWhatWhereAndWhatToChange)
-{
-  const std::string message = ParameterError("the load is zero", "parameter Operation/Load", "raise it").what();
-  EXPECT_EQ(message, "the load is zero\n  where:  parameter Operation/Load\n  change: raise it");
-  EXPECT_THROW(throw MeshError("a", "b", "c"), Error);
-}
-
-TEST(ProgressChannel, RecordsStepsInOrder)
+TEST(ProgressChannel, PrintsALinePerStepAndNote)
 {
   std::ostringstream stream;
   {
     Progress progress(stream, false);
     progress.begin("Mesh");
     progress.update("busy");
-    const Cost mesh = progress.finish("12 elements");
+    progress.finish("12 elements");
     progress.begin("Matrices");
     progress.begin("Modes"); // ends the step before
     progress.finish();
     progress.finish("nothing to end");
     progress.note("a note");
-
-    ASSERT_EQ(progress.steps().size(), 3u);
-    EXPECT_EQ(progress.steps()[0].name, "Mesh");
-    EXPECT_EQ(progress.steps()[0].summary, "12 elements");
-    EXPECT_EQ(progress.steps()[0].seconds, mesh.seconds);
-    EXPECT_EQ(progress.steps()[1].name, "Matrices");
-    EXPECT_EQ(progress.steps()[2].name, "Modes");
-    double sum = 0.;
-    for (const StepRecord &step : progress.steps())
-      {
-        EXPECT_GE(step.seconds, 0.);
-        EXPECT_GT(step.peak_memory, 1e6);
-        sum += step.seconds;
-      }
-    EXPECT_LE(sum, progress.elapsed());
+    EXPECT_EQ(progress.steps().size(), 3u);
   }
-  // One line per step and note, without control characters where there is no terminal
+  // Without control characters where there is no terminal
   const std::string text = stream.str();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4);
   EXPECT_EQ(text.find('\033'), std::string::npos);
   EXPECT_EQ(text.find("busy"), std::string::npos);
   EXPECT_NE(text.find("12 elements"), std::string::npos);
-  EXPECT_NE(text.find("a note"), std::string::npos);
-}
-
-TEST(ProgressChannel, WithoutAStreamItOnlyRecords)
-{
-  Progress progress;
-  progress.begin("Step");
-  progress.update("state");
-  progress.note("note");
-  progress.finish();
-  EXPECT_EQ(progress.steps().size(), 1u);
 }
 
 TEST(Groups, AreChainsOfConnectedThings)
@@ -150,9 +96,7 @@ TEST(Groups, AreChainsOfConnectedThings)
     EXPECT_LT(j, i);
     return std::abs(values[i] - values[j]) < 0.45;
   };
-  EXPECT_EQ(connected_groups(4, near), (std::vector<int>{0, 1, 0, 1}));
   EXPECT_EQ(members_of(connected_groups(4, near)), (std::vector<std::vector<int>>{{0, 2}, {1, 3}}));
   EXPECT_EQ(connected_groups(6, near), (std::vector<int>{0, 0, 0, 0, 0, 5}));
   EXPECT_EQ(members_of(connected_groups(6, near)), (std::vector<std::vector<int>>{{0, 1, 2, 3, 4}, {5}}));
-  EXPECT_TRUE(members_of(connected_groups(0, near)).empty());
 }

@@ -1,10 +1,8 @@
 #include <squeal/base/command_line.h>
-#include <squeal/base/exceptions.h>
 
 #include <gtest/gtest.h>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 using namespace Squeal;
@@ -20,24 +18,4 @@ TEST(CommandLines, AreTakenInAnyOrder)
   EXPECT_TRUE(parse_command_line({"-h"}).help);
   EXPECT_EQ(parse_command_line({"--output", "", "--", "--help"}).parameter_file, "--help");
   EXPECT_FALSE(parse_command_line({}).output);
-}
-
-TEST(CommandLines, QuoteTheWordThatIsWrong)
-{
-  for (const auto &[words, wrong] :
-       std::vector<std::pair<std::vector<std::string>, std::string>>{{{"a", "--set", "x=1", "--sett", "y"}, "--sett"},
-                                                                     {{"-x", "a"}, "-x"},
-                                                                     {{"a", "--set"}, "--set"},
-                                                                     {{"--set", "--dry-run", "a"}, "--set"},
-                                                                     {{"--help=yes"}, "--help=yes"},
-                                                                     {{"a", "--help", "b"}, "b"}})
-    try
-      {
-        parse_command_line(words);
-        FAIL() << wrong;
-      }
-    catch (const ParameterError &error)
-      {
-        EXPECT_NE(std::string(error.what()).find("`" + wrong + "`"), std::string::npos) << error.what();
-      }
 }

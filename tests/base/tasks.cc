@@ -1,3 +1,5 @@
+#include "input.h"
+
 #include <squeal/base/mpi_environment.h>
 #include <squeal/base/tasks.h>
 #include <squeal/base/worker_process.h>
@@ -14,6 +16,7 @@
 #include <vector>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 namespace
 {
@@ -43,20 +46,6 @@ namespace
   };
 } // namespace
 
-TEST(Tasks, AreAllDone)
-{
-  for (const unsigned int n_threads : {1, 2, 5})
-    {
-      set_task_threads(n_threads);
-      EXPECT_EQ(n_task_threads(), n_threads);
-      std::vector<int> n_calls(100, 0);
-      run_tasks(100, [&](const int i) { ++n_calls[i]; });
-      EXPECT_EQ(n_calls, std::vector<int>(100, 1));
-      run_tasks(0, [](const int) { FAIL(); });
-    }
-  set_task_threads(1);
-}
-
 TEST(Tasks, AreDoneAtATime)
 {
   set_task_threads(2);
@@ -77,19 +66,12 @@ TEST(Tasks, TheFirstFailureIsTold)
     {
       set_task_threads(n_threads);
       std::atomic<int> n_done = 0;
-      try
-        {
-          run_tasks(20, [&](const int i) {
-            ++n_done;
-            if (i == 7 || i == 13)
-              throw std::runtime_error(std::to_string(i));
-          });
-          FAIL();
-        }
-      catch (const std::runtime_error &error)
-        {
-          EXPECT_STREQ(error.what(), "7");
-        }
+      const auto       action = [&](const int i) {
+        ++n_done;
+        if (i == 7 || i == 13)
+          throw std::runtime_error(std::to_string(i));
+      };
+      EXPECT_EQ(message<std::runtime_error>([&] { run_tasks(20, action); }), "7");
       EXPECT_EQ(n_done, 20);
     }
   set_task_threads(1);

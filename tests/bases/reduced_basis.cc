@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <set>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
@@ -167,22 +166,6 @@ TEST(BasisTables, SizesOfThePaper)
       EXPECT_EQ(size.n_r0, kind.n_r0) << kind.name;
       EXPECT_EQ(size.n_r, kind.n_r) << kind.name;
     }
-  std::set<std::string> names;
-  for (const BasisRecipe &basis : basis_recipes())
-    {
-      EXPECT_TRUE(names.insert(basis.name).second) << basis.name;
-      EXPECT_EQ(find_recipe(basis.name), &basis) << basis.name;
-      // Either all columns are of the uncoupled bodies or none
-      for (const BasisPart *part : basis.parts)
-        EXPECT_EQ(part->is_uncoupled, basis.is_connected()) << basis.name;
-    }
-  EXPECT_EQ(find_recipe("free with r.a.m.")->columns(), "Phi_f^D Phi_f^P (Psi_amu^D - Psi_amu^P)");
-  EXPECT_EQ(find_recipe("mixed + t.a.m.")->columns(), "Phi_f^D Phi_s^P Psi_an^D Psi_cn^P (Psi_at^D - Psi_at^P)");
-  EXPECT_FALSE(find_recipe("mixed")->needs_friction);
-  EXPECT_TRUE(find_recipe("real")->needs_friction);
-  EXPECT_TRUE(find_recipe("real + 1st-ord. two-sided + damping")->needs_damping);
-  EXPECT_TRUE(find_recipe("free with r.a.m.")->rests_on(BasisSource::tangential_attachment));
-  EXPECT_FALSE(find_recipe("free")->rests_on(BasisSource::tangential_attachment));
 }
 
 TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
@@ -197,11 +180,8 @@ TEST_P(ReducedBases, KeepTheContactClosedAndAreOrthonormal)
       SCOPED_TRACE(kind);
       const ReducedBasis &basis = b.basis(kind);
       EXPECT_EQ(basis.n_nominal, basis.size() + basis.n_dropped);
-      EXPECT_GE(basis.n_dropped, 0);
       EXPECT_EQ(basis.n_nominal, nominal_size(*find_recipe(kind), counts).n_r);
       EXPECT_LT(orthonormality_defect(*b.s.coupled.mass, *basis.vectors), 1e-12);
-      EXPECT_LE(basis.orthonormality, 1e-12);
-      EXPECT_GE(basis.condition, 1.);
       const MultiVector u = *b.s.contact.kernel * *basis.vectors;
       EXPECT_LT(max_norm(replicate(*b.s.contact.normal * u)), 1e-12 * max_norm(replicate(u)));
       const bool is_connected = find_recipe(kind)->is_connected();
@@ -247,20 +227,10 @@ TEST_P(ReducedBases, FrictionlessRitzValuesComeDownToTheExactOnes)
   const double exactness = b.real.n_rigid_body > 0 ? 1e-7 : 1e-8;
   for (const auto &[kind, n_r0, n_r] : real_kinds)
     EXPECT_LT(error(found[kind]), exactness) << kind;
-
-  // With half as many component modes
-  BasisIngredients         half = b.ingredients();
-  std::vector<MultiVector> views;
-  views.reserve(b.components.size());
-  for (const auto &[source, vectors] : b.components)
-    half.sets[source] = &views.emplace_back(view(*vectors, 0, (vectors->n_columns() + 1) / 2));
   for (const std::string kind : {"free", "fixed", "mixed"})
     {
       no_higher(found[kind + " + t.a.m."], found[kind], kind);
-      const auto fewer = values(reduced_basis(*find_recipe(kind), half));
-      no_higher(found[kind], fewer, "more component modes");
       EXPECT_LT(error(found[kind]), 0.03) << kind;
-      EXPECT_LT(error(found[kind]), 0.7 * error(fewer)) << kind;
     }
 }
 
@@ -297,7 +267,7 @@ TEST_P(ReducedBases, StaticallyCompleteBasesGiveStaticResponsesExactly)
     }
 }
 
-TEST_P(ReducedBases, SpanWhatTheyAreMadeOf)
+TEST_P(ReducedBases, OfRealModesSpanWhatTheyAreMadeOf)
 {
   const SparseMatrix &M     = *b.s.coupled.mass;
   const MultiVector   right = friction_response(b.s.coupled, b.inverse, *b.real.vectors, Side::right),
@@ -311,20 +281,6 @@ TEST_P(ReducedBases, SpanWhatTheyAreMadeOf)
       EXPECT_EQ(outside(M, T, right) < 1e-6, kind == "real + t.a.m." || is_of_first_order) << kind;
       EXPECT_EQ(outside(M, T, left) < 1e-6, is_two_sided) << kind;
       EXPECT_EQ(outside(M, T, damping) < 1e-6, kind.find("damping") != std::string::npos) << kind;
-    }
-
-  // A connected basis lies in the span of its components.
-  for (const auto &[kind, n_r0, n_r] : component_kinds)
-    {
-      const MultiVector  u       = *b.s.contact.kernel * *b.basis(kind).vectors;
-      const bool         fixed   = kind == "fixed" || kind == "fixed + t.a.m.";
-      const auto         modes   = [&](const BasisSource source) { return *b.components.at(source); };
-      const StaticModes &statics = b.static_modes;
-      const MultiVector  parts =
-        join_all({modes(fixed ? BasisSource::disc_sliding : BasisSource::disc_free), modes(BasisSource::pins_free),
-                  modes(BasisSource::pins_sliding), statics.normal_attachment(Component::disc), statics.normal_attachment(Component::pins),
-                  statics.constraint(Component::disc), statics.constraint(Component::pins), statics.tangential_attachment()});
-      EXPECT_LT(outside(*b.s.system.mass, orthonormalize(*b.s.system.mass, nullptr, parts, 1e-12), u), 1e-6) << kind;
     }
 }
 
@@ -422,25 +378,4 @@ TEST_F(BasesOfACase, PrincipalAxesOfSnapshots)
       EXPECT_EQ(outside(*b.s.coupled.mass, *basis.vectors, first) < 1e-12, size == 3);
       options.pod_size = 2;
     }
-}
-
-TEST_F(BasesOfACase, SaysWhatIsMissing)
-{
-  const auto message = [](const std::string &kind, const std::string &part, const std::function<void(BasisIngredients &)> &remove) {
-    BasisIngredients in = bodies().ingredients();
-    remove(in);
-    expect_refusal<SolverError>([&] { reduced_basis(*find_recipe(kind), in); }, {part});
-  };
-  const auto without = [&](const std::string &kind, const BasisSource source, const std::string &part) {
-    message(kind, part, [source](BasisIngredients &in) { in.sets[source] = nullptr; });
-  };
-  without("free", BasisSource::disc_free, "Phi_f^D");
-  without("mixed", BasisSource::pins_sliding, "Phi_s^P");
-  without("mixed", BasisSource::pins_sliding, "`mixed`");
-  without("real", BasisSource::real, "Phi_R");
-  without("free", BasisSource::real, "nothing was refused");
-  message("real + t.a.m.", "UpdatedInverse", [](auto &in) { in.inverse = nullptr; });
-  message("free", "StaticModes", [](auto &in) { in.static_modes = nullptr; });
-  message("POD", "complex modes", [](auto &) {});
-  message("residual-grown", "residuals", [](auto &) {});
 }

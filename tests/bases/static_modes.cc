@@ -62,10 +62,9 @@ namespace
   class StaticModesOf : public ::testing::TestWithParam<Case>
   {
   protected:
-    const Modes                  m          = Modes(GetParam());
-    const ContactOperators      &P          = m.s.contact;
-    const int                    n_c        = m.s.interface.size();
-    const std::vector<Component> components = {Component::disc, Component::pins};
+    const Modes             m   = Modes(GetParam());
+    const ContactOperators &P   = m.s.contact;
+    const int               n_c = m.s.interface.size();
   };
   INSTANTIATE_TEST_SUITE_P(Held, StaticModesOf, ::testing::ValuesIn(held_cases));
   INSTANTIATE_TEST_SUITE_P(Free, StaticModesOf, ::testing::ValuesIn(free_cases));
@@ -93,15 +92,10 @@ TEST_P(StaticModesOf, AttachmentModesAreStaticResponses)
   MultiVector  rubbing = f(*P.normal);
   rubbing.local() += mu * f(*P.tangential).local();
   EXPECT_LT(residual(m, m.modes.rubbing_attachment(mu), rubbing), 1e-9);
-}
 
-TEST_P(StaticModesOf, AFreeDiscIsRelievedByInertia)
-{
+  // A free disc is relieved by inertia
   const MultiVector *N = m.modes.response.rigid_body_modes(), &u = m.modes.normal_attachment();
   ASSERT_EQ(N != nullptr ? N->n_columns() : 0, GetParam().n_free);
-  // Flexibilities are symmetric
-  const DenseMatrix F = replicate(*P.normal * u);
-  EXPECT_LT(max_norm(F - F.transpose()), 1e-9 * max_norm(F));
   if (N == nullptr)
     return;
   const MultiVector MN = *m.s.system.mass * *N;
@@ -112,7 +106,7 @@ TEST_P(StaticModesOf, AFreeDiscIsRelievedByInertia)
 
 TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
 {
-  for (const Component component : components)
+  for (const Component component : {Component::disc, Component::pins})
     {
       const MultiVector &Psi  = m.modes.constraint(component);
       const double       sign = component == Component::disc ? 1. : -1.;
@@ -124,10 +118,6 @@ TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
       multiply_add(-1., f, gram(f, F), 1., rest);
       EXPECT_LT(max_norm(replicate(rest)), 1e-9 * max_norm(replicate(F)));
 
-      // The condensed stiffness is symmetric
-      const DenseMatrix S = gram(Psi, F);
-      EXPECT_LT(max_norm(S - S.transpose()), 1e-10 * max_norm(S));
-
       // Ψ_cn = Ψ_an F⁻¹ where nothing moves rigidly, F = n·Ψ_an at the contact nodes
       if (component == Component::disc && GetParam().n_free > 0)
         continue;
@@ -138,28 +128,27 @@ TEST_P(StaticModesOf, ConstraintModesKeepTheirValues)
     }
 }
 
-TEST_P(StaticModesOf, CoordinatesUndoTheKernels)
+TEST(Kernels, AreUndoneByCoordinates)
 {
-  const auto expect_undone = [](const SparseMatrix &T) {
+  const Scene s             = scene({"cone", 0.3}, mounted(held));
+  const auto  expect_undone = [](const SparseMatrix &T) {
     const MultiVector q = random_vectors(T.columns(), 3);
     EXPECT_LT(max_norm(replicate(coordinates(T, T * q)) - replicate(q)), 1e-15);
   };
-  expect_undone(*P.kernel);
-  expect_undone(*component_kernel(m.s.model, m.s.interface, Component::pins, ContactBoundary::free));
+  expect_undone(*s.contact.kernel);
+  expect_undone(*component_kernel(s.model, s.interface, Component::pins, ContactBoundary::free));
 
   // Where faces are inclined by 45 degrees, a slave row holds a single one, like the row of the dof it follows.
-  ContactInterface inclined = m.s.interface;
+  ContactInterface inclined = s.interface;
   const double     h        = std::sqrt(0.5);
   for (ContactNode &node : inclined)
     {
       node.normal  = {-h, 0., std::copysign(h, node.normal[2])};
       node.sliding = {0., 1., 0.};
     }
-  for (const Component component : components)
-    {
-      expect_undone(*component_kernel(m.s.model, m.s.interface, component, ContactBoundary::sliding));
-      expect_undone(*component_kernel(m.s.model, inclined, component, ContactBoundary::sliding));
-    }
+  for (const ContactInterface &interface : {s.interface, inclined})
+    for (const Component component : {Component::disc, Component::pins})
+      expect_undone(*component_kernel(s.model, interface, component, ContactBoundary::sliding));
 }
 
 TEST(CoupledResponses, SolveWithTheirForces)
@@ -184,8 +173,4 @@ TEST(CoupledResponses, SolveWithTheirForces)
   check(friction_response(s.coupled, inverse, Phi, Side::left), left);
   check(damping_response(s.coupled, inverse, Phi), *with_friction(s.coupled, 0.).damping * Phi);
   check(damping_response(s.coupled, inverse, Phi, mu), *with_friction(s.coupled, mu).damping * Phi);
-
-  const Scene          undamped = scene({"flat"}, mounted(held));
-  const UpdatedInverse other(undamped.coupled, 0., FactorizationLibrary::automatic);
-  EXPECT_THROW(damping_response(undamped.coupled, other, random_vectors(undamped.coupled.map(), 1)), SolverError);
 }

@@ -16,41 +16,15 @@ namespace
   using namespace Squeal;
   using namespace Squeal::Testing;
 
-  /// A dense matrix as an operator on vectors distributed by rows.
-  class DenseOperator : public LinearOperator
-  {
-  public:
-    DenseOperator(const RowMap &map, const DenseMatrix &A)
-      : row_map(map)
-      , A(A)
-    {}
-
-    void apply(const MultiVector &X, MultiVector &Y) const override
-    {
-      // All rows of X on every process: its Gram matrix with unit vectors.
-      Y = distribute(A * gram(unit_vectors(row_map), X), row_map);
-    }
-
-    const RowMap &map() const override
-    {
-      return row_map;
-    }
-
-  private:
-    RowMap      row_map;
-    DenseMatrix A;
-  };
-
   /// The pencil of three small matrices and its inverse at a shift.
   struct DensePencil
   {
-    DensePencil(const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K, const double shift)
-      : map(RowMap::even(M.rows(), MPI_COMM_WORLD))
-      , mass(map, M)
-      , damping(map, C != nullptr ? *C : DenseMatrix::Zero(M.rows(), M.rows()))
-      , stiffness(map, K)
-      , inverse(map, inverse_of(C != nullptr ? K + shift * shift * M + shift * *C : DenseMatrix(K + shift * shift * M)))
-      , pencil{&mass, C != nullptr ? &damping : nullptr, &stiffness}
+    DensePencil(const DenseMatrix &M, const DenseMatrix *C, const DenseMatrix &K, const double shift = 0.)
+      : mass(sparse(M))
+      , damping(C != nullptr ? sparse(*C) : nullptr)
+      , stiffness(sparse(K))
+      , inverse(sparse(inverse_of(C != nullptr ? K + shift * shift * M + shift * *C : DenseMatrix(K + shift * shift * M))))
+      , pencil{mass.get(), damping.get(), stiffness.get()}
     {
       options.shift = shift;
     }
@@ -63,13 +37,12 @@ namespace
     QuadraticModes modes(const double largest_circular_frequency)
     {
       options.largest_circular_frequency = largest_circular_frequency;
-      return quadratic_modes(pencil, inverse, options);
+      return quadratic_modes(pencil, *inverse, options);
     }
 
-    RowMap                map;
-    DenseOperator         mass, damping, stiffness, inverse;
-    QuadraticPencil       pencil;
-    QuadraticModesOptions options;
+    std::shared_ptr<const SparseMatrix> mass, damping, stiffness, inverse;
+    QuadraticPencil                     pencil;
+    QuadraticModesOptions               options;
   };
 
   DenseMatrix diagonal_matrix(const std::vector<double> &values)
@@ -114,6 +87,11 @@ namespace
           K(i, i + 1) = K(i + 1, i) = -1.;
       }
     return K;
+  }
+
+  double chain_frequency(const int n, const int i)
+  {
+    return 2. * std::sin(0.5 * M_PI * i / (n + 1));
   }
 } // namespace
 
@@ -163,7 +141,7 @@ TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
   const double         largest = 1.05;
   for (int i = 1; i <= n; ++i)
     {
-      const double omega = 2. * std::sin(0.5 * M_PI * i / (n + 1)), zeta = 0.01 * omega;
+      const double omega = chain_frequency(n, i), zeta = 0.01 * omega;
       for (int copy = 0; copy < n_copies; ++copy)
         {
           if (omega <= largest)
@@ -172,11 +150,11 @@ TEST(QuadraticModes, CopiesBeyondTheBlockSizeAreAllFound)
             damped.emplace_back(-zeta * omega, omega * std::sqrt(1. - zeta * zeta));
         }
     }
-  DensePencil without(DenseMatrix::Identity(n * n_copies, n * n_copies), nullptr, K, 0.);
+  const DenseMatrix I = DenseMatrix::Identity(n * n_copies, n * n_copies);
+  DensePencil       without(I, nullptr, K), with(I, &C, K);
   without.options.expected = static_cast<int>(undamped.size());
+  with.options.expected    = static_cast<int>(damped.size());
   expect_same(without.modes(largest).values, undamped, 1e-10);
-  DensePencil with(DenseMatrix::Identity(n * n_copies, n * n_copies), &C, K, 0.);
-  with.options.expected = static_cast<int>(damped.size());
   expect_same(with.modes(largest).values, damped, 1e-10);
 }
 
@@ -185,32 +163,21 @@ TEST(QuadraticModes, NonsymmetricAgreesWithTheCompanionForm)
   const int         n = 120;
   const DenseMatrix R = random_matrix(n, 3), S = random_matrix(n, 4), T = random_matrix(n, 5);
   const DenseMatrix M = DenseMatrix::Identity(n, n) + 0.01 * R, C = 1e-3 * S.transpose() * S + 1e-3 * T;
-  DenseMatrix       K = diagonal_matrix([n] {
-                    std::vector<double> values(n);
-                    for (int i = 0; i < n; ++i)
-                      values[i] = std::pow(1. + 0.3 * i, 2);
-                    return values;
-                  }()) +
-                  0.5 * T;
+  DenseMatrix       K = 0.5 * T;
+  for (int i = 0; i < n; ++i)
+    K(i, i) += std::pow(1. + 0.3 * i, 2);
   const double               largest  = 12.;
   const std::vector<Complex> expected = companion_values(M, C, K, largest);
   ASSERT_GT(expected.size(), 30u);
 
-  std::vector<Complex> first;
   for (const double shift : {0., 2.})
     for (const int block : {1, 3, 8})
-      for (const unsigned int seed : {1u, 17u})
-        {
-          DensePencil pencil(M, &C, K, shift);
-          pencil.options.expected   = 35;
-          pencil.options.block_size = block;
-          pencil.options.seed       = seed;
-          const auto modes          = pencil.modes(largest);
-          expect_same(modes.values, expected, 1e-9);
-          if (first.empty())
-            first = modes.values;
-          expect_same(modes.values, first, 1e-10);
-        }
+      {
+        DensePencil pencil(M, &C, K, shift);
+        pencil.options.expected   = 35;
+        pencil.options.block_size = block;
+        expect_same(pencil.modes(largest).values, expected, 1e-9);
+      }
 }
 
 TEST(QuadraticModes, RestartsGiveTheSameValues)
@@ -224,7 +191,7 @@ TEST(QuadraticModes, RestartsGiveTheSameValues)
       std::vector<Complex> expected;
       for (int i = 1; i <= n; ++i)
         {
-          const double square = std::pow(2. * std::sin(0.5 * M_PI * i / (n + 1)), 2);
+          const double square = std::pow(chain_frequency(n, i), 2);
           const double rate   = damping != nullptr ? 0.005 * square * square : 0.;
           const double omega  = std::sqrt(std::max(0., square - rate * rate));
           if (omega <= largest)
@@ -262,67 +229,21 @@ TEST(QuadraticModes, ZeroDampingKeepsTheSymmetryOfTheSpectrum)
 TEST(QuadraticModes, FreeBodyNeedsAShift)
 {
   // Two free chains: K is singular, with one rigid-body mode for each.
-  const int   n = 40;
-  DenseMatrix K = DenseMatrix::Zero(2 * n, 2 * n);
-  for (int part = 0; part < 2; ++part)
-    for (int i = 0; i + 1 < n; ++i)
-      {
-        const int a = part * n + i, b = a + 1;
-        K(a, a) += 1.;
-        K(b, b) += 1.;
-        K(a, b) -= 1.;
-        K(b, a) -= 1.;
-      }
-  const DenseMatrix    C       = 1e-3 * K;
-  const double         largest = 0.8;
-  std::vector<Complex> undamped, damped;
-  for (int i = 1; i < n; ++i)
-    for (int part = 0; part < 2; ++part)
-      {
-        const double omega = 2. * std::sin(0.5 * M_PI * i / n), zeta = 5e-4 * omega;
-        if (omega <= largest)
-          {
-            undamped.emplace_back(0., omega);
-            damped.emplace_back(-zeta * omega, omega * std::sqrt(1. - zeta * zeta));
-          }
-      }
-  DensePencil without(DenseMatrix::Identity(2 * n, 2 * n), nullptr, K, 0.3), with(DenseMatrix::Identity(2 * n, 2 * n), &C, K, 0.3);
-  const auto  one = without.modes(largest), two = with.modes(largest);
-  expect_same(one.values, undamped, 1e-10);
-  expect_same(two.values, damped, 1e-10);
-  EXPECT_EQ(one.n_zero_values, 4);
-  EXPECT_EQ(two.n_zero_values, 4);
+  const int   n     = 40;
+  DenseMatrix K     = DenseMatrix::Zero(2 * n, 2 * n);
+  DenseMatrix alone = chain(n);
+  alone(0, 0) = alone(n - 1, n - 1) = 1.;
+  K.topLeftCorner(n, n) = K.bottomRightCorner(n, n) = alone;
+  const double         largest                      = 0.8;
+  std::vector<Complex> expected;
+  for (int i = 1; chain_frequency(n - 1, i) <= largest; ++i)
+    expected.insert(expected.end(), 2, Complex(0., chain_frequency(n - 1, i)));
+  const auto modes = DensePencil(DenseMatrix::Identity(2 * n, 2 * n), nullptr, K, 0.3).modes(largest);
+  expect_same(modes.values, expected, 1e-10);
+  EXPECT_EQ(modes.n_zero_values, 4);
 }
 
-TEST(QuadraticModes, DivergenceIsReportedAsRealValues)
-{
-  std::vector<double> stiffness;
-  for (int i = 0; i < 30; ++i)
-    stiffness.push_back(i == 2 ? -4. : std::pow(1. + i, 2));
-  DensePencil pencil(DenseMatrix::Identity(30, 30), nullptr, diagonal_matrix(stiffness), 0.);
-  const auto  modes = pencil.modes(8.5);
-  EXPECT_EQ(modes.values.size(), 7u);
-  ASSERT_EQ(modes.real_values.size(), 2u);
-  EXPECT_NEAR(modes.real_values[0], -2., 1e-10);
-  EXPECT_NEAR(modes.real_values[1], 2., 1e-10);
-}
-
-TEST(QuadraticModes, VectorsAreNormalised)
-{
-  const int         n = 50;
-  const DenseMatrix K = chain(n), C = 0.05 * K * K;
-  DensePencil       pencil(DenseMatrix::Identity(n, n), &C, K, 0.);
-  const auto        modes = pencil.modes(0.7);
-  const auto        real = column_norms(*modes.real_part), imaginary = column_norms(*modes.imaginary_part);
-  const auto        recomputed = residuals(pencil.pencil, modes.values, *modes.real_part, *modes.imaginary_part);
-  for (std::size_t i = 0; i < modes.values.size(); ++i)
-    {
-      EXPECT_NEAR(std::hypot(real[i], imaginary[i]), 1., 1e-13);
-      EXPECT_NEAR(recomputed[i], modes.residuals[i], 1e-14);
-    }
-}
-
-TEST(QuadraticModes, NonConvergenceSaysHowFarItCame)
+TEST(QuadraticModes, NonConvergenceIsRefused)
 {
   const int         n = 300;
   const DenseMatrix K = chain(n);
@@ -331,26 +252,5 @@ TEST(QuadraticModes, NonConvergenceSaysHowFarItCame)
   pencil.options.block_size   = 2;
   pencil.options.max_basis    = 26;
   pencil.options.max_restarts = 1;
-  try
-    {
-      pencil.modes(0.21);
-      FAIL() << "converged against expectation";
-    }
-  catch (const SolverError &error)
-    {
-      const std::string message = error.what();
-      EXPECT_NE(message.find("converged; the worst residual is"), std::string::npos) << message;
-      EXPECT_NE(message.find("after 1 restarts"), std::string::npos) << message;
-    }
-}
-
-TEST(QuadraticModes, RefusesAnImpossibleToleranceAndANegativeShift)
-{
-  const int   n = 100;
-  DensePencil pencil(DenseMatrix::Identity(n, n), nullptr, chain(n), 0.);
-  pencil.options.tolerance = 1e-17;
-  EXPECT_THROW(pencil.modes(0.3), SolverError);
-  pencil.options       = {};
-  pencil.options.shift = -1.;
-  EXPECT_THROW(pencil.modes(1.), SolverError);
+  EXPECT_THROW(pencil.modes(0.21), SolverError);
 }

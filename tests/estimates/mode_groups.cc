@@ -33,21 +33,6 @@ TEST(EnergyShares, AreThoseOfTheRows)
   EXPECT_NEAR(shares[2], of_disc / (of_disc + of_pins), 1e-14);
 }
 
-TEST(EnergyShares, OfAScene)
-{
-  // Disc modes of a scene whose pins are light; what is at rest has no energy
-  const Scene s(mesh_of(skewed_pins), mounted(), operating());
-  const auto  modes  = krylov(s.coupled, 0.4);
-  const auto  shares = disc_shares(s.model, s.system, *s.coupled.kernel, modes);
-  ASSERT_EQ(shares.size(), modes.lambda.size());
-  for (const double share : shares)
-    {
-      EXPECT_GE(share, 0.);
-      EXPECT_LE(share, 1. + 1e-12);
-    }
-  EXPECT_GT(*std::max_element(shares.begin(), shares.end()), 0.9);
-}
-
 TEST(ModeGroups, OfTheFrictionlessProblem)
 {
   // A mode belongs to the body that has the energy, whatever it is called

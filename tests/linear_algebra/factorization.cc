@@ -32,12 +32,7 @@ namespace
   /// Largest relative residual of A X = B, or Aᵀ X = B.
   double residual(const SparseMatrix &A, const MultiVector &X, const MultiVector &B, const bool transposed)
   {
-    MultiVector R = transposed ? transpose_times(A, X) : A * X;
-    R -= B;
-    double largest = 0.;
-    for (int j = 0; j < B.n_columns(); ++j)
-      largest = std::max(largest, column_norms(R)[j] / column_norms(B)[j]);
-    return largest;
+    return relative_difference(transposed ? transpose_times(A, X) : A * X, B);
   }
 } // namespace
 
@@ -56,12 +51,6 @@ TEST_P(Factorizations, PositiveDefiniteSystemsAreSolved)
       factors->apply_transpose(B, X);
       EXPECT_LT(residual(*A, X, B, false), 1e-13) << to_string(library);
       EXPECT_GT(factors->n_factor_entries(), A->n_entries() / 2.);
-      EXPECT_TRUE(factors->map() == A->rows());
-
-      // Fewer columns afterwards.
-      MultiVector x(B.map(), 1);
-      factors->apply(view(B, 69, 1), x);
-      EXPECT_LT(residual(*A, x, view(B, 69, 1), false), 1e-13) << to_string(library);
     }
 }
 
@@ -75,7 +64,7 @@ TEST_P(Factorizations, SolutionsForAnyNumberOfColumns)
       for (const unsigned int n_threads : {1, 2})
         {
           set_task_threads(n_threads);
-          for (const int k : {1, 2, 8, 9, 16, 17, 33})
+          for (const int k : {1, 8, 9, 33})
             {
               MultiVector X(B.map(), k), alone(B.map(), 1);
               factor->apply(view(B, 0, k), X);
@@ -119,43 +108,26 @@ TEST_P(Factorizations, MatricesThatAreNotDefiniteAreRefused)
   EXPECT_THROW(factorize_general(*singular, "test"), SolverError);
 }
 
-TEST_P(Factorizations, CholmodIsForOneProcess)
-{
-  const auto A       = laplacian(4, 1, GetParam());
-  const auto factors = [&] { factorize_positive_definite(*A, FactorizationLibrary::cholmod, "test"); };
-  if (one_process())
-    EXPECT_NO_THROW(factors());
-  else
-    EXPECT_THROW(factors(), SolverError);
-}
-
 TEST_P(Factorizations, InertiaCountsEigenvalues)
 {
-  const int  m      = 6;
-  const auto L      = laplacian(m, 2, GetParam());
-  const auto values = laplacian_eigenvalues(m, 2);
-  for (const double limit : {0.1, 1., 3.3, 6.01, 11.9})
+  // The second matrix is large enough for nested dissection, whose order serves every count
+  for (const auto &[m, n_copies] : {std::make_pair(6, 2), {14, 1}})
     {
-      const auto shifted  = add(1., *L, -limit, *diagonal(L->rows(), [](int) { return 1.; }));
-      const int  expected = std::lower_bound(values.begin(), values.end(), limit) - values.begin();
-      int        n_null   = -1;
-      EXPECT_EQ(count_negative_eigenvalues(*shifted, "test", &n_null), expected) << limit;
-      EXPECT_EQ(n_null, 0);
+      const auto L      = laplacian(m, n_copies, GetParam());
+      const auto values = laplacian_eigenvalues(m, n_copies);
+      for (const double limit : {0.1, 2.3, 11.9})
+        {
+          const auto shifted  = add(1., *L, -limit, *diagonal(L->rows(), [](int) { return 1.; }));
+          const int  expected = std::lower_bound(values.begin(), values.end(), limit) - values.begin();
+          int        n_null   = -1;
+          EXPECT_EQ(count_negative_eigenvalues(*shifted, "test", &n_null), expected) << limit;
+          EXPECT_EQ(n_null, 0);
+        }
     }
 
-  // A matrix that is large enough for nested dissection, whose order serves its factor and every count
-  const auto large        = laplacian(14, 1, GetParam());
-  const auto large_values = laplacian_eigenvalues(14, 1);
-  const auto unit         = diagonal(large->rows(), [](int) { return 1.; });
-  for (const double limit : {0.5, 2.3})
-    EXPECT_EQ(count_negative_eigenvalues(*add(1., *large, -limit, *unit), "test"),
-              std::lower_bound(large_values.begin(), large_values.end(), limit) - large_values.begin());
-
-  const auto D      = diagonal(L->rows(), [](const int i) { return i % 5 == 0 ? 0. : (i % 3 == 0 ? -1. : 2.); });
-  int        n_null = 0, expected_null = 0, expected = 0;
-  for (int i = 0; i < D->n_rows(); ++i)
-    (i % 5 == 0 ? expected_null : expected) += i % 5 == 0 || i % 3 == 0;
-  EXPECT_EQ(count_negative_eigenvalues(*D, "test", &n_null), expected);
-  EXPECT_EQ(n_null, expected_null);
+  const auto D      = diagonal(rows(100, GetParam()), [](const int i) { return i % 5 == 0 ? 0. : (i % 3 == 0 ? -1. : 2.); });
+  int        n_null = 0;
+  EXPECT_EQ(count_negative_eigenvalues(*D, "test", &n_null), 27); // 34 numbers below 100 are divisible by 3, 7 of these by 5
+  EXPECT_EQ(n_null, 20);
   EXPECT_THROW(count_negative_eigenvalues(*D, "test"), SolverError);
 }

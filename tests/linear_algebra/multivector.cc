@@ -44,35 +44,25 @@ TEST_P(MultiVectors, AreGatheredAndScattered)
   const DenseMatrix all  = replicate(X);
   DenseMatrix       root = gather(X);
   EXPECT_EQ(root.rows(), map.rank() == 0 ? n : 0);
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < root.rows(); ++i)
-      EXPECT_EQ(root(i, j), all(i, j));
-  if (map.rank() != 0)
+  if (map.rank() == 0)
+    EXPECT_EQ(max_norm(root - all), 0.);
+  else
     root = DenseMatrix();
   const MultiVector Y = scatter(root, map);
   EXPECT_TRUE(Y.map() == map);
   ASSERT_EQ(Y.n_columns(), 3);
-  for (int j = 0; j < 3; ++j)
-    for (int i = 0; i < Y.n_local_rows(); ++i)
-      EXPECT_EQ(Y(i, j), X(i, j));
+  EXPECT_EQ(max_norm(Y.local() - X.local()), 0.);
 }
 
 TEST_P(MultiVectors, RandomEntriesDoNotDependOnTheDistribution)
 {
   const int         n = 50;
   const MultiVector X = random_vectors(rows(n, GetParam()), 3, 7), Y = random_vectors(rows(n, Distribution::even), 3, 7);
-  // Sums over all processes with weights that tell rows apart.
-  const auto moment = [n](const MultiVector &Z, const int j) {
-    double sum = 0.;
-    for (int i = 0; i < Z.n_local_rows(); ++i)
-      sum += Z(i, j) * (1 + Z.map().number(i) % n);
-    return dealii::Utilities::MPI::sum(sum, Z.communicator());
-  };
-  for (int j = 0; j < 3; ++j)
+  EXPECT_EQ(max_norm(replicate(X) - replicate(Y)), 0.);
+  for (const double norm : column_norms(X))
     {
-      EXPECT_NEAR(moment(X, j), moment(Y, j), 1e-11);
-      EXPECT_GT(column_norms(X)[j], 2.);
-      EXPECT_LT(column_norms(X)[j], 6.);
+      EXPECT_GT(norm, 2.);
+      EXPECT_LT(norm, 6.);
     }
   EXPECT_LT(std::abs(gram(X, X)(0, 1)), 0.5 * gram(X, X)(0, 0));
   EXPECT_GT(max_norm(gram(X, X) - gram(random_vectors(rows(n, GetParam()), 3, 8), X)), 1.);
@@ -96,15 +86,6 @@ TEST_P(MultiVectors, ProductsAgreeWithDenseOnes)
           EXPECT_LT(max_norm(replicate(sum) - (0.5 * all_X * S + beta * all_Y)), 1e-13) << n_many << " and " << k;
         }
     }
-
-  const RowMap      map = rows(40, GetParam());
-  const MultiVector X = random_vectors(map, 4, 1), Y = random_vectors(map, 3, 2);
-  const DenseMatrix G = gram(X, Y);
-  ASSERT_EQ(G.rows(), 4);
-  ASSERT_EQ(G.cols(), 3);
-  const MultiVector J = join({&X, &Y});
-  EXPECT_EQ(J.n_columns(), 7);
-  EXPECT_LT(max_norm(gram(view(J, 0, 4), view(J, 4, 3)) - G), 1e-14);
 }
 
 TEST_P(MultiVectors, GrowByColumns)
@@ -118,19 +99,12 @@ TEST_P(MultiVectors, GrowByColumns)
   EXPECT_EQ(max_norm(view(all, 0, 3).local() - A.local()), 0.);
   EXPECT_EQ(max_norm(view(all, 3, 2).local() - B.local()), 0.);
   EXPECT_EQ(max_norm(view(all, 5, 1).local() - A.local().middleCols(1, 1)), 0.);
+  EXPECT_EQ(max_norm(join({&A, &B}).local() - view(all, 0, 5).local()), 0.);
   if (all.n_local_rows() > 0)
     {
       MultiVector some = view(all, 0, 2); // which cannot grow
       EXPECT_THROW(some.append(B), SolverError);
     }
-}
-
-TEST_P(MultiVectors, MatrixProductsAreAdjoint)
-{
-  const RowMap      map = rows(40, GetParam()), columns = rows(25, GetParam());
-  const auto        A = sparse(map, columns, [](const int i) { return Row{{i % 25, 1. + i}, {(3 * i + 1) % 25, -0.5}}; });
-  const MultiVector X = random_vectors(columns, 3, 1), Y = random_vectors(map, 2, 2);
-  EXPECT_LT(max_norm(gram(Y, *A * X) - gram(transpose_times(*A, Y), X)), 1e-12);
 }
 
 TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
@@ -159,6 +133,8 @@ TEST_P(MultiVectors, OrthonormalizeFindsTheRank)
   const MultiVector basis = join({&Q, &W});
   EXPECT_FALSE(orthonormalize_if_any(*M, &basis, X, 1e-10).has_value());
   EXPECT_THROW(orthonormalize(*M, &basis, X, 1e-10), SolverError);
+  X.local().setConstant(std::nan(""));
+  EXPECT_THROW(orthonormalize(*M, nullptr, X, 1e-10), SolverError);
 }
 
 TEST_P(MultiVectors, OrthonormalizeResolvesNearlyParallelDirections)
@@ -205,12 +181,6 @@ TEST_P(MultiVectors, OrthonormalizeTellsHowFarFromDependentTheColumnsAre)
   ASSERT_EQ(axes.norms.size(), 2u);
   EXPECT_NEAR(axes.norms[0], std::sqrt(1. + cosine), 1e-13);
   EXPECT_NEAR(axes.norms[1], std::sqrt(1. - cosine), 1e-13);
-
-  // Dependent columns: as far as rounding tells
-  X.col(1) = X.col(0);
-  orthonormalize(*M, nullptr, X, 1e-8, &axes);
-  EXPECT_GT(axes.condition, 1e14);
-  EXPECT_EQ(axes.norms.size(), 1u);
 }
 
 TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
@@ -241,17 +211,7 @@ TEST_P(MultiVectors, PrincipalAxesAreOrderedAndBest)
   EXPECT_EQ(first.n_columns(), 3);
   EXPECT_LT(max_norm(gram(first, *M * view(W, 0, 3)) - DenseMatrix::Identity(3, 3)), 1e-13);
   EXPECT_EQ(axes.norms.size(), 3u);
-  EXPECT_THROW(principal_axes(*M, X, 1e-9, 0), SolverError);
   EXPECT_THROW(principal_axes(*M, MultiVector(map, 2), 1e-9, 2), SolverError);
-}
-
-TEST_P(MultiVectors, OrthonormalizeRefusesUndefinedValues)
-{
-  const RowMap map = rows(60, GetParam());
-  MultiVector  X   = random_vectors(map, 2);
-  if (X.n_local_rows() > 0)
-    X(0, 1) = std::nan("");
-  EXPECT_THROW(orthonormalize(*inner_product(map), nullptr, X, 1e-10), SolverError);
 }
 
 TEST_P(MultiVectors, ProductsByBlocksAreThoseOfTheWhole)

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <sstream>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
@@ -45,7 +44,6 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   EXPECT_LT(max_norm(to_dense(*multiply(*A, *B)) - a * b), 1e-12);
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *A, true, false)) - b.transpose() * a), 1e-12);
   EXPECT_LT(max_norm(to_dense(*multiply(*B, *C, false, true)) - b * c.transpose()), 1e-12);
-  EXPECT_LT(max_norm(to_dense(*multiply(*B, *A, true, true)) - b.transpose() * a.transpose()), 1e-12);
 
   // Few entries, each of which matters: rows and columns of one index need not live together.
   for (const int n : {3, 7, 20})
@@ -64,10 +62,6 @@ TEST_P(Sparse, ProductsAgreeWithDenseOnes)
   EXPECT_TRUE(T->columns() == B->columns());
   EXPECT_LT(max_norm(to_dense(*T) - b.transpose() * a * b), 1e-10);
   EXPECT_LT(symmetry_defect(*T), 1e-15);
-
-  // The products can be applied to vectors.
-  const MultiVector X = random_vectors(B->columns(), 2);
-  EXPECT_LT(max_norm(gram(X, *T * X) - gram(*B * X, *A * (*B * X))), 1e-9);
 }
 
 TEST_P(Sparse, SumsOfDifferentPatterns)
@@ -80,15 +74,8 @@ TEST_P(Sparse, SumsOfDifferentPatterns)
       EXPECT_LT(max_norm(to_dense(*add(2., *A, -3., *B)) - (2. * to_dense(*A) - 3. * to_dense(*B))), 1e-13);
       EXPECT_LT(max_norm(to_dense(*add(2., *B, -3., *A)) - (2. * to_dense(*B) - 3. * to_dense(*A))), 1e-13);
     }
-  EXPECT_DOUBLE_EQ(max_norm(*D), 27.);
   EXPECT_DOUBLE_EQ(symmetry_defect(*P), 1.);
   EXPECT_EQ(symmetry_defect(*A), 0.);
-}
-
-TEST_P(Sparse, ModuliAreThoseOfTheEntries)
-{
-  const auto A = rectangular(GetParam());
-  EXPECT_EQ(max_norm(to_dense(*moduli(*A)) - to_dense(*A).cwiseAbs()), 0.);
 }
 
 TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
@@ -103,48 +90,15 @@ TEST_P(Sparse, ProductsWithAnyNumberOfColumns)
           row[(7 * k + 3 * i) % m] = 1. / (1. + k + i);
         return row;
       });
-      for (const int k : {1, 2, 7, 8, 9, 15, 16, 17, 33})
+      for (const int k : {1, 7, 8, 9, 33})
         {
           const MultiVector X        = random_vectors(A->columns(), k, 3);
           const DenseMatrix expected = to_dense(*A) * replicate(X);
           EXPECT_LT(max_norm(replicate(*A * X) - expected), 1e-14 * max_norm(expected)) << n_rows << " x " << m << ", " << k;
+          const MultiVector Y    = random_vectors(A->rows(), k, 4);
+          const DenseMatrix back = to_dense(*A).transpose() * replicate(Y);
+          EXPECT_LT(max_norm(replicate(transpose_times(*A, Y)) - back), 1e-14 * max_norm(back)) << n_rows << " x " << m << ", " << k;
         }
-    }
-}
-
-TEST_P(Sparse, MatrixMarketFilesReturnTheSameNumbers)
-{
-  const auto A = scale_rows(*rectangular(GetParam()), [](int) { return 1. / 3.; });
-  const auto S = laplacian(3, 1, GetParam());
-  for (const auto &[matrix, symmetry] :
-       {std::make_pair(A, MatrixMarketSymmetry::general), std::make_pair(S, MatrixMarketSymmetry::symmetric)})
-    {
-      std::istringstream stream(matrix_market(*matrix, symmetry));
-      const DenseMatrix  expected = to_dense(*matrix);
-      if (A->map().rank() != 0)
-        {
-          EXPECT_TRUE(stream.str().empty());
-          continue;
-        }
-      DenseMatrix read = DenseMatrix::Zero(expected.rows(), expected.cols());
-      std::string header;
-      std::getline(stream, header);
-      EXPECT_EQ(header, symmetry == MatrixMarketSymmetry::general ? "%%MatrixMarket matrix coordinate real general" :
-                                                                    "%%MatrixMarket matrix coordinate real symmetric");
-      int n_rows, n_columns, n_entries, i, j;
-      stream >> n_rows >> n_columns >> n_entries;
-      EXPECT_EQ(n_rows, expected.rows());
-      EXPECT_EQ(n_columns, expected.cols());
-      double value;
-      int    n_read = 0;
-      for (; stream >> i >> j >> value; ++n_read)
-        {
-          read(i - 1, j - 1) = value;
-          if (symmetry == MatrixMarketSymmetry::symmetric)
-            read(j - 1, i - 1) = value;
-        }
-      EXPECT_EQ(n_read, n_entries);
-      EXPECT_EQ(max_norm(read - expected), 0.);
     }
 }
 

@@ -34,15 +34,6 @@ namespace
     std::shared_ptr<MultiVector>        products, combinations, solutions;
     DenseMatrix                         inner;
   };
-
-  double relative_difference(const MultiVector &X, const MultiVector &Y)
-  {
-    const auto norms = column_norms(X - Y), sizes = column_norms(Y);
-    double     result = 0.;
-    for (std::size_t j = 0; j < norms.size(); ++j)
-      result = std::max(result, norms[j] / sizes[j]);
-    return result;
-  }
 } // namespace
 
 TEST(Threads, ChangeNothing)
@@ -58,16 +49,4 @@ TEST(Threads, ChangeNothing)
       EXPECT_EQ(relative_difference(*several.combinations, *one.combinations), 0.);
       EXPECT_LE(relative_difference(*several.solutions, *one.solutions), solver_noise);
     }
-}
-
-TEST(Threads, ProductsOfManyRowsAreRight)
-{
-  const Results     many(2);
-  const MultiVector X = random_vectors(many.K->rows(), 11);
-  // K is symmetric, and its transpose is multiplied by another library
-  EXPECT_LT(relative_difference(*many.products, transpose_times(*many.K, X)), 1e-14);
-  EXPECT_LT(relative_difference(*many.K * *many.solutions, X), 1e-12);
-  for (int j = 0; j < X.n_columns(); ++j)
-    for (int i = 0; i <= j; ++i)
-      EXPECT_NEAR(many.inner(i, j), column_products(view(X, i, 1), view(*many.products, j, 1))[0], 1e-10);
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <set>
 
 using namespace Squeal;
@@ -13,6 +14,14 @@ namespace
 {
   constexpr double distance = 0.2, radius = 0.026;
 
+  /// The plate of the plan with the pin on top of all of it.
+  HexMesh covered(Plan plan)
+  {
+    plan.pins[0].faces.resize(plan.faces.size());
+    std::iota(plan.pins[0].faces.begin(), plan.pins[0].faces.end(), 0);
+    return extrude(plan, layers(1, 1));
+  }
+
   /// A plate and a pin on top of all of it, with rings.
   HexMesh round_mesh(const unsigned int k, const unsigned int rings)
   {
@@ -21,11 +30,8 @@ namespace
     for (unsigned int i = 0; i < 6 * k; ++i)
       outline.push_back(i);
     plan.points.resize(6 * k);
-    plan.faces         = fill_pin(outline, {rings, 2.}, plan.points).faces;
-    plan.pins[0].faces = {};
-    for (unsigned int face = 0; face < plan.faces.size(); ++face)
-      plan.pins[0].faces.push_back(face);
-    return extrude(plan, layers(1, 1));
+    plan.faces = fill_pin(outline, {rings, 2.}, plan.points).faces;
+    return covered(plan);
   }
 
   /// Nodes at that distance from the axis, seen along it, in micrometres.
@@ -50,17 +56,6 @@ TEST(CurvedBoundaries, RingsAreRoundOnBothSidesOfTheContact)
       EXPECT_EQ(nodes_at(nodes, r * radius, 1).size(), 24u) << r;
       EXPECT_GE(nodes_at(nodes, r * radius, 0).size(), 24u) << r;
     }
-  // Every node of one side of the contact has its counterpart on the other
-  std::vector<std::set<std::array<long, 3>>> sides(2);
-  for (const Node &node : nodes)
-    if (std::abs(node.position[2] - GeometryParameters().disc_thickness / 2.) < 1e-9)
-      {
-        const std::array<long, 3> place = {
-          {std::lround(1e8 * node.position[0]), std::lround(1e8 * node.position[1]), std::lround(1e8 * node.position[2])}};
-        sides[node.component].insert(place);
-      }
-  EXPECT_EQ(sides[0].size(), sides[1].size());
-  EXPECT_EQ(sides[0], sides[1]);
 }
 
 TEST(CurvedBoundaries, CellsWithTwoRoundFacesSideBySideKeepOneStraight)
@@ -78,10 +73,7 @@ TEST(CurvedBoundaries, CellsWithTwoRoundFacesSideBySideKeepOneStraight)
     }
   for (const Plan::Face &face : fill_with_o_grid(inside, plan.points))
     plan.faces.push_back(face);
-  plan.pins[0].faces = {};
-  for (unsigned int face = 0; face < plan.faces.size(); ++face)
-    plan.pins[0].faces.push_back(face);
-  const std::vector<Node> nodes = Model(extrude(plan, layers(1, 1)), Element::quadratic, MPI_COMM_WORLD).gathered_nodes();
+  const std::vector<Node> nodes = Model(covered(plan), Element::quadratic, MPI_COMM_WORLD).gathered_nodes();
   if (nodes.empty())
     return;
   EXPECT_EQ(nodes_at(nodes, radius, 1).size(), 12u);

@@ -62,20 +62,6 @@ namespace
     return "";
   }
 
-  /// The modes of flutter(1.3).
-  struct Flutter
-  {
-    static constexpr double threshold = (1. / 2.8 + 0.7) / 1.3;
-
-    /// The mode that grows or, below the threshold, the higher one.
-    Complex lambda(const double mu) const
-    {
-      const Complex kappa = 0.5 * (5. + std::sqrt(Complex(1. + 2.8 * (0.7 - 1.3 * mu))));
-      const Complex l     = std::sqrt(-kappa);
-      return l.imag() > 0. ? l : -l;
-    }
-  };
-
   Scene scene(const RadialDissipation dissipation, const MaterialParameters &materials = mounted())
   {
     return Scene(mesh_of(skewed_pins), materials, operating(dissipation));
@@ -85,18 +71,18 @@ namespace
 TEST(ContourCount, FlutterOfTwoDegreesOfFreedom)
 {
   const Flutter       flutter;
-  const CoupledSystem system = Testing::flutter(1.3);
+  const CoupledSystem system = flutter.system();
   for (const ContourMethod method : methods(system))
     {
       // Below the threshold, both on the imaginary axis: the contour may be as narrow as one likes.
-      const double stable = 0.9 * Flutter::threshold, omega = flutter.lambda(stable).imag();
+      const double stable = 0.9 * flutter.coalescence(), omega = flutter.lambda(stable).back().imag();
       EXPECT_EQ(count(system, {stable}, contour(3., 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(1.0001 * omega, 0.01, method))[0].n_modes, 2);
       EXPECT_EQ(count(system, {stable}, contour(0.9999 * omega, 0.01, method))[0].n_modes, 1);
 
       // Beyond it, at −R + iω and R + iω
-      const double  unstable = 1.3 * Flutter::threshold;
-      const Complex l        = flutter.lambda(unstable);
+      const double  unstable = 1.3 * flutter.coalescence();
+      const Complex l        = flutter.lambda(unstable).back();
       ASSERT_GT(std::abs(l.real()), 0.05);
       EXPECT_EQ(count(system, {unstable}, contour(3., 1.01 * std::abs(l.real()), method))[0].n_modes, 2);
       const ContourCount narrow = count(system, {unstable}, contour(3., 0.99 * std::abs(l.real()), method))[0];
@@ -113,7 +99,7 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
   const Scene  s      = scene(RadialDissipation::none);
   const double radius = band_radius(omega_max);
   int          n_real = 0;
-  for (const double mu : {3., 6., 10.})
+  for (const double mu : {3., 10.})
     {
       const ComplexModes found = krylov(s.coupled, mu, 1e-9), other = iterated(s.coupled, mu, 1e-8);
       EXPECT_LT(largest(distances(other.lambda, found.lambda)), 1e-6);
@@ -143,7 +129,7 @@ TEST(ContourCount, AgreesWithBothSolversUnderStrongFriction)
 
 TEST(ContourCount, AgreesWithTheModesFound)
 {
-  const std::vector<double> mu = {0., 0.4, 1.};
+  const std::vector<double> mu = {0.4, 1.};
   for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
     {
       const Scene      s        = scene(dissipation);
@@ -172,33 +158,6 @@ TEST(ContourCount, AgreesWithTheModesFound)
     }
 }
 
-TEST(ContourCount, OneLessWhereTheBandEndsBelowAMode)
-{
-  for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
-    {
-      const Scene s     = scene(dissipation);
-      const auto  modes = krylov(s.coupled, 0.4);
-      // The highest mode that does not coalesce with another one
-      std::size_t j   = modes.lambda.size() - 2;
-      const auto  gap = [&](const std::size_t i) { return (modes.lambda[i + 1].imag() - modes.lambda[i].imag()) / modes.lambda[i].imag(); };
-      while (j > 0 && std::min(gap(j), gap(j - 1)) < 1e-3)
-        --j;
-      ASSERT_GT(j, 3u);
-      const double omega = modes.lambda[j].imag();
-      for (const ContourMethod method : methods(s.coupled))
-        for (const double distance : {1e-2, 1e-4, 1e-6})
-          for (const double side : {-1., 1.})
-            {
-              if (method == ContourMethod::sparse_lu && distance != 1e-4)
-                continue;
-              const double end = omega * (1. + side * distance);
-              EXPECT_EQ(count(s.coupled, {0.4}, contour(end, 0., method))[0].n_modes, n_inside(modes.lambda, end))
-                << to_string(method) << ", " << side * distance;
-            }
-      EXPECT_EQ(n_inside(modes.lambda, omega * (1. + 1e-6)) - n_inside(modes.lambda, omega * (1. - 1e-6)), 1);
-    }
-}
-
 TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
 {
   // A pole of the condensed determinant on one side of the contour, a zero on the other
@@ -223,14 +182,8 @@ TEST(ContourCount, BetweenARealModeAndWhatFrictionMakesOfIt)
       const std::string message = refusal(s.coupled, 0.4, contour(omega * (1. + 1e-13), 0., method));
       EXPECT_NE(message.find("refused"), std::string::npos) << message;
       EXPECT_NE(message.find("move the end of the band"), std::string::npos) << message;
-
-      // Too few points, in the middle of the contour
-      ContourOptions options = contour(omega_max, 0., method);
-      options.maximum_points = 6;
-      EXPECT_NE(refusal(s.coupled, 0.4, options).find("more than 6 points"), std::string::npos);
     }
   EXPECT_NE(refusal(s.coupled, 0.4, contour(omega_real)).find("a real mode lies on the contour"), std::string::npos);
-  EXPECT_NE(refusal(s.coupled, 0.4, contour(0.)).find("end of the band"), std::string::npos);
 }
 
 TEST(ContourCount, DampingOfModesAndOfTheSlidingMotion)

@@ -1,8 +1,6 @@
 #include "solutions.h"
 
 #include <squeal/base/exceptions.h>
-#include <squeal/linear_algebra/dense_eigenproblems.h>
-#include <squeal/linear_algebra/dense_lu.h>
 #include <squeal/linear_algebra/mass_orthonormal.h>
 
 #include <gtest/gtest.h>
@@ -13,18 +11,6 @@ using namespace Squeal::Testing;
 namespace
 {
   constexpr double mu = 0.6;
-
-  /// The disc held at its rim like the pins at their outer faces.
-  HexMesh with_clamped_rim(HexMesh mesh)
-  {
-    const auto number = [&](const char *name) {
-      return static_cast<unsigned int>(std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin());
-    };
-    for (auto &quadrilateral : mesh.quadrilaterals)
-      if (quadrilateral.surface == number(PhysicalNames::disc_rim))
-        quadrilateral.surface = number(PhysicalNames::pin_clamp);
-    return mesh;
-  }
 
   /// Disc and pins of one material with C = α M + β K.
   MaterialParameters proportional(const double alpha, const double beta, const std::vector<Mount> &mounts = {})
@@ -74,79 +60,20 @@ namespace
       }
     return result;
   }
-
-  /**
-   * A body below (dof 0, along n) and one above (dofs 1 along n, 2 along t), pressed
-   * upon each other; friction moves the upper one. With P_n and P_t as they stand in
-   * the equations, so that nothing but couple() makes the coupled matrices.
-   */
-  struct TwoBodies
-  {
-    RowMap            map = rows(3), nodes = rows(1), coordinates = rows(2);
-    ContactOperators  contact;
-    SecondOrderSystem system;
-
-    TwoBodies()
-    {
-      const auto symmetric = [this](const double a00, const double a11, const double a12, const double a22) {
-        return sparse(map, map, [=](const int i) {
-          return i == 0 ? Row{{0, a00}} : i == 1 ? Row{{1, a11}, {2, a12}} : Row{{1, a12}, {2, a22}};
-        });
-      };
-      system             = {symmetric(1.2, 0.9, 0.05, 1.), symmetric(0.02, 0.06, 0.01, 0.03), symmetric(1., 4., 0.8, 2.3)};
-      contact.normal     = sparse(nodes, map, [](int) { return Row{{0, 1.}, {1, -1.}}; });
-      contact.tangential = sparse(nodes, map, [](int) { return Row{{2, -1.}}; });
-      contact.radial     = sparse(nodes, map, [](int) { return Row{}; });
-      contact.reaction   = linear_combination({{0.5, contact.normal.get()}});
-      contact.kernel     = sparse(map, coordinates, [](const int i) { return Row{{i == 2 ? 1 : 0, 1.}}; });
-    }
-
-    /// A − μ/2 P_tᵀ P_n A between the columns of T_c.
-    DenseMatrix with_friction(const SparseMatrix &matrix, const double mu) const
-    {
-      const DenseMatrix A = to_dense(matrix), T = to_dense(*contact.kernel);
-      const DenseMatrix friction = to_dense(*contact.tangential).transpose() * to_dense(*contact.normal) * A;
-      return T.transpose() * (A - 0.5 * mu * friction) * T;
-    }
-
-    /// Eigenvalues with Im λ > 0 of [0 I; −M̃⁻¹K̃ −M̃⁻¹C̃].
-    std::vector<Complex> lambda(const double mu) const
-    {
-      const RealLU M         = regular_lu(with_friction(*system.mass, mu), "mass");
-      const int    n         = system.mass->n_rows() - contact.normal->n_rows();
-      DenseMatrix  companion = DenseMatrix::Zero(2 * n, 2 * n);
-      companion << DenseMatrix::Zero(n, n), DenseMatrix::Identity(n, n), -M.solve(with_friction(*system.stiffness, mu)),
-        -M.solve(with_friction(*system.damping, mu));
-      std::vector<Complex> result;
-      for (const Complex &l : eigenpairs(companion).values)
-        if (l.imag() > 0.)
-          result.push_back(l);
-      return result;
-    }
-  };
 } // namespace
 
 TEST(RayleighDamping, ProportionalDampingOfEveryMode)
 {
   // C = α M + β K without friction: λ = −(α + β ω²)/2 ± i √(ω² − ((α + β ω²)/2)²); an elastic mount
   // allows β with dashpots of β times its stiffness only.
-  struct Case
-  {
-    HexMesh            mesh;
-    double             alpha, beta;
-    std::vector<Mount> mounts;
-  };
-  const HexMesh mesh      = mesh_of(skewed_pins);
-  int           n_growing = 0;
-  for (const auto &[mesh, alpha, beta, mounts] :
-       {Case{with_clamped_rim(mesh), 300., 2e-6, {}}, Case{with_clamped_rim(mesh), 0., 5e-6, {}},
-        Case{mesh, 500., 0., {{"disc_bore", 0., 7.80e10, 1.88e10}}}, Case{mesh, 100., 3e-6, {{"disc_bore", 0., 7.80e10, 1.88e10}}}})
+  int n_growing = 0;
+  for (const auto &[alpha, beta] : {std::make_pair(500., 0.), {100., 3e-6}})
     {
-      MaterialParameters materials = proportional(alpha, beta, mounts);
+      const Mount        mount{"disc_bore", 0., 7.80e10, 1.88e10};
+      MaterialParameters materials = proportional(alpha, beta, {mount});
       if (beta > 0.)
-        for (const Mount &mount : mounts)
-          materials.dashpots.push_back({mount.surface, beta * mount.radial, beta * mount.tangential, beta * mount.axial});
-      const Scene s(mesh, materials, operating());
+        materials.dashpots.push_back({mount.surface, beta * mount.radial, beta * mount.tangential, beta * mount.axial});
+      const Scene s(mesh_of(skewed_pins), materials, operating());
       const auto  real = real_modes(s.coupled);
       const auto  expected =
         damped_oscillators(real, [alpha = alpha, beta = beta](const double omega) { return alpha + beta * omega * omega; });
@@ -201,43 +128,27 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
     }
 }
 
-TEST(RayleighDamping, TwoBodiesFromTheEquations)
-{
-  const TwoBodies two;
-  CoupledSystem   coupled = couple(two.system, two.contact);
-  bool            stable = false, unstable = false;
-  for (const double friction : {0., 0.3, 0.9, 1.5})
-    {
-      const auto expected         = two.lambda(friction);
-      const bool grows            = std::any_of(expected.begin(), expected.end(), [](const Complex &l) { return l.real() > 0.01; });
-      (grows ? unstable : stable) = true;
-      for (const auto &values : solutions(coupled, friction))
-        EXPECT_LT(largest(distances(values, expected)), 1e-12) << "mu " << friction;
-    }
-  EXPECT_TRUE(stable && unstable);
-
-  // The reaction to the damping matters.
-  auto &terms = coupled.terms;
-  terms.erase(std::remove_if(terms.begin(), terms.end(), [](const Term &term) { return term.name == "friction, damping of the bodies"; }),
-              terms.end());
-  EXPECT_GT(largest(distances(solutions(coupled, 0.9).front(), two.lambda(0.9))), 1e-3);
-}
-
-TEST(RayleighDamping, LeftResidualsAreThoseOfTheTransposedMatrices)
+TEST(RayleighDamping, ResidualsOfBothSidesAreThoseOfTheMatrices)
 {
   const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent));
+  const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
   const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
-  const MultiVector          X = random_vectors(s.coupled.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
-  const ComplexDenseMatrix   L        = from_halves(replicate(force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, true)));
+  const MultiVector          X = random_vectors(system.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
   const auto                 matrices = with_friction(s.coupled, mu);
-  const auto                 times    = [&](const SparseMatrix &A) { return from_halves(replicate(transpose_times(A, X))); };
   const Eigen::VectorXcd     factors = as_column(lambda), squares = factors.array().square();
-  const ComplexDenseMatrix   expected =
-    times(*matrices.stiffness) + times(*matrices.damping) * factors.asDiagonal() + times(*matrices.mass) * squares.asDiagonal();
-  for (int j = 0; j < 2; ++j)
+  for (const bool left : {false, true})
     {
-      EXPECT_LT((expected - L).col(j).real().norm(), 1e-13 * expected.col(j).real().norm());
-      EXPECT_LT((expected - L).col(j).imag().norm(), 1e-13 * expected.col(j).imag().norm());
+      const ComplexDenseMatrix R     = from_halves(replicate(force_residuals(system, system.at(mu), lambda, re, im, left)));
+      const auto               times = [&](const SparseMatrix &A) { return from_halves(replicate(left ? transpose_times(A, X) : A * X)); };
+      const ComplexDenseMatrix modal = from_halves(replicate(modal_forces(system, X))) * factors.asDiagonal();
+      const ComplexDenseMatrix expected =
+        times(*matrices.stiffness) + times(*matrices.damping) * factors.asDiagonal() + modal + times(*matrices.mass) * squares.asDiagonal();
+      for (int j = 0; j < 2; ++j)
+        {
+          EXPECT_LT((expected - R).col(j).real().norm(), 1e-13 * expected.col(j).real().norm());
+          EXPECT_LT((expected - R).col(j).imag().norm(), 1e-13 * expected.col(j).imag().norm());
+          EXPECT_GT(modal.col(j).norm(), 1e-9 * expected.col(j).norm());
+        }
     }
 }
 
@@ -247,7 +158,6 @@ TEST(SpeedDependentFriction, MassOnASpring)
   const double m = 2., c = 0.05, k = 18., N = 3., w_0 = 0.5;
   const auto   friction = [](const double w) { return 0.3 + 0.2 * std::exp(-w / 0.4); };
   const double falling  = -0.5 * std::exp(-w_0 / 0.4);
-  EXPECT_NEAR((friction(w_0 + 1e-5) - friction(w_0 - 1e-5)) / 2e-5, falling, 1e-9);
 
   // The belt is no dof: P_t u = 0 - x, and nothing moves along n and b.
   const RowMap     map = rows(1), nodes = rows(1);
@@ -273,28 +183,17 @@ TEST(SpeedDependentFriction, MassOnASpring)
     }
 }
 
-TEST(ModalDamping, IsDiagonalInTheModesAndGivesEachItsRatio)
+TEST(ModalDamping, GivesEachModeItsRatioAndTheRestNothing)
 {
   const Scene       s(mesh_of(skewed_pins), mounted(), operating());
   const auto        real   = real_modes(s.coupled);
   const MultiVector Phi    = *real.vectors;
   const auto        system = with_modal_damping(s.coupled, real);
-  DenseMatrix       D      = gram(Phi, modal_forces(system, Phi));
-  double            size   = 0.;
-  for (int j = 0; j < D.cols(); ++j)
-    {
-      const double omega = std::sqrt(real.eigenvalues[j]), expected = 2. * ratio_at(omega) * omega;
-      D(j, j) -= expected;
-      size = std::max(size, expected);
-    }
-  EXPECT_LT(max_norm(D), 1e-11 * size);
 
-  // Symmetric, and without effect on what is M-orthogonal to the modes
+  // Without effect on what is M-orthogonal to the modes
   const MultiVector X = random_vectors(system.map(), 3);
-  const DenseMatrix S = gram(X, modal_forces(system, X));
-  EXPECT_LT(max_norm(S - S.transpose()), 1e-13 * max_norm(S));
   const MultiVector Y = orthonormalize(*system.mass, &Phi, X, 1e-10);
-  EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * size);
+  EXPECT_LT(max_norm(gram(Y, modal_forces(system, Y))), 1e-11 * max_norm(gram(Phi, modal_forces(system, Phi))));
 
   // Rigid-body modes get none; no ratios, no damping.
   std::vector<double> eigenvalues = real.eigenvalues;
@@ -315,36 +214,16 @@ TEST(ModalDamping, IsDiagonalInTheModesAndGivesEachItsRatio)
 
 TEST(ModalDamping, BothSolversAgreeWithFriction)
 {
-  // By itself, and with every other damping
-  for (const bool others : {false, true})
-    {
-      const Scene               s(mesh_of(skewed_pins), others ? damped(mounted()) : mounted(), operating());
-      const std::vector<double> c_b(s.interface.size(), others ? 50. : 0.), c_t(s.interface.size(), others ? -20. : 0.);
-      const CoupledSystem       bare      = couple(s.system, s.contact, {c_b, c_t});
-      const auto                system    = with_modal_damping(bare, real_modes(bare));
-      const auto                reference = krylov(system, mu);
-      for (const double tolerance : {1e-4, 1e-8})
-        EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
-      EXPECT_LT(largest(reference.residuals), 1e-11);
-      // It matters.
-      EXPECT_GT(largest(distances(krylov(bare, mu).lambda, reference.lambda)), 1e-3);
-    }
-}
-
-TEST(ModalDamping, AddsItsForcesOnBothSides)
-{
-  const Scene                s(mesh_of(skewed_pins), damped(mounted()), operating());
-  const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
-  const std::vector<Complex> lambda = {{-300., 9000.}};
-  const MultiVector          X = random_vectors(system.map(), 2), re = view(X, 0, 1), im = view(X, 1, 1);
-  const ComplexDenseMatrix   expected = lambda[0] * from_halves(replicate(modal_forces(system, X)));
-  for (const bool left : {false, true})
-    {
-      const ComplexDenseMatrix all     = from_halves(replicate(force_residuals(system, system.at(mu), lambda, re, im, left))),
-                               without = from_halves(replicate(force_residuals(s.coupled, s.coupled.at(mu), lambda, re, im, left)));
-      EXPECT_GT(expected.norm(), 1e-9 * all.norm());
-      EXPECT_LT((all - without - expected).norm(), 1e-14 * all.norm());
-    }
+  // With every other damping
+  const Scene         s(mesh_of(skewed_pins), damped(mounted()), operating());
+  const CoupledSystem bare =
+    couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});
+  const auto system    = with_modal_damping(bare, real_modes(bare));
+  const auto reference = krylov(system, mu);
+  for (const double tolerance : {1e-4, 1e-8})
+    EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
+  EXPECT_LT(largest(reference.residuals), 1e-11);
+  EXPECT_GT(largest(distances(krylov(bare, mu).lambda, reference.lambda)), 1e-3); // it matters
 }
 
 TEST(ModalDamping, OfADiscThatMovesFreely)

@@ -63,11 +63,3 @@ TEST(Verdict, OfWhatIsNoNumberIsOpen)
         EXPECT_EQ(of_rate(rate, not_a_number, growth_needs_coalescence), Verdict::undecided) << rate;
     }
 }
-
-TEST(Verdict, IsPrintedInThreeWords)
-{
-  EXPECT_EQ(to_string(Verdict::unstable), "unstable");
-  EXPECT_EQ(to_string(Verdict::undecided), "undecided");
-  EXPECT_EQ(to_string(Verdict::stable), "stable");
-  EXPECT_EQ(to_string(Verdict::neutral), "stable");
-}

@@ -155,10 +155,6 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
       EXPECT_EQ(disc.components.size() + pins.components.size(), all.components.size());
       EXPECT_EQ(disc.nodes.size() + pins.nodes.size(), all.nodes.size());
       EXPECT_EQ(numbers_of(all.nodes).size(), all.nodes.size()) << "vertices are shared";
-      if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1)
-        {
-          EXPECT_EQ(all.nodes.size(), s.model.nodes().size());
-        }
 
       double sum = 0.;
       for (unsigned int cell = 0; cell < all.components.size(); ++cell)
@@ -196,14 +192,6 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
           if (face->at_boundary() && s.model.surface_ids(PhysicalNames::pin_contact).count(face->boundary_id()) > 0)
             of_straight_faces += face->measure();
       EXPECT_NEAR(on_all(of_cells), of_half_edges(on_all(of_straight_faces), of_pairs), 1e-12 * of_pairs) << to_string(element);
-
-      std::set<std::int64_t> numbers = numbers_of(mesh.nodes), wanted;
-      EXPECT_EQ(numbers.size(), mesh.nodes.size());
-      for (const auto &part : dealii::Utilities::MPI::all_gather(MPI_COMM_WORLD, std::vector<std::int64_t>(numbers.begin(), numbers.end())))
-        numbers.insert(part.begin(), part.end());
-      for (const ContactNode &pair : s.interface)
-        wanted.insert(pair.pin_node.number);
-      EXPECT_EQ(numbers, wanted) << "every node is a corner";
     }
 }
 
@@ -248,38 +236,6 @@ TEST(Fields, HaveTheDisplacementsOfTheirPoints)
     }
 }
 
-TEST(Fields, OfModeShapesAndAnimations)
-{
-  const TemporaryFolder place;
-  for (const Element element : {Element::trilinear, Element::quadratic})
-    {
-      const DiscWithPin s(element);
-      const ModeField   mode    = s.mode({1., 1000.});
-      const auto        folder  = s.written(place, [&](FieldWriter &writer) {
-        writer.write_mode(mode);
-        writer.write_animation("all", {mode, s.mode({0., 500.}, "other")}, {4});
-      });
-      const std::string body    = content(folder / "modes" / "complex_001_A0-2.vtu"),
-                        contact = content(folder / "modes" / "complex_001_A0-2_contact.vtu");
-      for (const char *field : {"displacement_real", "displacement_imag", "amplitude", "phase", "component", "points", "mode"})
-        EXPECT_NE(body.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
-      for (const char *field : {"normal_reaction_real", "normal_reaction_imag", "closed", "mode"})
-        EXPECT_NE(contact.find("Name=\"" + std::string(field) + "\""), std::string::npos) << field;
-      // The title as codes of its characters
-      EXPECT_NE(body.find("\n65 48 45 50 44 32 49 54 48 32 72 122 0\n"), std::string::npos) << body.substr(0, 600);
-
-      // The animation covers one period with equal steps, and its pictures have both modes
-      const auto frames = listed(folder / "animations" / "all.pvd");
-      ASSERT_EQ(frames.size(), 4u);
-      for (std::size_t frame = 0; frame < frames.size(); ++frame)
-        {
-          const std::string picture = content(folder / "animations" / frames[frame].second);
-          EXPECT_EQ(frames[frame].first, frame / 4.);
-          EXPECT_EQ(values_of(picture, mode.name), values_of(picture, "other"));
-        }
-    }
-}
-
 TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
 {
   const TemporaryFolder place;
@@ -304,23 +260,6 @@ TEST(Fields, OfAnimationsWithGrowthAreLargestWhereTheModeIs)
       EXPECT_EQ(values_of(last, "grows") == without, grows);
       EXPECT_NE(values_of(last, "decays"), without);
     }
-}
-
-TEST(Fields, OfAllBodiesAndOfOne)
-{
-  const TemporaryFolder     place;
-  const DiscWithPin         s(Element::trilinear);
-  const std::vector<double> displacement(s.model.free_map().n(), -3.);
-  const auto                folder = s.written(place, [&](FieldWriter &writer) {
-    writer.write_mode({"real", "real mode A0-2", displacement, {}});
-    writer.write_mode({"disc", "free disc A0-2", displacement, Component::disc});
-    writer.write_mode({"pins", "free pins F1", displacement, Component::pins});
-  });
-  const int                 n_all  = static_cast<int>(s.model.triangulation().n_active_cells());
-  for (const auto &[name, n_cells] : {std::make_pair("disc", 24), {"pins", n_all - 24}, {"real", n_all}})
-    EXPECT_NE(content(folder / "modes" / (std::string(name) + ".vtu")).find("NumberOfCells=\"" + std::to_string(n_cells) + '"'),
-              std::string::npos)
-      << name;
 }
 
 TEST(Fields, AreListedWithATimeForEachMode)

@@ -1,4 +1,5 @@
-#include <squeal/base/exceptions.h>
+#include "faces.h"
+
 #include <squeal/output/table.h>
 
 #include <gtest/gtest.h>
@@ -8,6 +9,7 @@
 #include <sstream>
 
 using namespace Squeal;
+using namespace Squeal::Testing;
 
 TEST(Tables, TwelveDigitsAndUnitsOnDisk)
 {
@@ -46,13 +48,5 @@ TEST(Tables, RefuseWhatIsNotANumber)
   const Columns<double> columns = {{"label", "", [](double) { return "A0-2"; }},
                                    {"growth rate", "1/s", [](const double rate) { return rate; }}};
   for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    try
-      {
-        Table(columns, std::vector<double>{1., value});
-        FAIL() << "accepted " << value;
-      }
-    catch (const Error &error)
-      {
-        EXPECT_NE(std::string(error.what()).find("growth rate [1/s]"), std::string::npos) << error.what();
-      }
+    expect_refusal([&] { Table(columns, std::vector<double>{1., value}); }, {"growth rate [1/s]"});
 }

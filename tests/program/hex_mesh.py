@@ -46,45 +46,43 @@ class HexMesh:
     def surfaces(self):
         return list(dict.fromkeys(name for names, _ in self.faces for name in names))
 
-    def write_2(self, path, elementary=None, digits=17):
-        """Gmsh's text format 2.2: a face with two names stands there twice. `elementary`: tag of all entities; otherwise one for each name."""
+    def write_2(self, path, elementary=None):
+        """Gmsh's text format 2.2: a face with two names stands there twice. `elementary`: tag of all entities; else one for each name."""
         surfaces, bodies = self.surfaces(), self.bodies()
         elements = [(3, surfaces.index(name) + 1, nodes) for names, nodes in self.faces for name in names]
         elements += [(5, len(surfaces) + bodies.index(body) + 1, nodes) for body, nodes in self.cells]
         groups = [f'2 {i} "{name}"' for i, name in enumerate(surfaces, 1)]
         groups += [f'3 {i} "{name}"' for i, name in enumerate(bodies, len(surfaces) + 1)]
-        points = [f"{i} " + " ".join(f"{x:.{digits}g}" for x in point) for i, point in enumerate(self.points, 1)]
+        points = [f"{i} " + " ".join(repr(float(x)) for x in point) for i, point in enumerate(self.points, 1)]
         rows = [f"{i} {kind} 2 {tag} {tag if elementary is None else elementary} {numbers(nodes)}"
                 for i, (kind, tag, nodes) in enumerate(elements, 1)]
         write(path, "2.2", {"PhysicalNames": [len(groups), *groups], "Nodes": [len(points), *points], "Elements": [len(rows), *rows]})
 
-    def write_4(self, path, same_name=None):
-        """Gmsh's text format 4.1: an entity for each combination of names; `same_name` divides that surface or body into two groups of one
-        name, odd elements in one and even ones in the other."""
-        combinations = {}  # (dimension, names, half) -> nodes of elements
+    def write_4(self, path):
+        """Gmsh's text format 4.1: an entity for each combination of names."""
+        combinations = {}  # (dimension, names) -> nodes of elements
         for dimension, named in ((2, self.faces), (3, [((body,), nodes) for body, nodes in self.cells])):
-            for number, (names, nodes) in enumerate(named):
-                combinations.setdefault((dimension, names, number % 2 if same_name in names else 0), []).append(nodes)
-        groups = list(dict.fromkeys((dimension, name, half if name == same_name else 0)
-                                    for dimension, names, half in combinations for name in names))
+            for names, nodes in named:
+                combinations.setdefault((dimension, names), []).append(nodes)
+        groups = list(dict.fromkeys((dimension, name) for dimension, names in combinations for name in names))
         tags = {key: number for number, key in enumerate(combinations, 1)}
         n = {dimension: sum(key[0] == dimension for key in combinations) for dimension in (2, 3)}
         entities = [f"0 0 {n[2]} {n[3]}"]
-        for (dimension, names, half), tag in tags.items():
-            physical = [groups.index((dimension, name, half if name == same_name else 0)) + 1 for name in names]
+        for (dimension, names), tag in tags.items():
+            physical = [groups.index((dimension, name)) + 1 for name in names]
             entities.append(f"{tag} -1 -1 -1 1 1 1 {len(physical)} {' '.join(map(str, physical))} 0")
         n_points = len(self.points)
-        body = next(tag for (dimension, _, _), tag in tags.items() if dimension == 3)
+        body = next(tag for (dimension, _), tag in tags.items() if dimension == 3)
         nodes = [f"1 {n_points} 1 {n_points}", f"3 {body} 0 {n_points}", *range(1, n_points + 1)]
         nodes += [" ".join(repr(float(x)) for x in point) for point in self.points]
         elements, number = [], 0
-        for (dimension, names, half), some in combinations.items():
-            elements.append(f"{dimension} {tags[dimension, names, half]} {3 if dimension == 2 else 5} {len(some)}")
+        for (dimension, names), some in combinations.items():
+            elements.append(f"{dimension} {tags[dimension, names]} {3 if dimension == 2 else 5} {len(some)}")
             for element in some:
                 number += 1
                 elements.append(f"{number} {numbers(element)}")
         elements.insert(0, f"{len(combinations)} {number} 1 {number}")
-        names = [f'{dimension} {i} "{name}"' for i, (dimension, name, _) in enumerate(groups, 1)]
+        names = [f'{dimension} {i} "{name}"' for i, (dimension, name) in enumerate(groups, 1)]
         write(path, "4.1", {"PhysicalNames": [len(names), *names], "Entities": entities, "Nodes": nodes, "Elements": elements})
 
 

@@ -62,6 +62,11 @@ class ProgramTest(unittest.TestCase):
         return process
 
     @classmethod
+    def call_scene(cls, output, *overrides):
+        """The finished process of the scene with overrides "Section/Name=value"."""
+        return cls.call("scene.prm", "--output", output, *(word for override in overrides for word in ("--set", override)))
+
+    @classmethod
     def run_scene(cls, output, *overrides, file="scene.prm", n_processes=1):
         """Runs a parameter file with overrides "Section/Name=value" and returns the folder of the results."""
         settings = [word for override in overrides for word in ("--set", override)]
@@ -79,6 +84,23 @@ class ProgramTest(unittest.TestCase):
         if (file, overrides) not in runs:
             runs[file, overrides] = cls.run_scene(f"shared_{len(runs)}", *overrides, file=file)
         return runs[file, overrides]
+
+    def assert_refused(self, mentions, *overrides):
+        """The scene with these overrides gets one message that says what, where and what to change, and nothing is written."""
+        before = contents(self.folder)
+        process = self.call_scene("refused", *overrides)
+        self.assertEqual(contents(self.folder), before)
+        self.assertEqual(process.returncode, 1)
+        self.assert_message(process, mentions)
+
+    def assert_message(self, process, mentions):
+        """The program or a script has failed with one message of three parts, in which there are these words."""
+        self.assertNotEqual(process.returncode, 0, process.stdout)
+        lines = process.stderr.strip().splitlines()
+        for start in ("error: ", "  where:  ", "  change: "):
+            self.assertEqual(sum(line.startswith(start) and len(line) > len(start) for line in lines), 1, process.stderr)
+        for text in mentions:
+            self.assertIn(text, process.stderr)
 
     def interrupt(self, output, overrides, ends):
         """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets

@@ -10,7 +10,8 @@ import unittest
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from program import SOURCE, ProgramTest, eigenvalues, read_table, real_frequencies
+from program import SOURCE, eigenvalues, read_table, real_frequencies
+from refusal_test import RefusalTest, settings
 
 sys.path.insert(0, str(SOURCE / "scripts"))
 try:
@@ -44,22 +45,17 @@ def real_values(folder):
     return sorted(float(row["growth rate [1/s]"]) for row in read_table(path)) if path.exists() else []
 
 
-class Extremes(ProgramTest):
+class Extremes(RefusalTest):
     """In the scene of program.py, unless said otherwise."""
 
-    def succeed(self, output, *overrides, file="scene.prm"):
-        settings = [word for override in overrides for word in ("--set", override)]
-        process = self.call(file, "--output", output, *settings)
+    def succeed(self, output, *overrides):
+        process = self.call("scene.prm", "--output", output, *settings(overrides))
         self.assertEqual(process.returncode, 0, process.stderr)
         return self.folder / output, process.stdout
 
-    def refused(self, mentions, *overrides, dry=False):
-        settings = [word for override in overrides for word in ("--set", override)]
-        process = self.call("scene.prm", "--output", "refused", *settings, *(["--dry-run"] if dry else []))
-        self.assertEqual(process.returncode, 1, process.stdout)
+    def refused(self, mentions, *overrides):
+        self.assert_message(self.call("scene.prm", "--output", "refused", *settings(overrides)), mentions)
         self.assertFalse((self.folder / "refused").exists())
-        for word in mentions:
-            self.assertIn(word, process.stderr)
 
     def assert_spectrum(self, folder, friction_coefficient=0.4, slowest=0.0, tolerance=1e-6):
         """The tables hold every eigenvalue inside the radius and no other, beyond the slowest."""
@@ -86,27 +82,21 @@ class Extremes(ProgramTest):
                 self.assertEqual(int(found[1]), len(growing))
                 self.assertAlmostEqual(float(found[2]) / max(growing), 1, delta=1e-3)
                 self.assertIn('"growing real eigenvalues": ' + str(len(growing)), (folder / "run.json").read_text(encoding="utf-8"))
-            for led_by in re.findall(r"led by .* divergence rate of (\S+) %", screen):
-                self.assertLessEqual(float(led_by), 100)
-            other, _ = self.succeed("iterated", *SMALL, f"{FRICTION}={friction_coefficient}", RESIDUAL_ITERATION)
-            self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(folder), tolerance=1e-6)
-            self.assert_same_eigenvalues(real_values(other), real_values(folder), tolerance=1e-6)
+            self.assert_found_by_iteration(folder, *SMALL, f"{FRICTION}={friction_coefficient}")
         self.assertNotEqual(n_real, {0})
+
+    def assert_found_by_iteration(self, folder, *overrides):
+        other, _ = self.succeed("iterated", *overrides, RESIDUAL_ITERATION)
+        self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(folder), tolerance=1e-6)
+        self.assert_same_eigenvalues(real_values(other), real_values(folder), tolerance=1e-6)
 
     # ------------------------------------------------------------ soft mounts
 
     def test_soft_mounts(self):
-        for stiffness in ("1e3", "1e6", "1e8"):
-            with self.subTest(stiffness):
-                mounts = f"Mounts/Elastic mounts=disc_bore: {stiffness}, {stiffness}, {stiffness}"
-                folder, _ = self.succeed("soft", *SMALL, mounts, MATRICES)
-                self.assert_spectrum(folder, slowest=1e-4 * BAND)
-                other, _ = self.succeed("iterated", *SMALL, mounts, RESIDUAL_ITERATION)
-                self.assert_same_eigenvalues(eigenvalues(other), eigenvalues(folder), tolerance=1e-6)
-
-    def test_stiff_disc(self):
-        folder, _ = self.succeed("stiff", *SMALL, "Disc material/Young modulus=210e15", MATRICES)
-        self.assert_spectrum(folder)
+        mounts = "Mounts/Elastic mounts=disc_bore: 1e3, 1e3, 1e3"
+        folder, _ = self.succeed("soft", *SMALL, mounts, MATRICES)
+        self.assert_spectrum(folder, slowest=1e-4 * BAND)
+        self.assert_found_by_iteration(folder, *SMALL, mounts)
 
     # ------------------------------------------------------------ wide bands
 
@@ -119,11 +109,10 @@ class Extremes(ProgramTest):
 
     def test_band_beyond_the_mesh(self):
         resolved = ["the mesh does not resolve", "Band/Maximum frequency", "lower it below"]
-        for override in ("Band/Maximum frequency=100000", "Disc material/Young modulus=210e6", "Pin material/Young modulus=1900",
-                         "Pin material/Density=3.07e9"):
+        for override, body in (("Band/Maximum frequency=100000", "disc"), ("Pin material/Density=3.07e9", "pin_top_1")):
             with self.subTest(override):
-                self.refused([*resolved, "disc" if "100000" in override or "Disc" in override else "pin_top_1"], override)
-        self.refused(resolved, "Pin material/Young modulus=1900", dry=True)
+                self.refused([*resolved, body], override)
+        self.dry_run_refused(resolved, "Pin material/Young modulus=1900")
 
     def test_too_many_modes(self):
         n = len(real_frequencies(self.run_scene("plain")))
@@ -134,18 +123,15 @@ class Extremes(ProgramTest):
     # ------------------------------------------------------------ damping, locking
 
     def test_overdamped_waves(self):
-        for material in ("Disc", "Pin"):
-            self.refused([f"{material} material/Rayleigh beta", "-1/beta = -10000 1/s", "give less than 2.639e-05 s", "Modal damping ratio"],
-                         f"{material} material/Rayleigh beta=1e-4")
+        self.refused(["Pin material/Rayleigh beta", "-1/beta = -10000 1/s", "give less than 2.639e-05 s", "Modal damping ratio"],
+                     "Pin material/Rayleigh beta=1e-4")
         folder, _ = self.succeed("damped", *SMALL, "Disc material/Rayleigh beta=2.6e-5", "Pin material/Rayleigh beta=2.6e-5", MATRICES)
         self.assert_spectrum(folder)
 
     def test_locking(self):
-        note = "note: trilinear elements lock at Pin material/Poisson ratio = 0.49"
         _, screen = self.succeed("locked", *SMALL, "Pin material/Poisson ratio=0.49")
-        self.assertIn(note, screen)
+        self.assertIn("note: trilinear elements lock at Pin material/Poisson ratio = 0.49", screen)
         self.assertIn("Discretization/Element = incompatible modes", screen)
-        self.assertNotIn("note: trilinear", self.succeed("plain", *SMALL, "Pin material/Poisson ratio=0.46")[1])
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from designs that cannot share it."""
 import signal
 
 from program import ProgramTest, design_tables, read_table
+from refusal_test import settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8", "Operation/Radial dissipation=none"]
 VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900, 3070; "
@@ -21,30 +22,30 @@ class FamiliesTest(ProgramTest):
         thresholds = read_table(self.study / "design_thresholds.csv")
         modes = read_table(self.study / "design_modes.csv")
         self.assertEqual(len(together), 8)
-        for number in ("1", "8"):
-            single = self.run_design(f"single_{number}", number)
-            row, alone = together[number], read_table(single / "designs.csv")[0]
-            for name in ("outcome", "modes [-]", "modes counted [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]",
-                         "label of largest", "label of first onset", "dofs [-]"):
-                self.assertEqual(row[name], alone[name], name)
-            self.assertEqual(row["complete [-]"], "1")
-            self.assertLessEqual(float(row["estimated error of lambda [-]"]), 1e-6)
+        number = "8"
+        single = self.run_design("single", number)
+        row, alone = together[number], read_table(single / "designs.csv")[0]
+        for name in ("outcome", "modes [-]", "modes counted [-]", "complete [-]", "modes that grow [-]", "unstable modes [-]",
+                     "label of largest", "label of first onset", "dofs [-]"):
+            self.assertEqual(row[name], alone[name], name)
+        self.assertEqual(row["complete [-]"], "1")
+        self.assertLessEqual(float(row["estimated error of lambda [-]"]), 1e-6)
 
-            mine = [t for t in thresholds if t["design [-]"] == number]
-            others = read_table(single / "design_thresholds.csv")
-            self.assertEqual(len(mine), len(others))
-            self.assertGreater(len(mine), 0)
-            for one, other in zip(mine, others):
-                self.assertEqual([one[name] for name in ("event", "mechanism")], [other[name] for name in ("event", "mechanism")])
-                self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
-                                     float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
+        mine = [t for t in thresholds if t["design [-]"] == number]
+        others = read_table(single / "design_thresholds.csv")
+        self.assertEqual(len(mine), len(others))
+        self.assertGreater(len(mine), 0)
+        for one, other in zip(mine, others):
+            self.assertEqual([one[name] for name in ("event", "mechanism")], [other[name] for name in ("event", "mechanism")])
+            self.assertLessEqual(abs(float(one["mu [-]"]) - float(other["mu [-]"])),
+                                 float(one["uncertainty [-]"]) + float(other["uncertainty [-]"]))
 
-            # Within what both estimate, mode by mode
-            frequencies = [[float(mode["frequency at smallest mu [Hz]"]) for mode in table if mode["design [-]"] == number]
-                           for table in (modes, read_table(single / "design_modes.csv"))]
-            self.assertEqual(len(frequencies[0]), len(frequencies[1]))
-            for one, other in zip(*frequencies):
-                self.assertAlmostEqual(one, other, delta=2e-6 * other)
+        # Within what both estimate, mode by mode
+        frequencies = [[float(mode["frequency at smallest mu [Hz]"]) for mode in table if mode["design [-]"] == number]
+                       for table in (modes, read_table(single / "design_modes.csv"))]
+        self.assertEqual(len(frequencies[0]), len(frequencies[1]))
+        for one, other in zip(*frequencies):
+            self.assertAlmostEqual(one, other, delta=2e-6 * other)
 
     def test_killed_and_resumed(self):
         self.interrupt("killed", (*STUDY, VARIABLES), ((2, signal.SIGKILL), (4, signal.SIGTERM), (6, signal.SIGKILL)))
@@ -67,14 +68,12 @@ class FamiliesTest(ProgramTest):
                                delta=1e-3 * float(alone["largest divergence rate [%]"]))
 
     def test_a_common_fault_is_told_in_every_row(self):
-        study = self.run_scene("fault", *STUDY, VARIABLES, "Designs/Variables=Pin material/Young modulus = 1, 2, 3, 4")
+        study = self.run_scene("fault", *STUDY, VARIABLES, "Designs/Variables=Pin material/Young modulus = 1, 2")
         rows = read_table(study / "designs.csv")
-        self.assertEqual([row["outcome"] for row in rows], ["refused"] * 4)
-        for row in rows:
-            self.assertNotEqual(row["reason"], "")
+        self.assertEqual([row["outcome"] for row in rows], ["refused"] * 2)
+        self.assertNotIn("", [row["reason"] for row in rows])
 
     def run_design(self, output, number, *overrides):
-        settings = [word for text in overrides or (*STUDY, VARIABLES) for word in ("--set", text)]
-        process = self.call("scene.prm", "--output", output, "--designs", number, *settings)
+        process = self.call("scene.prm", "--output", output, "--designs", number, *settings(overrides or (*STUDY, VARIABLES)))
         self.assertEqual(process.returncode, 0, process.stderr)
         return self.folder / output

@@ -21,26 +21,19 @@ class Installed(ProgramTest):
     def squeal(self, *arguments):
         return subprocess.run([self.prefix / "bin" / "squeal", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=300)
 
-    def test_files(self):
-        files = {str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file()}
-        self.assertLessEqual({"bin/squeal", "libexec/squeal/squeal_mesher", "share/squeal/geometry/disc_pins.geo",
-                              "share/squeal/geometry/disc_pad.geo", "share/squeal/prm/disc_pins.prm"}, files)
-
     def test_runs_from_another_place(self):
+        self.assertTrue((self.prefix / "share" / "squeal" / "prm" / "disc_pins.prm").is_file())
         process = self.squeal("scene.prm", "--output", "results")
         self.assertEqual(process.returncode, 0, process.stderr)
-        built = self.run_scene("built")
-        self.assert_same_eigenvalues(eigenvalues(self.folder / "results"), eigenvalues(built))
+        self.assert_same_eigenvalues(eigenvalues(self.folder / "results"), eigenvalues(self.run_scene("built")))
 
     def test_takes_its_own_geometries(self):
         """Not those of the sources."""
         geometries = self.prefix / "share" / "squeal" / "geometry"
         shutil.copy(geometries / "disc_pins.geo", geometries / "of_the_house.geo")
-        self.addCleanup((geometries / "of_the_house.geo").unlink)
         process = self.squeal("scene.prm", "--dry-run", "--set", "Geometry/File=of_the_house.geo")
         self.assertEqual(process.returncode, 0, process.stderr)
         (geometries / "disc_pad.geo").rename(self.folder / "disc_pad.hidden")
-        self.addCleanup((self.folder / "disc_pad.hidden").rename, geometries / "disc_pad.geo")
         process = self.squeal("scene.prm", "--dry-run", "--set", "Geometry/File=disc_pad.geo")
         self.assertEqual(process.returncode, 1)
         self.assertIn(str(geometries), process.stderr)

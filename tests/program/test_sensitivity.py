@@ -2,6 +2,7 @@
 
 import math
 
+from mesh_file import MeshFile
 from program import ProgramTest, read_table
 
 STUDY = "Study=sensitivity"
@@ -23,13 +24,11 @@ GAPS = "Steady sliding/Gaps=pin_top_2: 1e-6, 5e-4, -3e-4; pin_bottom_1: 0, -2e-4
 # Twelve digits are printed: what two of a frequency may leave of their difference, over twice the step [-]
 PRINTED = 5e-12
 
+# Of a parameter, relative [-]
+STEP = 3e-5
+
 # What the uncertainty of thresholds leaves open of their differences, with respect to ln p [-]
 RESOLUTION = 2e-6
-
-COLUMNS = ["mode [-]", "label", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "parameter", "only of", "value", "unit",
-           "growth rate per 1 % [1/s]", "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "growth rate per unit [1/s]",
-           "frequency per unit [Hz]", "estimated error of the growth rate per unit [1/s]", "estimated error of the frequency per unit [Hz]",
-           "derivative of"]
 
 
 def eigenvalue(row):
@@ -37,8 +36,8 @@ def eigenvalue(row):
 
 
 def derivative(row):
-    """With respect to ln p."""
-    return float(row["value"]) * complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
+    """With respect to the parameter."""
+    return complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
 
 
 def modal(ratios):
@@ -116,73 +115,60 @@ def motion(path, pin):
             "Pin diameter": widened, "Top pin radii": outwards, "Bottom pin angles": turned}[path]
 
 
-def with_moved_nodes(mesh, velocity, change):
-    """The text of a mesh file with its nodes moved; a block of nodes belongs to the volume of its number."""
-    lines = mesh.splitlines()
-    first = lines.index("$PhysicalNames") + 2
-    names = [line.split('"')[1] for line in lines[first:lines.index("$EndPhysicalNames")] if line.startswith("3 ")]
-    row = lines.index("$Nodes") + 1
-    n_blocks = int(lines[row].split()[0])
-    row += 1
-    for _ in range(n_blocks):
-        dimension, tag, _, n_nodes = map(int, lines[row].split())
-        if dimension != 3:
-            raise AssertionError("nodes of a mesh of the program belong to volumes")
-        for i in range(row + 1 + n_nodes, row + 1 + 2 * n_nodes):
-            place = [float(number) for number in lines[i].split()]
-            lines[i] = " ".join(repr(x + change * v) for x, v in zip(place, velocity(*place, names[tag - 1])))
-        row += 1 + 2 * n_nodes
-    return "\n".join(lines) + "\n"
+def move_nodes(still, path, velocity, change):
+    """Writes the mesh of a run with its nodes moved."""
+    mesh = MeshFile(still / "mesh.msh")
+    for component in ("disc", *PINS):
+        for node in mesh.nodes_of(component):
+            place = mesh.nodes[node][1]
+            mesh.move(node, [x + change * v for x, v in zip(place, velocity(*place, component))])
+    mesh.write(path)
 
 
 class Sensitivity(ProgramTest):
     def eigenvalues_at(self, *overrides):
         return [eigenvalue(row) for row in read_table(self.run_scene("single", *ITERATED, *overrides) / "complex_modes.csv")]
 
-    def check_modes(self, scene, paths=None):
-        """Derivatives, and those of the growth rate by itself, beside central differences of complete runs; returns how many were compared
-        for each mode."""
-        folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7", "Sensitivity/Largest number of modes=4",
-                                *scene)
+    def compare(self, row, around, step):
+        """A derivative, and that of the growth rate by itself, beside the central difference of the nearest eigenvalues."""
+        here = eigenvalue(row)
+        at = {side: min(values, key=lambda other: abs(other - here)) for side, values in around.items()}
+        difference = (at[1] - at[-1]) / (2 * step)
+        with self.subTest(parameter=row["parameter"], pin=row["only of"], mode=row["mode [-]"]):
+            error, resolution = derivative(row) - difference, PRINTED * abs(here / step)
+            self.assertLessEqual(abs(error), 1e-5 * abs(difference) + resolution)
+            self.assertLessEqual(abs(error.real), 1e-5 * abs(difference.real) + resolution)
+
+    def check_modes(self, scene, paths):
+        """Beside complete runs; returns the names of all parameters."""
+        folder = self.run_scene("rich", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
+                                "Sensitivity/Largest number of modes=4", *scene)
         rows = [row for row in read_table(folder / "sensitivities.csv") if not row["only of"]]
-        self.assertEqual(list(rows[0]), COLUMNS)
-        modes = sorted({int(row["mode [-]"]) for row in rows})
-        self.assertGreaterEqual(len(modes), 2)
-        step = 3e-5
-        paths = paths or sorted({row["parameter"] for row in rows})
+        self.assertGreaterEqual(len({row["mode [-]"] for row in rows}), 2)
+        self.assertEqual({row["derivative of"] for row in rows}, {"lambda"})
         for path in paths:
-            of_path = {int(row["mode [-]"]): row for row in rows if row["parameter"] == path}
-            value = float(of_path[1]["value"])
+            of_path = [row for row in rows if row["parameter"] == path]
+            value = float(of_path[0]["value"])
             self.assertNotEqual(value, 0, path)
-            around = {side: self.eigenvalues_at(*scene, override(path, value * (1 + side * step))) for side in (-1, 1)}
-            for mode in modes:
-                row = of_path[mode]
-                self.assertEqual(row["derivative of"], "lambda")
-                here = eigenvalue(row)
-                at = {side: min(values, key=lambda other, here=here: abs(other - here)) for side, values in around.items()}
-                difference = (at[1] - at[-1]) / (2 * step)
-                with self.subTest(parameter=path, mode=mode):
-                    error, resolution = derivative(row) - difference, PRINTED * abs(here) / step
-                    self.assertLessEqual(abs(error), 1e-5 * abs(difference) + resolution)
-                    self.assertLessEqual(abs(error.real), 1e-5 * abs(difference.real) + resolution)
-        return len(paths)
+            around = {side: self.eigenvalues_at(*scene, override(path, value * (1 + side * STEP))) for side in (-1, 1)}
+            for row in of_path:
+                self.compare(row, around, value * STEP)
+        return {row["parameter"] for row in rows}
 
     def test_differences(self):
-        """All parameters that are numbers, with every kind of damping and a turning disc."""
-        self.assertEqual(self.check_modes(RICH), 17)
+        """With every kind of damping, a turning disc, and the reactions of steady sliding; tests/sensitivity has all of materials."""
+        paths = [*(f"Operation/{name}" for name in ("Friction coefficient", "Friction slope", "Load per side", "Rotation speed")),
+                 "Disc material/Young modulus", "Disc material/Rayleigh beta", "Pin material/Poisson ratio", "Pin material/Rayleigh alpha",
+                 "Mounts/Elastic mounts: disc_bore axial"]
+        self.assertEqual(len(self.check_modes([*RICH, STEADY, GAPS], paths)), 17)
 
     def test_modal_damping(self):
         """The modes to which the damping belongs change with the bodies, the ratios with their frequencies."""
         ratios = [f"Damping/Modal damping ratio: {frequency} Hz" for frequency in RATIOS]
-        self.check_modes([*RICH, modal(RATIOS)], ["Disc material/Density", "Pin material/Poisson ratio", "Operation/Friction coefficient",
-                                                  "Mounts/Elastic mounts: disc_bore tangential", ratios[1]])
-        names = {row["parameter"] for row in read_table(self.folder / "rich" / "sensitivities.csv") if "ratio: " in row["parameter"]}
-        self.assertEqual(names, set(ratios))
-
-    def test_steady_sliding(self):
-        """The reactions of steady sliding change with friction and load, and with all that deforms the bodies."""
-        self.check_modes([*RICH, STEADY, GAPS], ["Operation/Friction coefficient", "Operation/Load per side", "Disc material/Young modulus",
-                                                 "Pin material/Poisson ratio"])
+        paths = ["Disc material/Density", "Operation/Friction coefficient", "Operation/Load per side",
+                 "Mounts/Elastic mounts: disc_bore tangential", ratios[1]]
+        names = self.check_modes([*RICH, modal(RATIOS)], paths)
+        self.assertEqual({name for name in names if "ratio: " in name}, set(ratios))
 
     def test_identities(self):
         """The unit of force changes nothing, all pins together are the pins, and percentages are what they say."""
@@ -190,19 +176,19 @@ class Sensitivity(ProgramTest):
         rows = read_table(folder / "sensitivities.csv")
         for mode in {row["mode [-]"] for row in rows}:
             of_mode = [row for row in rows if row["mode [-]"] == mode]
-            own = {row["parameter"]: derivative(row) for row in of_mode if not row["only of"]}
+            own = {row["parameter"]: float(row["value"]) * derivative(row) for row in of_mode if not row["only of"]}
             here = eigenvalue(of_mode[0])
             stiffness = sum(value for path, value in own.items() if "Young" in path or "Mounts" in path)
             density = sum(value for path, value in own.items() if "Density" in path)
             self.assertLessEqual(abs(stiffness - here / 2), 1e-8 * abs(here))
             self.assertLessEqual(abs(density + here / 2), 1e-8 * abs(here))
             for path in ("Pin material/Young modulus", "Pin material/Density"):
-                single = [derivative(row) for row in of_mode if row["parameter"] == path and row["only of"]]
+                single = [float(row["value"]) * derivative(row) for row in of_mode if row["parameter"] == path and row["only of"]]
                 self.assertEqual(len(single), 4)
                 self.assertLessEqual(abs(sum(single) - own[path]), 1e-10 * abs(here))
             for row in of_mode:
                 if float(row["value"]) != 0:
-                    slope = derivative(row)
+                    slope = float(row["value"]) * derivative(row)
                     xi = (slope.real - here.real / here.imag * slope.imag) / here.imag
                     self.assertAlmostEqual(float(row["divergence rate per 1 % [percentage points]"]), xi, delta=1e-9)
                     self.assertAlmostEqual(float(row["growth rate per 1 % [1/s]"]), slope.real / 100, delta=1e-8)
@@ -212,41 +198,29 @@ class Sensitivity(ProgramTest):
         self.assertEqual(ranking, sorted(ranking, key=abs, reverse=True))
 
     def test_thresholds(self):
-        """dmu_c/dp beside differences of the thresholds of sweeps."""
-        folder = self.run_scene("thresholds", STUDY, *THRESHOLDS)
-        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none" and not row["only of"]]
-        kinds = {row["derivative of"] for row in rows}
-        self.assertEqual(kinds, {"squared difference of the pair"})
-        self.check_thresholds(rows, "Pin material/Poisson ratio", [])
-
-    def test_damped_thresholds(self):
-        """The same where damping makes modes cease to decay one by one."""
-        folder = self.run_scene("damped", STUDY, *THRESHOLDS, *RICH)
-        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["only of"]]
-        self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
-        self.check_thresholds(rows, "Operation/Load per side", RICH)
-
-    def test_modal_thresholds(self):
-        """The same with damping of modes that change with the bodies, and with the reactions of steady sliding."""
-        light = {frequency: 0.1 * ratio for frequency, ratio in RATIOS.items()}
-        scene = [*RICH, modal(light), STEADY]
-        folder = self.run_scene("modal", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
-        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["only of"]]
-        self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
-        self.check_thresholds(rows, "Damping/Modal damping ratio: 2000 Hz", scene,
-                              overrides=lambda value, change: [modal({**light, "2000": value * (1 + change)})])
-
-    def test_thresholds_on_moved_meshes(self):
-        """The same of lengths and places, beside sweeps on meshes whose nodes have been moved here."""
-        folder = self.run_scene("thresholds_moving", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
+        """dmu_c/dp beside differences of the thresholds of sweeps, of lengths and places on meshes whose nodes have been moved here."""
+        folder = self.run_scene("thresholds", STUDY, *THRESHOLDS, "Sensitivity/Geometry=sizes and places")
         rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if row["derivative of"] != "none"]
-        mesh = (self.run_scene("still", "Band/Maximum frequency=1000") / "mesh.msh").read_text(encoding="utf-8")
+        self.assertEqual({row["derivative of"] for row in rows}, {"squared difference of the pair"})
+        self.check_thresholds(rows, "Pin material/Poisson ratio", [])
+        still = self.run_scene("still", "Band/Maximum frequency=1000")
         for path, pin in [("Disc thickness", ""), ("Bottom pin angles", "pin_bottom_1")]:
             def on_moved_mesh(value, change, velocity=motion(path, pin)):
-                (self.folder / "moved.msh").write_text(with_moved_nodes(mesh, velocity, value * change), encoding="utf-8")
+                move_nodes(still, self.folder / "moved.msh", velocity, value * change)
                 return ["Geometry/File=moved.msh"]
             # An error of 1e-4 of the largest one stands out from what the differences resolve
             self.assertGreater(self.check_thresholds(rows, "Geometry/" + path, [], pin, on_moved_mesh), RESOLUTION / (1e-4 - 1e-5))
+
+    def test_damped_thresholds(self):
+        """The same where damping, also of modes that change with the bodies, makes modes cease to decay one by one in steady sliding."""
+        light = {frequency: 0.1 * ratio for frequency, ratio in RATIOS.items()}
+        scene = [*RICH, modal(light), STEADY]
+        folder = self.run_scene("damped", STUDY, NO_GEOMETRY, *THRESHOLDS, *scene)
+        rows = [row for row in read_table(folder / "sensitivities_thresholds.csv") if not row["only of"]]
+        self.assertEqual({row["derivative of"] for row in rows}, {"growth rate"})
+        self.check_thresholds(rows, "Operation/Load per side", scene)
+        self.check_thresholds(rows, "Damping/Modal damping ratio: 2000 Hz", scene,
+                              overrides=lambda value, change: [modal({**light, "2000": value * (1 + change)})])
 
     def check_thresholds(self, rows, path, scene, pin="", overrides=None):
         """Returns the largest difference. `overrides` are those with which the parameter has another value, by its value and the relative
@@ -273,13 +247,10 @@ class Sensitivity(ProgramTest):
         return largest
 
     def test_geometry(self):
-        """Lengths and places beside runs on meshes whose nodes have been moved here."""
-        self.check_geometry(RICH, [("Disc thickness", ""), ("Pin height", ""), ("Disc inner radius", ""), ("Disc outer radius", ""),
-                                   ("Pin diameter", ""), ("Top pin radii", "pin_top_2"), ("Bottom pin angles", "pin_bottom_1")])
-
-    def test_steady_geometry(self):
-        """The same with the reactions of steady sliding, and gaps that pins take along."""
-        self.check_geometry([*RICH, STEADY, GAPS], [("Disc thickness", ""), ("Pin diameter", ""), ("Top pin radii", "pin_top_2")])
+        """Lengths and places beside runs on meshes whose nodes have been moved here; gaps go along with their pins."""
+        of_all = ("Disc thickness", "Pin height", "Disc inner radius", "Disc outer radius", "Pin diameter")
+        self.check_geometry([*RICH, STEADY, GAPS], [*((path, "") for path in of_all), ("Top pin radii", "pin_top_2"),
+                                                    ("Bottom pin angles", "pin_bottom_1")])
 
     def test_curved_elements(self):
         """The same of elements whose edges follow the circle that grows."""
@@ -289,30 +260,14 @@ class Sensitivity(ProgramTest):
         folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, "Sensitivity/Geometry=sizes and places", "Sensitivity/Tolerance=1e-8",
                                 "Sensitivity/Largest number of modes=3", *scene)
         rows = read_table(folder / "sensitivities.csv")
-        mesh = (self.run_scene("still", "Band/Maximum frequency=1000", *scene) / "mesh.msh").read_text(encoding="utf-8")
-        checked = 0
+        still = self.run_scene("still", "Band/Maximum frequency=1000", *scene)
         for path, pin in places:
             of_path = [row for row in rows if row["parameter"] == "Geometry/" + path and row["only of"] == pin]
             self.assertGreaterEqual(len(of_path), 2)
             step = 1e-6 if "angles" not in path else 1e-4
             around = {}
             for side in (-1, 1):
-                (self.folder / "moved.msh").write_text(with_moved_nodes(mesh, motion(path, pin), side * step), encoding="utf-8")
+                move_nodes(still, self.folder / "moved.msh", motion(path, pin), side * step)
                 around[side] = self.eigenvalues_at(*scene, "Geometry/File=moved.msh")
             for row in of_path:
-                here = eigenvalue(row)
-                at = {side: min(values, key=lambda other, here=here: abs(other - here)) for side, values in around.items()}
-                difference = (at[1] - at[-1]) / (2 * step)
-                slope = complex(float(row["growth rate per unit [1/s]"]), 2 * math.pi * float(row["frequency per unit [Hz]"]))
-                with self.subTest(parameter=path, pin=pin, mode=row["mode [-]"]):
-                    self.assertLessEqual(abs(slope - difference), 1e-5 * abs(difference) + PRINTED * abs(here) / step)
-                    checked += 1
-        self.assertEqual(checked, len(of_path) * len(places))
-
-    def test_stable_scene(self):
-        """Where nothing grows the least damped modes are named."""
-        folder = self.run_scene("stable", STUDY, NO_THRESHOLDS, "Operation/Friction coefficient=0", "Sensitivity/Largest number of modes=3")
-        rows = read_table(folder / "sensitivities.csv")
-        self.assertEqual({row["mode [-]"] for row in rows}, {"1", "2", "3"})
-        for row in rows:
-            self.assertLessEqual(abs(float(row["growth rate [1/s]"])), 1e-4)
+                self.compare(row, around, step)

@@ -3,10 +3,8 @@
 import json
 import math
 import re
-import subprocess
-import time
 
-from program import EXECUTABLE, ProgramTest, contents, distance, eigenvalues, header, numbers, read_table
+from program import ProgramTest, distance, eigenvalues, numbers, read_table
 
 SWEEP = "Study=sweep"
 CONSISTENT = "Operation/Radial dissipation=consistent"
@@ -23,13 +21,6 @@ DEFAULT_ACCURACY = 2 * TOLERANCE
 
 # Of a growing mode, per radian, and what numbers of a table have lost [-]
 GROWING, PRINTED = 1e-8, 1e-10
-
-BRANCHES = ("mu [-],branch [-],label,frequency [Hz],growth rate [1/s],divergence rate [%],eps_res right [-],eps_res left [-],"
-            "estimated error of lambda [-],verdict,refinement [-],growing [-]")
-THRESHOLDS = "mu [-],uncertainty [-],event,mechanism,branch [-],label,partner [-],label of partner,frequency [Hz]"
-COUNTS = "mu [-],modes [-],expected [-],overdamped pairs [-]"
-PLANE = "mu [-],radial dissipation,label,frequency [Hz],growth rate [1/s],divergence rate [%],estimated error of lambda [-],verdict"
-CROSSINGS = "mu [-],uncertainty [-],branch [-],label,direction,edge"
 
 
 def eigenvalue(row):
@@ -64,20 +55,18 @@ def thresholds(folder, table="thresholds.csv"):
 
 
 class SweepTest(ProgramTest):
-    # lambda of runs at one friction coefficient by what they were asked: more than one test looks at them.
-    single_runs = {}
-
     @classmethod
     def sweep(cls, output, *overrides, n_processes=1):
         return cls.run_scene(output, SWEEP, *GRID, *overrides, n_processes=n_processes)
 
     @classmethod
+    def alone(cls, mu, *overrides):
+        """Results of a run at one friction coefficient, at full order."""
+        return cls.shared(*KRYLOV, f"Operation/Friction coefficient={mu!r}", *overrides)
+
+    @classmethod
     def modes_at(cls, mu, *overrides):
-        """lambda of a run at one friction coefficient, at full order."""
-        if (mu, overrides) not in cls.single_runs:
-            folder = cls.run_scene("alone", *KRYLOV, f"Operation/Friction coefficient={mu!r}", *overrides)
-            cls.single_runs[mu, overrides] = eigenvalues(folder)
-        return cls.single_runs[mu, overrides]
+        return eigenvalues(cls.alone(mu, *overrides))
 
     def assert_same_modes(self, actual, expected, tolerance):
         """Holds lambda and growth per radian against those of another run."""
@@ -107,8 +96,13 @@ class SweepTest(ProgramTest):
             self.assertTrue(0 <= float(row["estimated error of lambda [-]"]) <= tolerance, row)
 
     def call_sweep(self, output, *overrides):
-        settings = [word for override in (SWEEP, *GRID, *overrides) for word in ("--set", override)]
-        return self.call("scene.prm", "--output", output, *settings)
+        return self.call_scene(output, SWEEP, *GRID, *overrides)
+
+    def screen_of(self, output, *overrides):
+        """What a sweep that succeeds prints."""
+        process = self.call_sweep(output, *overrides)
+        self.assertEqual(process.returncode, 0, process.stderr)
+        return process.stdout + process.stderr
 
 
 class Sweep(SweepTest):
@@ -123,55 +117,38 @@ class Sweep(SweepTest):
         cls.results = cls.sweep("results", *cls.overrides)
         cls.grid = grid_of(cls.results)
 
-    def test_says_how_many_digits_are_left(self):
-        quantities = json.loads((self.results / "run.json").read_text(encoding="utf-8"))["quantities"]
-        self.assertLess(6, quantities["digits of the eigenvalues [-]"])
-        self.assertLess(quantities["digits of the eigenvalues [-]"], 16)
-        self.assertLess(1, quantities["condition number of the stiffness [-]"])
-        self.assertLess(1, quantities["largest condition number of an eigenvalue [-]"])
-
     def test_files(self):
         names = {path.name for path in self.results.iterdir()}
         tables = {f"{name}{suffix}.csv" for name in ("branches", "thresholds", "counts", "band_crossings")
                   for suffix in ("", "_without_dissipation")}
         self.assertEqual(names, tables | {"onsets.csv", "complex_plane.csv", "argument_counts.csv", "map.csv", "modes", "animations", "parameters.prm",
                                           "run.json"})
-        for suffix in ("", "_without_dissipation"):
-            for name, expected in (("branches", BRANCHES), ("thresholds", THRESHOLDS), ("counts", COUNTS), ("band_crossings", CROSSINGS)):
-                self.assertEqual(header(self.results / f"{name}{suffix}.csv"), expected)
-        self.assertEqual(header(self.results / "complex_plane.csv"), PLANE)
         for path in self.results.glob("*.csv"):
             self.assertTrue(all(math.isfinite(number) for number in numbers(path)), path)
+        quantities = json.loads((self.results / "run.json").read_text(encoding="utf-8"))["quantities"]
+        self.assertTrue(6 < quantities["digits of the eigenvalues [-]"] < 16)
 
     def test_values(self):
         for suffix in ("", "_without_dissipation"):
             rows = self.assert_complete(self.results, suffix)
             self.assert_within_tolerance(self.results, suffix=suffix)
-            grid = grid_of(self.results, f"branches{suffix}.csv")
-            self.assertEqual(len(grid), 10)
-            for k, mu in enumerate(grid):
+            for k, mu in enumerate(grid_of(self.results, f"branches{suffix}.csv")):
                 self.assertAlmostEqual(mu, 0.05 * k, delta=1e-11)
-            for here in rows.values():
-                for row in here:
-                    value = eigenvalue(row)
-                    self.assertAlmostEqual(float(row["divergence rate [%]"]), 100 * divergence(value), delta=PRINTED)
-                    for name in ("eps_res right [-]", "eps_res left [-]"):
-                        self.assertGreaterEqual(float(row[name]), 0)
-                    self.assertIn(row["verdict"], ("stable", "unstable", "undecided"))
-                    self.assertEqual(row["growing [-]"], "1" if divergence(value) > GROWING else "0", row)
-                    if row["verdict"] == "unstable":
-                        self.assertGreater(divergence(value), 0)
-                    # Close to where modes meet even larger rates are undecided.
-                    elif row["refinement [-]"] == "0":
-                        self.assertLess(divergence(value), 10 * TOLERANCE, row)
+            for row in (row for here in rows.values() for row in here):
+                rate = divergence(eigenvalue(row))
+                self.assertAlmostEqual(float(row["divergence rate [%]"]), 100 * rate, delta=PRINTED)
+                self.assertEqual(row["growing [-]"], "1" if rate > GROWING else "0", row)
+                if row["verdict"] == "unstable":
+                    self.assertGreater(rate, 0)
+                # Close to where modes meet even larger rates are undecided.
+                elif row["refinement [-]"] == "0":
+                    self.assertLess(rate, 10 * TOLERANCE, row)
             # No branch ends before the band does, and each keeps its name.
             branches = {}
-            for here in rows.values():
-                for row in here:
-                    branches.setdefault(row["branch [-]"], []).append(row["label"])
+            for row in (row for here in rows.values() for row in here):
+                branches.setdefault(row["branch [-]"], []).append(row["label"])
             for labels in branches.values():
-                self.assertEqual(len(labels), len(rows))
-                self.assertEqual(len(set(labels)), 1)
+                self.assertEqual((len(labels), len(set(labels))), (len(rows), 1))
 
     def test_against_single_runs(self):
         for suffix, overrides in (("", [CONSISTENT]), ("_without_dissipation", [])):
@@ -190,20 +167,6 @@ class Sweep(SweepTest):
             with self.subTest(dissipation):
                 self.assert_same_modes([eigenvalue(row) for row in here], self.modes_at(0.33, *overrides), DEFAULT_ACCURACY)
                 self.assertLessEqual(max(float(row["estimated error of lambda [-]"]) for row in here), TOLERANCE)
-                folder = self.run_scene("alone", *KRYLOV, "Operation/Friction coefficient=0.33", *overrides)
-                alone = read_table(folder / "complex_modes.csv")
-                growing = [row for row in here if row["verdict"] == "unstable"]
-                self.assertTrue(growing)
-                for row in growing:
-                    nearest = min(alone, key=lambda other: abs(eigenvalue(other) - eigenvalue(row)))
-                    self.assertEqual(row["label"], nearest["label"])
-
-    def test_complex_plane_of_mode_shapes(self):
-        """Whoever asks for shapes of leading modes and for no plane gets the plane there."""
-        results = self.sweep("plane", "Sweep/Number of friction coefficients=3", "Sweep/Mode shapes at=0.1")
-        rows = read_table(results / "complex_plane.csv")
-        self.assertEqual({(row["mu [-]"], row["radial dissipation"]) for row in rows}, {("0.1", "none")})
-        self.assertFalse((results / "modes").exists())
 
     def test_counts_by_the_argument_principle(self):
         rows = read_table(self.results / "argument_counts.csv")
@@ -212,11 +175,7 @@ class Sweep(SweepTest):
         for row in rows:
             self.assertEqual(row["modes counted [-]"], row["modes of the sweep [-]"])
             self.assertEqual(int(row["modes counted [-]"]), len(modes[0.2]))
-            self.assertGreater(int(row["contour points [-]"]), 0)
             self.assertLess(float(row["largest phase step [rad]"]), math.pi / 3 + 1e-9)
-
-    def n_growing(self, mu, *overrides):
-        return sum(divergence(value) > GROWING for value in self.modes_at(mu, *overrides))
 
     def test_thresholds(self):
         for suffix, mechanism, overrides in (("", "zero growth", [CONSISTENT]), ("_without_dissipation", "coalescence", [])):
@@ -229,7 +188,7 @@ class Sweep(SweepTest):
             # Where one mode of the disc meets one of the pins; of those of the pins several grow at nearly the same value.
             row, = [row for row in found if row["label"] == "A1-2 +"]
             step = max(1e-5, row["uncertainty [-]"])
-            below, above = (self.n_growing(row["mu [-]"] + sign * step, *overrides) for sign in (-1, 1))
+            below, above = (sum(divergence(value) > GROWING for value in self.modes_at(row["mu [-]"] + sign * step, *overrides)) for sign in (-1, 1))
             self.assertEqual(above - below, 1 if row["event"] == "onset" else -1, row)
 
     def test_thresholds_lie_between_the_values_of_the_sweep(self):
@@ -241,36 +200,35 @@ class Sweep(SweepTest):
                 growing = [(float(row["mu [-]"]), divergence(eigenvalue(row)) > GROWING) for row in rows if row["branch [-]"] == branch]
                 for (a, before), (b, after) in zip(growing, growing[1:]):
                     between = [row for row in events if row["branch [-]"] == branch and a < row["mu [-]"] <= b]
-                    with self.subTest(suffix, branch=branch, mu=b):
-                        onsets = [row["event"] for row in between].count("onset")
-                        self.assertEqual(onsets - (len(between) - onsets), after - before)
+                    onsets = [row["event"] for row in between].count("onset")
+                    self.assertEqual(onsets - (len(between) - onsets), after - before, (suffix, branch, b))
 
     def test_mode_shapes(self):
         modes = sorted(path.name for path in (self.results / "modes").iterdir())
         # Named after the mode there, as in a run of its own; a branch is named after the mode with which it begins.
-        alone = self.run_scene("alone", *KRYLOV, CONSISTENT, "Operation/Friction coefficient=0.4")
-        leader = max(read_table(alone / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
+        leader = max(read_table(self.alone(0.4, CONSISTENT) / "complex_modes.csv"), key=lambda row: float(row["divergence rate [%]"]))
         name = f"mu_0.4_{leader['label'].replace(' ', '_')}"
         self.assertEqual(modes, [f"{name}.vtu", f"{name}_contact.vtu"])
         self.assertEqual(sorted(path.name for path in (self.results / "animations").iterdir()), [f"{name}.pvd", f"{name}_frames"])
 
     def test_no_mode_shape_where_none_grows(self):
-        process = self.call_sweep("quiet", "Sweep/Last friction coefficient=0.1", "Sweep/Number of friction coefficients=2", CONSISTENT,
-                                  "Sweep/Compare dissipation=false", "Sweep/Mode shapes at=0.1", "Output/Mode shapes=unstable")
-        self.assertEqual(process.returncode, 0, process.stderr)
-        self.assertIn("no mode grows at mu = 0.1", process.stdout + process.stderr)
+        """Who asks for shapes of leading modes and for no complex plane gets the plane there."""
+        screen = self.screen_of("quiet", "Sweep/Last friction coefficient=0.1", "Sweep/Number of friction coefficients=2", CONSISTENT,
+                                "Sweep/Compare dissipation=false", "Sweep/Mode shapes at=0.1", "Output/Mode shapes=unstable")
+        self.assertIn("no mode grows at mu = 0.1", screen)
         self.assertFalse((self.folder / "quiet" / "modes").exists())
         self.assertFalse(list((self.folder / "quiet").glob("*_without_dissipation.csv")))
+        rows = read_table(self.folder / "quiet" / "complex_plane.csv")
+        self.assertEqual({(row["mu [-]"], row["radial dissipation"]) for row in rows}, {("0.1", "consistent")})
 
     def test_tolerance(self):
-        fine = self.sweep("fine", "Sweep/Tolerance=1e-8", "Sweep/Number of friction coefficients=4", CONSISTENT)
-        for suffix, overrides in (("", [CONSISTENT]), ("_without_dissipation", [])):
-            self.assert_complete(fine, suffix)
-            self.assert_within_tolerance(fine, 1e-8, suffix)
-            modes = modes_by_mu(fine, f"branches{suffix}.csv")
-            for mu in grid_of(fine)[1:]:
-                with self.subTest(suffix, mu=mu):
-                    self.assert_same_modes(modes[mu], self.modes_at(mu, *overrides), 2e-8)
+        fine = self.sweep("fine", "Sweep/Tolerance=1e-8", "Sweep/Number of friction coefficients=4", CONSISTENT,
+                          "Sweep/Compare dissipation=false")
+        self.assert_complete(fine)
+        self.assert_within_tolerance(fine, 1e-8)
+        modes = modes_by_mu(fine)
+        for mu in grid_of(fine)[1:]:
+            self.assert_same_modes(modes[mu], self.modes_at(mu, CONSISTENT), 2e-8)
 
     def test_maps(self):
         """Contact damps in proportion to load over speed, and nothing else depends on either."""
@@ -282,7 +240,6 @@ class Sweep(SweepTest):
         for rows, name, ratio in ((by_load, "load per side [N]", lambda value: value / SPEED),
                                   (by_speed, "rotation speed [rad/s]", lambda value: LOAD / value)):
             self.assertEqual(len(rows), 12)
-            self.assertEqual(len({(row["mu [-]"], row[name]) for row in rows}), 12)
             for row in rows:
                 self.assertEqual(row["open contact nodes [-]"], "0")
                 self.assertTrue(0 <= float(row["estimated error of lambda [-]"]) <= TOLERANCE)
@@ -298,13 +255,12 @@ class Sweep(SweepTest):
                 self.assertEqual(one["label"], other["label"])
 
         branches = {round(mu, 9): rows for mu, rows in by_mu(read_table(self.results / "branches.csv")).items()}
-        own = [row for row in by_load if float(row["load per side [N]"]) == LOAD]
-        self.assertEqual(len(own), 4)
-        for row in own:
-            rows = branches[round(float(row["mu [-]"]), 9)]
-            growth = max(float(other["divergence rate [%]"]) for other in rows)
-            self.assertAlmostEqual(float(row["divergence rate [%]"]), growth, delta=100 * DEFAULT_ACCURACY)
-            self.assertEqual(int(row["unstable modes [-]"]), sum(other["verdict"] == "unstable" for other in rows))
+        for row in by_load:
+            if float(row["load per side [N]"]) == LOAD:
+                rows = branches[round(float(row["mu [-]"]), 9)]
+                growth = max(float(other["divergence rate [%]"]) for other in rows)
+                self.assertAlmostEqual(float(row["divergence rate [%]"]), growth, delta=100 * DEFAULT_ACCURACY)
+                self.assertEqual(int(row["unstable modes [-]"]), sum(other["verdict"] == "unstable" for other in rows))
 
 
 class Onsets(SweepTest):
@@ -315,8 +271,7 @@ class Onsets(SweepTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        settings = [word for override in (SWEEP, *GRID, *cls.DAMPED) for word in ("--set", override)]
-        cls.screen = cls.call("scene.prm", "--output", "coarse", *settings).stdout
+        cls.screen = cls.call_scene("coarse", SWEEP, *GRID, *cls.DAMPED).stdout
         cls.coarse = cls.folder / "coarse"
         cls.growth, cls.weak = ((float(row["mu [-]"]), float(row["uncertainty [-]"]), row["label"]) for row in read_table(cls.coarse / "onsets.csv"))
 
@@ -349,27 +304,21 @@ class Onsets(SweepTest):
             self.assertLess(below, level)
             self.assertGreater(above, level)
 
-    def test_growth_at_the_first_value(self):
+    def test_growth_at_the_only_value(self):
         """It began below: the uncertainty says so, and so does the summary."""
-        results = self.sweep("late", *self.DAMPED, "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=2")
+        results = self.sweep("late", *self.DAMPED, "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=1")
         for row in read_table(results / "onsets.csv"):
             self.assertEqual((row["mu [-]"], row["uncertainty [-]"]), ("0.4", "0.4"))
+        self.assertEqual(list(self.assert_complete(results)), [0.4])
+        self.assert_within_tolerance(results)
+        self.assertEqual(thresholds(results), [])
+        self.assert_same_modes(modes_by_mu(results)[0.4], self.modes_at(0.4, *self.DAMPED), DEFAULT_ACCURACY)
 
 
 class OtherSweeps(SweepTest):
-    def test_one_value(self):
-        results = self.sweep("one", "Sweep/First friction coefficient=0.4", "Sweep/Number of friction coefficients=1")
-        rows = self.assert_complete(results)
-        self.assertEqual(list(rows), [0.4])
-        self.assert_within_tolerance(results)
-        self.assertEqual(thresholds(results), [])
-        self.assert_same_modes(modes_by_mu(results)[0.4], self.modes_at(0.4), DEFAULT_ACCURACY)
-
     def test_small_basis(self):
-        process = self.call_sweep("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
-                                  "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
-        self.assertEqual(process.returncode, 0, process.stderr)
-        screen = process.stdout + process.stderr
+        screen = self.screen_of("small", CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/Maximum basis=40", "Sweep/Tolerance=1e-9",
+                                "Sweep/Count modes at=0.4", "Sweep/Mode shapes at=0.4", "Output/Mode shapes=unstable")
         # Once, although three tables and files are about them
         self.assertEqual(screen.count("at mu = 0.4 the modes miss the tolerance"), 1)
         self.assertIn("operating points miss the tolerance", screen)
@@ -407,10 +356,6 @@ class OtherSweeps(SweepTest):
             balance = sum(1 if row["direction"] == "enters" else -1 for row in crossings if float(row["mu [-]"]) <= mu)
             self.assertEqual(len(values), len(rows[0.0]) + balance, mu)
             self.assertLessEqual(max(float(row["frequency [Hz]"]) for row in values), end * (1 + PRINTED))
-        modes, others = modes_by_mu(narrow), modes_by_mu(wide)
-        for mu in grid_of(narrow):
-            expected = [value for value in others[mu] if value.imag <= 2 * math.pi * end]
-            self.assert_same_modes(modes[mu], expected, 2 * DEFAULT_ACCURACY)
 
     def test_contact_sets(self):
         results = self.sweep("open", STEADY, CONSISTENT, "Sweep/Compare dissipation=false", "Sweep/First friction coefficient=0.4",
@@ -428,58 +373,29 @@ class OtherSweeps(SweepTest):
             mu = float(row["mu [-]"])
             self.assert_same_modes(found[mu], self.modes_at(mu, STEADY, CONSISTENT), DEFAULT_ACCURACY)
 
-
     def test_chosen_values_between_contact_sets(self):
         # Some nodes are open at 0.8, none at 0.4, and more at 1.2.
-        process = self.call_sweep("between", STEADY, "Sweep/First friction coefficient=0.4", "Sweep/Last friction coefficient=1.2",
-                                  "Sweep/Number of friction coefficients=2", "Sweep/Count modes at=0.8", "Sweep/Mode shapes at=0.8",
-                                  "Output/Mode shapes=unstable")
-        self.assertEqual(process.returncode, 0, process.stderr)
-        screen = process.stdout + process.stderr
+        screen = self.screen_of("between", STEADY, "Sweep/First friction coefficient=0.4", "Sweep/Last friction coefficient=1.2",
+                                "Sweep/Number of friction coefficients=2", "Sweep/Count modes at=0.8", "Sweep/Mode shapes at=0.8",
+                                "Output/Mode shapes=unstable")
         for message in ("modes are not counted", "no mode shape is written", "the complex plane is left out"):
             self.assertEqual(screen.count(message), 1, screen)
-        self.assertFalse((self.folder / "between" / "argument_counts.csv").exists())
-        self.assertFalse((self.folder / "between" / "complex_plane.csv").exists())
-        self.assertFalse((self.folder / "between" / "modes").exists())
+        for name in ("argument_counts.csv", "complex_plane.csv", "modes"):
+            self.assertFalse((self.folder / "between" / name).exists())
 
 
 class Refusals(SweepTest):
-    def refused(self, mentions, *overrides):
-        before = contents(self.folder)
-        process = self.call_sweep("new", *overrides)
-        self.assertEqual(contents(self.folder), before)
-        self.assertEqual(process.returncode, 1)
-        message = process.stderr.strip()
-        lines = message.splitlines()
-        for start in ("error: ", "  where:  ", "  change: "):
-            self.assertEqual(sum(line.startswith(start) and len(line) > len(start) for line in lines), 1, message)
-        for word in mentions:
-            self.assertIn(word, message)
-
-    def test_range(self):
-        self.refused(["ascend", "Sweep/First friction coefficient"], "Sweep/First friction coefficient=0.5")
-        self.refused(["ascend", "Sweep/First friction coefficient"], "Sweep/First friction coefficient=0.45")
-        self.refused(["Number of friction coefficients"], "Sweep/Number of friction coefficients=0")
-        self.refused(["First friction coefficient"], "Sweep/First friction coefficient=-0.1")
-
-    def test_values_outside(self):
-        for name in ("Mode shapes at", "Complex plane at", "Count modes at"):
-            self.refused(["0.5 is outside", f"Sweep/{name}"], f"Sweep/{name}=0.2, 0.5")
-            self.refused(["0.45 is outside", f"Sweep/{name}"], "Sweep/Number of friction coefficients=1", f"Sweep/{name}=0.45")
-
-    def test_map(self):
-        for parameter in ("load", "speed"):
-            self.refused(["without contact damping", parameter, "Sweep/Map parameter"], f"Sweep/Map parameter={parameter}")
+    def test_parameters(self):
         load = ["Sweep/Map parameter=load", CONSISTENT]
-        self.refused(["begins at zero", "Sweep/First map value"], *load, "Sweep/First map value=0")
-        self.refused(["ascend", "Sweep/First map value"], *load, "Sweep/First map value=2000", "Sweep/Last map value=1000")
-        self.refused(["Number of map values"], *load, "Sweep/Number of map values=0")
-        self.refused(["Map friction coefficients"], *load, "Sweep/Map friction coefficients=0")
-        self.refused(["ascend", "Map friction coefficients"], *load, "Sweep/First friction coefficient=0.5",
-                     "Sweep/Number of friction coefficients=1")
-        self.refused(["Steady sliding/Control"], *load, STEADY, "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-5")
-
-    def test_options(self):
-        self.refused(["Tolerance"], "Sweep/Tolerance=0")
-        self.refused(["Maximum basis"], "Sweep/Maximum basis=0")
-        self.refused(["Threshold tolerance"], "Sweep/Threshold tolerance=0")
+        for mentions, *overrides in (
+                (["ascend", "Sweep/First friction coefficient"], "Sweep/First friction coefficient=0.45"),
+                (["0.5 is outside", "Sweep/Mode shapes at"], "Sweep/Mode shapes at=0.2, 0.5"),
+                (["0.45 is outside", "Sweep/Count modes at"], "Sweep/Number of friction coefficients=1", "Sweep/Count modes at=0.45"),
+                (["without contact damping", "speed", "Sweep/Map parameter"], "Sweep/Map parameter=speed"),
+                (["begins at zero", "Sweep/First map value"], *load, "Sweep/First map value=0"),
+                (["ascend", "Sweep/First map value"], *load, "Sweep/First map value=2000", "Sweep/Last map value=1000"),
+                (["ascend", "Map friction coefficients"], *load, "Sweep/First friction coefficient=0.5",
+                 "Sweep/Number of friction coefficients=1"),
+                (["Steady sliding/Control"], *load, STEADY, "Steady sliding/Control=displacement", "Steady sliding/Displacement=1e-5")):
+            with self.subTest(mentions):
+                self.assert_refused(mentions, SWEEP, *GRID, *overrides)

@@ -27,16 +27,10 @@ def text_of(page):
 
 class Numbers(unittest.TestCase):
     def test_agree_to_the_printed_digits(self):
-        for quoted, found in (("0.680", 0.67961), ("2353", 2352.97), ("-1.36", -1.3571), ("6.2e-7", 6.18e-7), ("24", 24)):
+        for quoted, found, differs in (("0.680", 0.67961, 0.6806), ("-1.36", -1.3571, 1.36), ("6.2e-7", 6.18e-7, 6.3e-7), ("24", 24, 23)):
             self.assertTrue(Number("", quoted, found).agrees(), quoted)
-
-    def test_differ_beyond_them(self):
-        for quoted, found in (("0.680", 0.6806), ("2353", 2353.6), ("-1.36", 1.36), ("6.2e-7", 6.3e-7), ("24", 23)):
-            number = Number("", quoted, found)
-            self.assertFalse(number.agrees(), quoted)
-            self.assertIn("<- differs", str(number))
-
-    def test_bounds_hold_from_above(self):
+            self.assertFalse(Number("", quoted, differs).agrees(), quoted)
+            self.assertIn("<- differs", str(Number("", quoted, differs)))
         self.assertTrue(Number("", "1e-6", 6e-7, bound=True).agrees())
         self.assertFalse(Number("", "1e-6", 1.1e-6, bound=True).agrees())
 

@@ -19,23 +19,21 @@ class WriteRevision(unittest.TestCase):
         self.sources.mkdir()
         self.file = pathlib.Path(folder.name) / "revision.cc"
 
-    def git(self, *words, folder=None):
+    def git(self, *words):
         name = {f"GIT_{role}_{what}": "nobody" for role in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
-        process = subprocess.run(["git", "-C", folder or self.sources, *words], check=True, capture_output=True, text=True, env={**os.environ, **name})
+        process = subprocess.run(["git", "-C", self.sources, *words], check=True, capture_output=True, text=True, env={**os.environ, **name})
         return process.stdout.strip()
 
     def revision(self):
         subprocess.run(["cmake", "-D", f"SOURCE_DIRECTORY={self.sources}", "-D", f"FILE={self.file}", "-P", SCRIPT], check=True)
         return self.file.read_text(encoding="utf-8").split('revision = "')[1].split('"')[0]
 
-    def test_without_git(self):
+    def test_outside_of_a_repository_and_within_one_of_others(self):
         self.assertEqual(self.revision(), "unknown")
-
-    def test_within_a_repository_of_others(self):
-        self.git("init", folder=self.sources.parent)
         (self.sources.parent / "theirs").touch()
-        self.git("add", "theirs", folder=self.sources.parent)
-        self.git("commit", "-m", "theirs", folder=self.sources.parent)
+        self.git("init", self.sources.parent)
+        self.git("add", "../theirs")
+        self.git("commit", "-m", "theirs")
         self.assertEqual(self.revision(), "unknown")
 
     def test_follows_the_sources(self):

@@ -47,17 +47,12 @@ namespace
   }
 } // namespace
 
-TEST(Terms, SumAndItsTransposeOnVectors)
-{
-  const Terms t;
-  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
-  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), t.expected().transpose()), 1e-15);
-}
-
-TEST(Terms, SumAsASparseMatrix)
+TEST(Terms, SumOnVectorsAndAsASparseMatrix)
 {
   Terms      t;
   const auto matrices = sparse_matrices(t.terms, t.values);
+  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map))), t.expected()), 1e-15);
+  EXPECT_LT(deviation(replicate(times(t.terms, t.values, 1, unit_vectors(t.map), true)), t.expected().transpose()), 1e-15);
   EXPECT_LT(deviation(to_dense(*matrices.damping), t.expected()), 1e-15);
   EXPECT_EQ(matrices.mass, t.S); // what is not changed is not copied
   EXPECT_EQ(matrices.stiffness, nullptr);
@@ -83,27 +78,4 @@ TEST(Terms, VanishWithTheirParametersOrWeights)
   t.values["d"] = {}; // zeros, too
   t.values["a"] = {0.};
   EXPECT_EQ(names(), "of low rank, ");
-}
-
-TEST(Terms, MergedTermsHaveTheSameSum)
-{
-  const Terms             t;
-  const std::vector<Term> sparse = {t.terms[0], t.terms[1], t.terms[0], t.terms[4]};
-  const std::vector<Term> few    = merged(sparse, t.values);
-  ASSERT_EQ(few.size(), 3u); // symmetric and skew with λ, symmetric with λ²
-  for (const int power : {1, 2})
-    EXPECT_LT(
-      deviation(replicate(times(few, {}, power, unit_vectors(t.map))), replicate(times(sparse, t.values, power, unit_vectors(t.map)))),
-      1e-15);
-}
-
-TEST(Terms, FactorsAreTheSameSparseOrInFull)
-{
-  const Terms         t;
-  const LowRankFactor full(t.left->columns(0, 2));
-  const MultiVector   X = random_vectors(t.map, 3);
-  EXPECT_LT(deviation(full.transpose_times(X), t.left->transpose_times(X)), 1e-15);
-  const DenseMatrix Y = t.left->transpose_times(X);
-  EXPECT_LT(deviation(replicate(full * Y), replicate(*t.left * Y)), 1e-15);
-  EXPECT_EQ(max_norm(replicate(full.columns(1, 1)) - replicate(t.left->columns(1, 1))), 0.);
 }
