@@ -4,7 +4,7 @@
 #   scripts/test_kernels.sh
 #   scripts/test_kernels.sh -R sliding
 #
-# Arguments are handed to ctest. Kernels that the processor cannot run, and those with which scripts/test.sh runs, are skipped, and named.
+# Arguments are handed to ctest. Kernels that the processor does not support and those of scripts/test.sh are skipped with a message.
 
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
@@ -21,7 +21,7 @@ own=$(/usr/bin/python3 -c 'import ctypes; name = ctypes.CDLL("libopenblas.so.0")
 failed=()
 for kernels in Prescott Haswell SkylakeX; do
   if [[ $kernels == "$own" || $kernels$own == SkylakeXCooperlake ]]; then # which differ in bfloat16 only
-    echo "Kernels $kernels skipped: they are those of scripts/test.sh"
+    echo "Kernels $kernels skipped: already used by scripts/test.sh"
     continue
   fi
   missing=()

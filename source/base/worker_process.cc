@@ -54,7 +54,11 @@ namespace Squeal
 
   WorkerProcess::WorkerProcess(const std::vector<std::string> &arguments, const std::filesystem::path &log, const unsigned int n_threads)
   {
-    const auto end_with_parent = [](auto &) { ::prctl(PR_SET_PDEATHSIG, SIGTERM); };
+    const auto end_with_parent = [parent = ::getpid()](auto &) {
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+      if (::getppid() != parent) // the parent ended before prctl()
+        ::_exit(1);
+    };
     try
       {
         worker = process::child("/proc/self/exe", process::args(arguments), environment_of_worker(n_threads),

@@ -54,7 +54,7 @@ namespace Squeal
             const double before = norm(j);
             for (int pass = 0; pass < 2 && j > 0; ++pass)
               {
-                // A matrix of one column, not a vector: of a process without rows Eigen hands only the latter to BLAS, which refuses it
+                // A one-column matrix: for a vector Eigen calls gemv with a leading dimension of zero on processes without rows
                 const DenseMatrix c = summed(communicator, Q.leftCols(j).transpose() * Q.middleCols(j, 1));
                 R.col(j).head(j) += c.col(0);
                 Q.middleCols(j, 1).noalias() -= Q.leftCols(j) * c;

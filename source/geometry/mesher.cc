@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <system_error>
 
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -31,6 +32,8 @@ namespace Squeal
     MemoryFile memory_file(const std::string &content)
     {
       MemoryFile result(fdopen(memfd_create("squeal", MFD_CLOEXEC), "w+"), std::fclose);
+      if (!result)
+        throw std::system_error(errno, std::generic_category(), "file in memory");
       std::fwrite(content.data(), 1, content.size(), result.get());
       std::rewind(result.get());
       return result;

@@ -9,7 +9,7 @@ namespace Squeal
     /// Rows of a product that are a task.
     constexpr int rows_of_task = 2048;
 
-    /// Some columns of A X, at most @p width, with their rows side by side, so that the entries of A are read once for all of them.
+    /// Computes at most @p width columns of A X in row-major storage, so that each entry of A is read once.
     template <int width>
     void multiply_columns(const SparseRows &A, const Eigen::Ref<const DenseMatrix> &X, Eigen::Ref<DenseMatrix> Y)
     {

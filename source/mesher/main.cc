@@ -20,7 +20,7 @@ namespace
 {
   using namespace Squeal;
 
-  /// To what was standard output when the process began: what Gmsh prints there goes to the log.
+  /// Sends a reply to the original standard output; what Gmsh prints is redirected to the log.
   void send(std::FILE *answer, const MesherReply reply, const std::string &content)
   {
     std::fputc(static_cast<char>(reply), answer);

@@ -18,10 +18,10 @@ namespace Squeal
     /// Least distance of times in a list of modes, as a part of the time, and that from a time of zero [Hz].
     constexpr double least_relative_step = 1e-6, least_step = 1e-6;
 
-    /// Of the largest displacement, or of the unit of angles.
+    /// Resolution of fields: steps per largest displacement, or per radian.
     constexpr double steps_of_fields = 65536., steps_of_animations = 4096.;
 
-    /// A value in steps of one in @p n, so many that they are not seen: finer ones would take room.
+    /// Rounds to multiples of 1 / @p n, which compress better.
     double in_steps(const double n, const double value)
     {
       return std::round(n * value) / n + 0.;

@@ -198,8 +198,8 @@ namespace Squeal
             corners.push_back(nodes[origin + (i + right) * along + (j + back) * across]);
     }
 
-    /// Cells of this process by their angle about z and radius, those above each other upwards.
-    std::vector<ActiveCell> in_columns(const Model &model)
+    /// Cells of this process, sorted by angle about z, radius and height.
+    std::multimap<std::tuple<long, long, double>, ActiveCell> in_columns(const Model &model)
     {
       constexpr double                                          together = 1e-6; // [rad], [m]
       std::multimap<std::tuple<long, long, double>, ActiveCell> cells;
@@ -210,10 +210,7 @@ namespace Squeal
             cells.emplace(
               std::make_tuple(std::lround(std::atan2(x[1], x[0]) / together), std::lround(std::hypot(x[0], x[1]) / together), x[2]), cell);
           }
-      std::vector<ActiveCell> result;
-      for (const auto &[place, cell] : cells)
-        result.push_back(cell);
-      return result;
+      return cells;
     }
 
     /// Numbers vertices in the order of the cells. @p add(cell, nodes, corners) appends the corners of what a file has of a cell, from its
@@ -225,7 +222,7 @@ namespace Squeal
       std::vector<types::global_dof_index> dofs(model.dof_handler().get_fe().n_dofs_per_cell());
       std::vector<std::int32_t>            numbers(model.nodes().size(), -1);
       FieldMesh                            mesh{n_corners, {}, {}, {}};
-      for (const ActiveCell &cell : in_columns(model))
+      for (const auto &[place, cell] : in_columns(model))
         {
           Places nodes, corners;
           cell->get_dof_indices(dofs);

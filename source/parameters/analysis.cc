@@ -51,7 +51,7 @@ namespace Squeal
 
     declarations.enter("Linear algebra");
     declarations.add("Factorization", library,
-                     "Sparse direct solver of symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
+                     "Sparse direct solver for symmetric matrices; automatic: CHOLMOD on one process, MUMPS on several.");
     declarations.add("Threads", n_threads, "none",
                      "Threads of a process: for values of the friction coefficient that are evaluated at a time, products, solves and "
                      "large factors. 0: as many as OMP_NUM_THREADS says, or as the process has cores. Results do not depend on it.",

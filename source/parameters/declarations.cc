@@ -15,7 +15,7 @@ namespace Squeal
   {
     std::string with_unit(const std::string &documentation, const std::string &unit)
     {
-      return documentation + (documentation.empty() ? "" : " ") + "Units: " + unit + ".";
+      return documentation + " Units: " + unit + ".";
     }
 
     [[noreturn]] void refuse(const std::string &path, const std::string &demand, const std::string &value, const std::string &accepted)

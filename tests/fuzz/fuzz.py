@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Gives the program damaged input, and says which it does not bear.
+"""Runs the program on damaged input and reports failures.
 
     SQUEAL=build/sanitizers/squeal tests/fuzz/fuzz.py [--cases N] [--first N] [--seed N] [--kind KIND]
 
@@ -26,7 +26,7 @@ os.environ["SQUEAL"] = os.path.abspath(os.environ.get("SQUEAL", HERE.parents[1] 
 sys.path.insert(0, str(HERE.parent / "program"))
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES  # noqa: E402 (found by the line before)
-from program import EXECUTABLE, SCENE, SOURCE, read_table  # noqa: E402
+from program import EXECUTABLE, SCENE, SOURCE, read_table, settings  # noqa: E402
 
 TIME_LIMIT = 120       # [s] of a run, on a busy machine
 LARGEST_MESSAGE = 6000  # [character]: with what Gmsh printed
@@ -62,10 +62,6 @@ STATEMENTS = ["Exit;", "Abort;", 'Error("x");', "For i In {1 : 1000000000}\n  a 
               "Dilate {{0, 0, 0}, 0} { Volume{:}; }", "OnelabRun(\"x\", \"touch trace\");", "Plugin(Skin).Run;", "Mesh.Format = 1;"]
 
 Case = collections.namedtuple("Case", "files arguments")  # files by name, one of them case.prm, and arguments besides it
-
-
-def settings(*texts):
-    return [word for text in texts for word in ("--set", text)]
 
 
 def damaged(rng, data):
@@ -203,7 +199,7 @@ class Fuzzer:
             folder = pathlib.Path(place)
             (folder / "case.prm").write_text(SCENE, encoding="utf-8")
             (folder / "case.geo").write_bytes(blocks)
-            call(folder, folder, ["--output", "results", *settings("Geometry/File=case.geo", "Mounts/Elastic mounts=")])
+            call(folder, folder, ["--output", "results", *settings(["Geometry/File=case.geo", "Mounts/Elastic mounts="])])
             self.mesh = (folder / "results" / "mesh.msh").read_bytes()
 
     def assignment(self):
@@ -236,7 +232,7 @@ class Fuzzer:
     def case(self, number):
         """The same for the same seed and number, and whether it is run to its end if it is small."""
         self.rng = random.Random(f"{self.seed} {number}")
-        kind, arguments = self.kinds[number % len(self.kinds)], settings(*LIMITS)
+        kind, arguments = self.kinds[number % len(self.kinds)], settings(LIMITS)
         files = {"case.prm": self.parameter_file() if kind == "parameters" else SCENE.encode()}
         if kind == "settings":
             for _ in range(self.rng.choice([1, 1, 2, 3])):
@@ -246,7 +242,7 @@ class Fuzzer:
         elif kind != "parameters":
             name = "case.msh" if kind == "meshes" else "case.geo"
             files[name] = damaged(self.rng, self.mesh) if kind == "meshes" else self.script()
-            arguments += settings(f"Geometry/File={name}", "Mounts/Elastic mounts=")
+            arguments += settings([f"Geometry/File={name}", "Mounts/Elastic mounts="])
         return kind, Case(files, arguments), self.rng.random() < 0.3
 
     def run(self, number):

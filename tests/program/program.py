@@ -43,6 +43,11 @@ COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", 
 SAME = 1e-9
 
 
+def settings(overrides):
+    """Words of the command line that give parameters "Section/Name=value"."""
+    return [word for override in overrides for word in ("--set", override)]
+
+
 class ProgramTest(unittest.TestCase):
     """A folder of its own with the scene in scene.prm, kept while the tests of a class run."""
 
@@ -64,13 +69,12 @@ class ProgramTest(unittest.TestCase):
     @classmethod
     def call_scene(cls, output, *overrides):
         """The finished process of the scene with overrides "Section/Name=value"."""
-        return cls.call("scene.prm", "--output", output, *(word for override in overrides for word in ("--set", override)))
+        return cls.call("scene.prm", "--output", output, *settings(overrides))
 
     @classmethod
     def run_scene(cls, output, *overrides, file="scene.prm", n_processes=1):
         """Runs a parameter file with overrides "Section/Name=value" and returns the folder of the results."""
-        settings = [word for override in overrides for word in ("--set", override)]
-        process = cls.call(file, "--output", output, *settings, n_processes=n_processes)
+        process = cls.call(file, "--output", output, *settings(overrides), n_processes=n_processes)
         if process.returncode != 0:
             raise AssertionError(f"the run {output} failed:\n{process.stdout}\n{process.stderr}")
         return cls.folder / output
@@ -84,6 +88,22 @@ class ProgramTest(unittest.TestCase):
         if (file, overrides) not in runs:
             runs[file, overrides] = cls.run_scene(f"shared_{len(runs)}", *overrides, file=file)
         return runs[file, overrides]
+
+    def write(self, name, content):
+        """A file for the time of one test."""
+        path = self.folder / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        self.addCleanup(path.unlink, missing_ok=True)
+        return name
+
+    def dry_run(self, *overrides, file="scene.prm"):
+        return self.call(file, "--dry-run", *settings(overrides))
+
+    def dry_run_refused(self, mentions, *overrides, file="scene.prm"):
+        process = self.dry_run(*overrides, file=file)
+        self.assertEqual(process.returncode, 1)
+        self.assert_message(process, mentions)
 
     def assert_refused(self, mentions, *overrides):
         """The scene with these overrides gets one message that says what, where and what to change, and nothing is written."""
@@ -105,10 +125,9 @@ class ProgramTest(unittest.TestCase):
     def interrupt(self, output, overrides, ends):
         """Begins a study of designs or a search, and goes on with it, as often as there are pairs (number, signal) in `ends`: each time it gets
         the signal as soon as so many designs are known, and leaves no results."""
-        settings = [word for override in overrides for word in ("--set", override)]
         for number, how in ends:
             with open(self.folder / "interrupted.log", "w+", encoding="utf-8") as log:
-                process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings], cwd=self.folder, stdout=log, stderr=log)
+                process = subprocess.Popen([EXECUTABLE, "scene.prm", "--output", output, *settings(overrides)], cwd=self.folder, stdout=log, stderr=log)
                 deadline = time.monotonic() + 300
                 while len(self.known_designs(output)) < number and process.poll() is None and time.monotonic() < deadline:
                     time.sleep(0.02)

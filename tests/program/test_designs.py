@@ -7,8 +7,7 @@ import signal
 import subprocess
 import time
 
-from program import EXECUTABLE, design_tables, read_table
-from refusal_test import RefusalTest, settings
+from program import EXECUTABLE, ProgramTest, design_tables, read_table, settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8"]
 # Where the results of a design are not looked at
@@ -16,7 +15,7 @@ QUICK = ["Study=geometry", "Sweep/Number of friction coefficients=3", "Sweep/Tol
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.030, 0.034; Pin material/Young modulus = 1.7e9, 1.9e9, 1"
 
 
-class DesignsTest(RefusalTest):
+class DesignsTest(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

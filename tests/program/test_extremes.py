@@ -10,8 +10,7 @@ import unittest
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from program import SOURCE, eigenvalues, read_table, real_frequencies
-from refusal_test import RefusalTest, settings
+from program import SOURCE, ProgramTest, eigenvalues, read_table, real_frequencies, settings
 
 sys.path.insert(0, str(SOURCE / "scripts"))
 try:
@@ -45,7 +44,7 @@ def real_values(folder):
     return sorted(float(row["growth rate [1/s]"]) for row in read_table(path)) if path.exists() else []
 
 
-class Extremes(RefusalTest):
+class Extremes(ProgramTest):
     """In the scene of program.py, unless said otherwise."""
 
     def succeed(self, output, *overrides):

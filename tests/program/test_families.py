@@ -3,8 +3,7 @@ from designs that cannot share it."""
 
 import signal
 
-from program import ProgramTest, design_tables, read_table
-from refusal_test import settings
+from program import ProgramTest, design_tables, read_table, settings
 
 STUDY = ["Study=geometry", "Sweep/Number of friction coefficients=8", "Operation/Radial dissipation=none"]
 VARIABLES = ("Designs/Variables=Pin material/Young modulus = 1.7e9, 1.9e9; Pin material/Density = 2900, 3070; "

@@ -9,8 +9,7 @@ import subprocess
 import time
 import unittest
 
-from program import EXECUTABLE, contents
-from refusal_test import RefusalTest, settings
+from program import EXECUTABLE, ProgramTest, contents, settings
 
 TABLES = ["component_modes.csv", "real_modes.csv", "complex_modes.csv"]
 
@@ -23,7 +22,7 @@ def limit_files(size):
     return lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
-class LostResults(RefusalTest):
+class LostResults(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

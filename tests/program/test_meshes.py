@@ -5,8 +5,7 @@ import re
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from hex_mesh import PARAMETERS, disc_with_pads
-from program import eigenvalues
-from refusal_test import RefusalTest
+from program import ProgramTest, eigenvalues
 
 
 def renamed(mesh, old, *new, where=lambda nodes: True):
@@ -22,7 +21,7 @@ def left_handed(mesh, where):
     return sum(chosen)
 
 
-class Meshes(RefusalTest):
+class Meshes(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

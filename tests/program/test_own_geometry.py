@@ -4,15 +4,14 @@ import re
 import shutil
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
-from program import SOURCE
-from refusal_test import RefusalTest, settings
+from program import SOURCE, ProgramTest, settings
 
 # Two boxes, one on the other
 SCRIPT = BLOCKS + HEXAHEDRA + VOLUMES + SURFACES
 COARSE = ("Geometry/Disc layers=1", "Geometry/Pin layers=1", "Geometry/Element size=0.04")
 
 
-class OwnGeometry(RefusalTest):
+class OwnGeometry(ProgramTest):
     def understood(self, *overrides, file="scene.prm"):
         process = self.dry_run(*overrides, file=file)
         self.assertEqual((process.returncode, process.stderr), (0, ""))

@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-from program import EXECUTABLE, SOURCE, ProgramTest, read_table
+from program import EXECUTABLE, SOURCE, ProgramTest, read_table, settings
 
 COARSE = ["Geometry/Nodes per pin face=7", "Geometry/Element size=0.04", "Geometry/Pin layers=2", "Geometry/Disc layers=2"]
 
@@ -14,8 +14,7 @@ class Paper(ProgramTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.results = cls.folder / "paper"
-        settings = [word for setting in COARSE for word in ("--set", setting)]
-        process = subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "paper.py", "--results", cls.results, *settings], text=True,
+        process = subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "paper.py", "--results", cls.results, *settings(COARSE)], text=True,
                                  capture_output=True, check=False, env={**os.environ, "SQUEAL": EXECUTABLE})
         if process.returncode != 0:
             raise AssertionError(process.stdout + process.stderr)

@@ -10,7 +10,6 @@ import sys
 import unittest
 
 from program import EXECUTABLE, SOURCE, ProgramTest, read_table
-from refusal_test import RefusalTest
 
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
@@ -158,7 +157,7 @@ class Pictures(ProgramTest):
 
 
 @unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
-class Refusals(RefusalTest):
+class Refusals(ProgramTest):
     def refused(self, folder, *words):
         process = draw(folder)
         self.assertEqual((process.returncode, len(process.stderr.splitlines())), (1, 3), process.stderr)

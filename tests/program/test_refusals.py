@@ -6,11 +6,10 @@ import shutil
 import subprocess
 
 from mesh_file import MeshFile
-from program import EXECUTABLE, contents
-from refusal_test import RefusalTest, settings
+from program import EXECUTABLE, ProgramTest, contents, settings
 
 
-class Refusals(RefusalTest):
+class Refusals(ProgramTest):
     """In a folder with an earlier result, which every refusal must leave alone."""
 
     @classmethod

@@ -12,7 +12,7 @@ import sys
 import time
 import unittest
 
-from program import EXECUTABLE, ProgramTest, read_table
+from program import EXECUTABLE, ProgramTest, read_table, settings
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "report.py"
 sys.path.insert(0, str(SCRIPT.parent))
@@ -246,8 +246,7 @@ class Reports(ProgramTest):
         """What the page shows goes into a shell as it is."""
         for name, overrides in SCENES.items():
             command = html.unescape(re.search(r'<section id="repeat">.*?<pre>(.*?)</pre>', self.page(name), re.S)[1])
-            settings = [word for text in overrides for word in ("--set", text)]
-            self.assertEqual(shlex.split(command), [EXECUTABLE, "scene.prm", "--output", name, *settings])
+            self.assertEqual(shlex.split(command), [EXECUTABLE, "scene.prm", "--output", name, *settings(overrides)])
         process = subprocess.run(command + " --dry-run", shell=True, cwd=self.folder, capture_output=True, text=True, check=False)
         self.assertEqual(process.returncode, 0, process.stderr)
 

@@ -4,15 +4,14 @@ import re
 import signal
 import unittest
 
-from program import eigenvalues, read_table
-from refusal_test import RefusalTest, settings
+from program import ProgramTest, eigenvalues, read_table, settings
 
 VARIABLES = "Designs/Variables=Geometry/Pin height = 0.029 to 0.035; Pin material/Young modulus = 1.5e9 to 2.5e9"
 SEARCH = ["Study=search", VARIABLES, "Search/Samples=4", "Search/Evaluations=9", "Sweep/Number of friction coefficients=6"]
 RATE, BEST = "largest divergence rate [%]", "best largest divergence rate [%]"
 
 
-class SearchTest(RefusalTest):
+class SearchTest(ProgramTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()

@@ -6,15 +6,14 @@ import re
 import subprocess
 import sys
 
-from program import EXECUTABLE, read_table
-from refusal_test import RefusalTest, settings
+from program import EXECUTABLE, ProgramTest, read_table, settings
 
 # The default disc and pins on a mesh of some thousand dofs
 COARSE = ["Geometry/Nodes per pin face=7", "Geometry/Element size=0.04", "Geometry/Pin layers=2", "Geometry/Disc layers=2",
           "Output/Mode shapes=none"]
 
 
-class Words(RefusalTest):
+class Words(ProgramTest):
 
     def screen(self, *overrides, output="results"):
         process = self.call("scene.prm", "--output", output, *settings(overrides))

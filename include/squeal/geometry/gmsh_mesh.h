@@ -65,8 +65,7 @@ namespace Squeal
   /// The mesh of to_bytes(). Throws std::length_error where bytes are missing.
   GmshMesh from_bytes(const std::string &bytes);
 
-  /// What the mesher, a process of its own that reads a script as standard input, says to the program: one letter on standard output, then
-  /// the text or bytes that belong to it.
+  /// First byte of the mesher's reply on its standard output; a text or a mesh follows. The mesher reads its script from standard input.
   enum class MesherReply : char
   {
     mesh          = 'm', ///< to_bytes() of a GmshMesh

@@ -65,7 +65,8 @@ namespace Squeal
   /**
    * Writes fields as files of VTK (.vtu), each with its mesh, single precision, and lists of them (.pvd), for ParaView. All processes must call.
    *
-   * Modes are scaled so that the largest modulus of a displacement is one, of which 2⁻¹⁶ is the least step. On the bodies are `displacement_real`, `displacement_imag`,
+   * Modes are scaled so that the largest modulus of a displacement is one, and rounded to multiples of 2⁻¹⁶. On the bodies are
+   * `displacement_real`, `displacement_imag`,
    * `amplitude` (root of the sum of |u|² over the components), `phase` (argument of each component [rad]) and the cell field `component`; on
    * the contact faces, in files `NAME_contact.vtu`, `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, `closed` (1: the
    * node belongs to S_0) and, where it is known, `energy_input` [1/m²]. The title of a mode is the text `mode` of the file's field data.
@@ -91,10 +92,10 @@ namespace Squeal
     void write_list(const std::string &name, const std::vector<ListedMode> &modes) const;
 
     /**
-     * Periods of modes on the surface of the bodies as `animations/NAME.pvd`, where time counts periods: displacements in steps of 1/4096 of the
-     * largest, a field for each mode with its name. The largest amplitude is one: at all times without growth, in the last picture of a mode
-     * that grows and in the first of one that decays. Without growth the last picture comes one step before the end, so that it may be
-     * repeated; with growth at the end.
+     * Writes periods of several modes on the surface of the bodies as `animations/NAME.pvd`; time is in periods. Each mode is a vector
+     * field with the name of the mode, rounded to multiples of 1/4096. The largest amplitude is one: at all times without growth, in the last
+     * picture of a growing mode and in the first of a decaying one. Without growth the last picture is one step before the end, so that the
+     * animation can be looped; with growth it is at the end.
      */
     void write_animation(const std::string &name, const std::vector<ModeField> &modes, const AnimationOptions &options);
 

@@ -39,8 +39,8 @@ namespace Squeal
   };
 
   /// What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, and fields, all compressed by zlib. Copies share
-  /// nothing, so that files on one mesh begin with a copy of a piece without fields. Cells stand in columns, upwards, where zlib finds that
-  /// neighbours have nodes in common.
+  /// nothing, so that files on one mesh begin with a copy of a piece without fields. Cells are sorted into columns along z: consecutive
+  /// cells then share nodes, which compresses better.
   class VtuPiece
   {
   public:

@@ -38,7 +38,7 @@ namespace Squeal
     /// Begins a section, to which belongs what is declared from now on.
     void enter(const std::string &section);
 
-    /// A number; @p unit: "none" where it has none.
+    /// A number with its unit, or "none".
     void add(const std::string &name, double &value, const std::string &unit, const std::string &documentation, const Range &range = {});
     void add(const std::string &name,
              unsigned int      &value,

@@ -121,7 +121,7 @@ namespace Squeal
 
       for (std::size_t i = 0; i < designs.size(); ++i)
         {
-          // Those that are solved already let the basis grow as before
+          // Solve finished designs again to rebuild the basis
           const int  design = work.designs[i];
           const auto known  = store.find(design);
           if (known && known->outcome != DesignOutcome::solved)

@@ -5,7 +5,7 @@
 
 namespace Squeal
 {
-  /// The folder beside that of the results called @p output in which an unfinished study is kept; a ResultFolder does not touch it.
+  /// Folder next to the results @p output that holds an unfinished study; a ResultFolder does not touch it.
   std::string checkpoint_folder(const std::string &output);
 
   /// Where an unfinished study of designs is kept: what identifies it, the reference modes, and the designs that are finished.
@@ -45,7 +45,7 @@ namespace Squeal
    * Solves designs in processes of their own (base/worker_process.h), several side by side. Whatever happens to one, its result says so and
    * the others go on.
    *
-   * @param batches    numbers of designs that one process solves, one after the other; finished ones among them cost nothing
+   * @param batches    numbers of designs that one process solves in turn; finished designs of a family are solved again to rebuild its basis
    * @param unfinished result of a design without what is to be found
    * @param arguments  of the command line, from which a process reads the designs
    */
