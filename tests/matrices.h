@@ -21,6 +21,13 @@ namespace Squeal::Testing
 {
   using Complex = std::complex<double>;
 
+  /// max |A - Aᵀ| / max |A| of a square matrix; 0 for a zero matrix.
+  inline double symmetry_defect(const SparseMatrix &A)
+  {
+    const double scale = max_norm(A);
+    return scale == 0. ? 0. : max_norm(*add(1., A, -1., *transpose(A))) / scale;
+  }
+
   /// How rows are spread over the processes.
   enum class Distribution
   {

@@ -16,6 +16,13 @@
 
 namespace Squeal::Testing
 {
+  /// M, C and K of the bodies, the sum of body_terms(); C is null if no material is damped.
+  inline SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials)
+  {
+    const BodyTerms bodies = body_terms(model, materials);
+    return sparse_matrices(bodies.terms, bodies.values);
+  }
+
   using Point3 = std::array<double, 3>;
 
   // ------------------------------------------------------------------- plans

@@ -1,6 +1,5 @@
 #include <squeal/contact/contact_operators.h>
-
-#include <deal.II/base/mpi.h>
+#include <squeal/linear_algebra/communication.h>
 
 #include <cmath>
 #include <map>
@@ -51,7 +50,7 @@ namespace Squeal
           const int place = rows.place(master);
           numbers.push_back(place >= 0 ? first + column[place] : 0);
         }
-      dealii::Utilities::MPI::sum(numbers, rows.communicator(), numbers);
+      sum_over_processes(rows.communicator(), numbers.data(), numbers.size());
       auto next = numbers.begin();
       for (auto &[master, number] : result)
         number = *next++;

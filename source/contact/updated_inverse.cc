@@ -1,9 +1,8 @@
 #include <squeal/base/memory.h>
 #include <squeal/contact/updated_inverse.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <algorithm>
 
@@ -25,8 +24,7 @@ namespace Squeal
   bool may_keep_attachment_modes(const CoupledSystem &system)
   {
     const double bytes = double(sizeof(double)) * system.map().n_local() * system.n_contact();
-    return dealii::Utilities::MPI::min(bytes <= largest_part_of_attachment_modes * available_memory() ? 1 : 0,
-                                       system.map().communicator()) == 1;
+    return largest_of_processes(system.map().communicator(), bytes / available_memory()) <= largest_part_of_attachment_modes;
   }
 
   UpdatedInverse::UpdatedInverse(const CoupledSystem       &system,

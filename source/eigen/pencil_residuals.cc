@@ -1,9 +1,10 @@
 #include "inverse_at_shift.h"
 
+#include <squeal/linear_algebra/communication.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <squeal/linear_algebra/communication.h>
 
 namespace Squeal
 {
@@ -212,21 +213,19 @@ namespace Squeal
 
   void fix_phase(MultiVector &real_part, MultiVector &imaginary_part)
   {
-    using dealii::Utilities::MPI::max;
-    using dealii::Utilities::MPI::min;
     const RowMap  &map       = real_part.map();
     const MPI_Comm processes = map.communicator();
     for (int j = 0; j < real_part.n_columns(); ++j)
       {
         const Eigen::ArrayXd moduli  = (real_part.col(j).array().square() + imaginary_part.col(j).array().square()).sqrt();
-        const double         largest = max(moduli.size() > 0 ? moduli.maxCoeff() : 0., processes);
+        const double         largest = largest_of_processes(processes, moduli.size() > 0 ? moduli.maxCoeff() : 0.);
         if (!(largest > 0.))
           continue;
         int row = std::numeric_limits<int>::max();
         for (int i = 0; i < moduli.size(); ++i)
           if (moduli[i] >= (1. - 1e-13) * largest)
             row = std::min(row, map.number(i));
-        row = min(row, processes);
+        smallest_of_processes(processes, &row, 1);
 
         double entry[2] = {0., 0.};
         if (const int i = map.place(row); i >= 0)

@@ -3,8 +3,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/exceptions.h>
 #include <squeal/base/tasks.h>
-
-#include <deal.II/base/mpi.h>
+#include <squeal/linear_algebra/communication.h>
 
 #include <boost/pending/disjoint_sets.hpp>
 
@@ -52,7 +51,7 @@ namespace Squeal
             smallest[sets.find_set(i)] = i;
           for (int i = 0; i < A.n_rows(); ++i)
             joined[i] = smallest[sets.find_set(i)];
-          dealii::Utilities::MPI::min(joined, A.communicator(), joined);
+          smallest_of_processes(A.communicator(), joined.data(), joined.size());
           if (joined == label)
             return label;
           label = joined;

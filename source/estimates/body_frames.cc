@@ -1,6 +1,5 @@
 #include <squeal/estimates/body_frames.h>
-
-#include <deal.II/base/mpi.h>
+#include <squeal/linear_algebra/communication.h>
 
 #include <algorithm>
 #include <cmath>
@@ -57,16 +56,14 @@ namespace Squeal
             frame.upper[d] = std::max(frame.upper[d], node.position[d]);
           }
       }
-    using dealii::Utilities::MPI::max;
-    using dealii::Utilities::MPI::min;
     for (BodyFrame &frame : result)
       {
-        frame.inner_radius = min(frame.inner_radius, model.communicator());
-        frame.outer_radius = max(frame.outer_radius, model.communicator());
+        smallest_of_processes(model.communicator(), &frame.inner_radius, 1);
+        frame.outer_radius = largest_of_processes(model.communicator(), frame.outer_radius);
         for (unsigned int d = 0; d < 3; ++d)
           {
-            frame.lower[d] = min(frame.lower[d], model.communicator());
-            frame.upper[d] = max(frame.upper[d], model.communicator());
+            smallest_of_processes(model.communicator(), &frame.lower[d], 1);
+            frame.upper[d] = largest_of_processes(model.communicator(), frame.upper[d]);
           }
       }
     for (BodyFrame &frame : result)

@@ -49,6 +49,20 @@ namespace Squeal
     return {modulus, std::remainder(argument, 2. * M_PI)};
   }
 
+  // Eigen's own solve refers to the first entry of a matrix without columns
+
+  template <typename Matrix>
+  Matrix DenseLU<Matrix>::solve(const Matrix &B) const
+  {
+    return B.cols() == 0 ? B : Matrix(factors.solve(B));
+  }
+
+  template <typename Matrix>
+  Matrix DenseLU<Matrix>::solve_transposed(const Matrix &B) const
+  {
+    return B.cols() == 0 ? B : Matrix(factors.transpose().solve(B));
+  }
+
   template class DenseLU<DenseMatrix>;
   template class DenseLU<ComplexDenseMatrix>;
 

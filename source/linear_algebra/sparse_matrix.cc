@@ -306,12 +306,6 @@ namespace Squeal
     return largest_of_processes(A.communicator(), *std::max_element(sums.begin(), sums.end()));
   }
 
-  double symmetry_defect(const SparseMatrix &A)
-  {
-    const double scale = max_norm(A);
-    return scale == 0. ? 0. : max_norm(*add(1., A, -1., *transpose(A))) / scale;
-  }
-
   DenseMatrix to_dense(const SparseMatrix &A)
   {
     DenseMatrix result = DenseMatrix::Zero(A.n_rows(), A.n_columns());

@@ -5,6 +5,7 @@
 #include <squeal/base/text.h>
 
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
@@ -195,12 +196,6 @@ namespace Squeal
           sparse_term("mount, " + mount.name, mount.power, {1., {{mount.name, 1}}}, matrix, Symmetry::symmetric, TermKind::mount));
       }
     return bodies;
-  }
-
-  SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials)
-  {
-    const BodyTerms bodies = body_terms(model, materials);
-    return sparse_matrices(bodies.terms, bodies.values);
   }
 
   void add_rotation(BodyTerms &bodies, const Model &model, const double angular_velocity)

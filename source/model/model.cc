@@ -2,9 +2,14 @@
 #include <squeal/model/curved_boundaries.h>
 #include <squeal/model/model.h>
 
+#include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
+#include <deal.II/distributed/fully_distributed_tria.h>
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_system.h>
+#include <deal.II/fe/mapping_q.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 #include <deal.II/grid/tria_description.h>
@@ -54,7 +59,7 @@ namespace Squeal
     }
 
     /// Adds the named faces, each once, with a boundary id for its combination of names; returns the ids of every surface.
-    std::vector<std::set<types::boundary_id>> add_faces(const HexMesh &mesh, CellLists &lists)
+    std::vector<std::set<unsigned int>> add_faces(const HexMesh &mesh, CellLists &lists)
     {
       std::map<std::array<unsigned int, 4>, std::pair<const HexMesh::Quadrilateral *, std::set<unsigned int>>> faces; // with all names
       for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
@@ -66,7 +71,7 @@ namespace Squeal
           names.insert(quadrilateral.surface);
         }
       std::map<std::set<unsigned int>, types::boundary_id> combinations;
-      std::vector<std::set<types::boundary_id>>            ids(mesh.surface_names.size());
+      std::vector<std::set<unsigned int>>                  ids(mesh.surface_names.size());
       for (const auto &[key, entry] : faces)
         {
           const auto &[quadrilateral, names] = entry;
@@ -121,49 +126,55 @@ namespace Squeal
       return part;
     }
 
-    /// A number for each dof of the cells that this process has, from the processes that own them.
-    class DofNumbers
-    {
-    public:
-      DofNumbers(const IndexSet &own, const IndexSet &relevant, const MPI_Comm communicator)
-        : values(own, relevant, communicator)
-      {}
-
-      /// @param number up to 2^53
-      void set(const types::global_dof_index dof, const double number)
-      {
-        values(dof) = number;
-      }
-
-      void exchange()
-      {
-        values.update_ghost_values();
-      }
-
-      double operator()(const types::global_dof_index dof) const
-      {
-        return values(dof);
-      }
-
-    private:
-      LinearAlgebra::distributed::Vector<double> values;
-    };
+    /// A number, up to 2^53, for each dof of the cells that this process has, from the processes that own them.
+    using DofNumbers = LinearAlgebra::distributed::Vector<double>;
   } // namespace
+
+  struct Model::Discretisation
+  {
+    Discretisation(const unsigned int degree, const MPI_Comm communicator)
+      : triangulation(communicator)
+      , fe(FE_Q<3>(degree), 3)
+      , mapping(degree)
+      , dofs(triangulation)
+    {}
+
+    parallel::fullydistributed::Triangulation<3> triangulation;
+    FESystem<3>                                  fe;
+    MappingQ<3>                                  mapping;
+    DoFHandler<3>                                dofs;
+    IndexSet                                     relevant; ///< dofs of the cells that this process has
+  };
 
   Model::Model(const HexMesh &mesh, const Element element, MPI_Comm communicator)
     : components(mesh.volume_names)
     , surfaces(mesh.surface_names)
     , element_type(element)
-    , tria(communicator)
-    , fe(FE_Q<3>(degree_of(element)), 3)
-    , geometry_mapping(degree_of(element))
-    , dofs(tria)
+    , processes(communicator)
+    , discretisation(std::make_unique<Discretisation>(degree_of(element), communicator))
   {
     create_triangulation(mesh);
-    dofs.distribute_dofs(fe);
-    DoFTools::extract_locally_relevant_dofs(dofs, relevant);
+    discretisation->dofs.distribute_dofs(discretisation->fe);
+    DoFTools::extract_locally_relevant_dofs(discretisation->dofs, discretisation->relevant);
     number_free_dofs();
     find_nodes();
+  }
+
+  Model::~Model() = default;
+
+  const DoFHandler<3> &Model::dof_handler() const
+  {
+    return discretisation->dofs;
+  }
+
+  const Mapping<3> &Model::mapping() const
+  {
+    return discretisation->mapping;
+  }
+
+  unsigned int Model::n_dofs() const
+  {
+    return discretisation->dofs.n_dofs();
   }
 
   void Model::create_triangulation(const HexMesh &mesh)
@@ -203,14 +214,18 @@ namespace Squeal
     else
       own = receive(communicator());
 
-    together(communicator(), [&] { tria.create_triangulation(own); });
+    auto &triangulation = discretisation->triangulation;
+    together(communicator(), [&] { triangulation.create_triangulation(own); });
     for (const Cylinder &cylinder : Utilities::MPI::broadcast(communicator(), cylinders))
-      tria.set_manifold(cylinder.id, CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
+      triangulation.set_manifold(cylinder.id,
+                                 CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
   }
 
   void Model::number_free_dofs()
   {
     // Clamped dofs: all three directions on the clamped surface
+    const DoFHandler<3> &dofs = discretisation->dofs;
+
     const IndexSet &own = dofs.locally_owned_dofs();
     IndexSet        clamped(dofs.n_dofs());
     // deal.II takes no ids for all boundaries
@@ -223,16 +238,18 @@ namespace Squeal
       n_own += !clamped.is_element(dof);
     map               = RowMap(n_own, communicator());
     int        number = n_own > 0 ? map.number(0) : 0;
-    DofNumbers numbers(own, relevant, communicator());
+    DofNumbers numbers(own, discretisation->relevant, communicator());
     for (const auto dof : own)
-      numbers.set(dof, clamped.is_element(dof) ? -1 : number++);
-    numbers.exchange();
-    for (const auto dof : relevant)
+      numbers(dof) = clamped.is_element(dof) ? -1 : number++;
+    numbers.update_ghost_values();
+    for (const auto dof : discretisation->relevant)
       free_numbers.push_back(static_cast<int>(numbers(dof)));
   }
 
   void Model::find_nodes()
   {
+    const auto &[triangulation, fe, mapping, dofs, relevant] = *discretisation;
+
     constexpr unsigned int none = -1;
     const IndexSet        &own  = dofs.locally_owned_dofs();
     const unsigned int     n    = fe.base_element(0).n_dofs_per_cell();
@@ -240,7 +257,7 @@ namespace Squeal
 
     // Nodes: the dofs of the three directions at each support point
     std::map<types::global_dof_index, Point<3>> support;
-    DoFTools::map_dofs_to_support_points(geometry_mapping, dofs, support);
+    DoFTools::map_dofs_to_support_points(mapping, dofs, support);
     DofNumbers                           numbers(own, relevant, communicator());
     std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell()), first_dofs;
     for (const auto &cell : dofs.active_cell_iterators())
@@ -265,12 +282,12 @@ namespace Squeal
               }
             // The process that owns a node has all its cells, the first of which gives the number
             if (node.is_own)
-              numbers.set(first, static_cast<double>(cell->id().get_coarse_cell_id()) * n + i);
+              numbers(first) = static_cast<double>(cell->id().get_coarse_cell_id()) * n + i;
             node_table.push_back(node);
             first_dofs.push_back(first);
           }
       }
-    numbers.exchange();
+    numbers.update_ghost_values();
     for (std::size_t i = 0; i < node_table.size(); ++i)
       node_table[i].number = static_cast<std::int64_t>(numbers(first_dofs[i]));
   }
@@ -285,12 +302,12 @@ namespace Squeal
     return all;
   }
 
-  unsigned int Model::node_of_dof(const types::global_dof_index dof) const
+  unsigned int Model::node_of_dof(const std::size_t dof) const
   {
-    return dof_nodes[relevant.index_within_set(dof)];
+    return dof_nodes[discretisation->relevant.index_within_set(dof)];
   }
 
-  const std::set<types::boundary_id> &Model::surface_ids(const std::string &name) const
+  const std::set<unsigned int> &Model::surface_ids(const std::string &name) const
   {
     const auto it = std::find(surfaces.begin(), surfaces.end(), name);
     if (it == surfaces.end())
@@ -304,9 +321,9 @@ namespace Squeal
     return std::find(surfaces.begin(), surfaces.end(), name) != surfaces.end();
   }
 
-  int Model::free_dof(const types::global_dof_index dof) const
+  int Model::free_dof(const std::size_t dof) const
   {
-    return free_numbers[relevant.index_within_set(dof)];
+    return free_numbers[discretisation->relevant.index_within_set(dof)];
   }
 
 } // namespace Squeal

@@ -1,6 +1,7 @@
 #include <squeal/base/tasks.h>
 #include <squeal/output/vtu_file.h>
 
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/fe/fe_tools.h>
 #include <zlib.h>
 

@@ -2,6 +2,7 @@
 #include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
 #include <squeal/contact/travel.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/sliding/floating_disc.h>
@@ -230,8 +231,8 @@ namespace Squeal
         Eigen::Matrix<double, 1, 1>(plates.travels[node.component].direction.dot(Eigen::Vector3d::Map(node.position.data()))));
     std::vector<double> heights;
     for (const auto &extent : extents)
-      heights.push_back(dealii::Utilities::MPI::max(extent.max()[0], model.communicator()) -
-                        dealii::Utilities::MPI::min(extent.min()[0], model.communicator()));
+      heights.push_back(largest_of_processes(model.communicator(), extent.max()[0]) +
+                        largest_of_processes(model.communicator(), -extent.min()[0]));
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 

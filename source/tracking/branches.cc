@@ -2,6 +2,7 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/base/tasks.h>
 
 #include <algorithm>

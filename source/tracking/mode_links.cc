@@ -1,4 +1,5 @@
 #include <squeal/base/groups.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/mode_links.h>
 
 #include <Eigen/Eigenvalues>
@@ -21,8 +22,6 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point from which two modes are about to coalesce.
     constexpr double parallel = 0.7;
-    /// Norm of what Gram and Schmidt leave of a dependent unit vector.
-    constexpr double dependent = 1e-13;
     /// The same of vectors so close to a coalescence that rounding decides on the rest.
     constexpr double defective = 1e-7;
     /// |Im δ²| / |δ²| of the difference δ of two λ up to which δ² is real, as it is where modes may coalesce.
@@ -245,11 +244,6 @@ namespace Squeal
     return connected_groups(static_cast<int>(lambda.size()), [&](const int i, const int j) {
       return !(std::abs(lambda[i] - lambda[j]) / std::abs(lambda[i]) > indistinguishable);
     });
-  }
-
-  OrthonormalBasis<ComplexDenseMatrix> orthonormal_basis(const ComplexDenseMatrix &X)
-  {
-    return orthonormal_basis(X, [](const double rest) { return rest > dependent; });
   }
 
   ComplexDenseMatrix orthonormal_in_clusters(const ComplexDenseMatrix &vectors, const std::vector<Complex> &lambda)

@@ -21,11 +21,6 @@ namespace
                            Factorizations,
                            ::testing::Values(Distribution::even, Distribution::first_process_empty, Distribution::last_process_all));
 
-  bool one_process()
-  {
-    return dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) == 1;
-  }
-
   /// CHOLMOD on one process, and MUMPS.
   constexpr FactorizationLibrary libraries[] = {FactorizationLibrary::automatic, FactorizationLibrary::mumps};
 

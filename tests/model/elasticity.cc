@@ -4,6 +4,8 @@
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/factorization.h>
 
+#include <deal.II/dofs/dof_handler.h>
+
 #include <gtest/gtest.h>
 
 using namespace Squeal;

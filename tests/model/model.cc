@@ -3,6 +3,7 @@
 #include <squeal/base/exceptions.h>
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_handler.h>
 
 #include <gtest/gtest.h>
 
@@ -89,11 +90,11 @@ TEST(Models, ProcessesHaveTheirCellsAndTheNeighboursOfThese)
   const Model        model(all, Element::trilinear, MPI_COMM_WORLD);
   const unsigned int n_processes = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
   unsigned int       n_own       = 0;
-  for (const auto &cell : model.triangulation().active_cell_iterators())
+  for (const auto &cell : model.dof_handler().get_triangulation().active_cell_iterators())
     n_own += cell->is_locally_owned();
   EXPECT_EQ(dealii::Utilities::MPI::sum(n_own, MPI_COMM_WORLD), all.hexahedra.size());
   EXPECT_LE(n_own, 1.1 * all.hexahedra.size() / n_processes + 2);
-  EXPECT_EQ(model.triangulation().n_active_cells() == all.hexahedra.size(), n_processes == 1);
+  EXPECT_EQ(model.dof_handler().get_triangulation().n_active_cells() == all.hexahedra.size(), n_processes == 1);
 }
 
 TEST(Models, SurfacesThatAreMissingAreNamed)

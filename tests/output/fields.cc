@@ -150,7 +150,7 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
       const DiscWithPin  s(element);
       const unsigned int p = s.model.degree();
       const FieldMesh all = body_mesh(s.model, {}), disc = body_mesh(s.model, Component::disc), pins = body_mesh(s.model, Component::pins);
-      EXPECT_EQ(on_all(all.components.size()), s.model.triangulation().n_global_active_cells() * p * p * p);
+      EXPECT_EQ(on_all(all.components.size()), s.model.dof_handler().get_triangulation().n_global_active_cells() * p * p * p);
       EXPECT_EQ(on_all(disc.components.size()), 24 * p * p * p);
       EXPECT_EQ(disc.components.size() + pins.components.size(), all.components.size());
       EXPECT_EQ(disc.nodes.size() + pins.nodes.size(), all.nodes.size());
@@ -167,8 +167,8 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
         }
       sum = on_all(sum);
       EXPECT_NEAR(sum,
-                  of_half_edges(dealii::GridTools::volume(s.model.triangulation()),
-                                dealii::GridTools::volume(s.model.triangulation(), s.model.mapping())),
+                  of_half_edges(dealii::GridTools::volume(s.model.dof_handler().get_triangulation()),
+                                dealii::GridTools::volume(s.model.dof_handler().get_triangulation(), s.model.mapping())),
                   1e-12 * sum);
       EXPECT_NEAR(on_all(enclosed(surface_mesh(s.model))), sum, 1e-12 * sum) << to_string(element);
     }
@@ -187,7 +187,7 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
       for (const ContactNode &pair : s.interface)
         of_pairs += pair.area;
       EXPECT_EQ(mesh.components.size() % (p * p), 0u);
-      for (const auto &cell : s.model.triangulation().active_cell_iterators())
+      for (const auto &cell : s.model.dof_handler().get_triangulation().active_cell_iterators())
         for (const auto &face : cell->face_iterators())
           if (face->at_boundary() && s.model.surface_ids(PhysicalNames::pin_contact).count(face->boundary_id()) > 0)
             of_straight_faces += face->measure();

@@ -177,9 +177,6 @@ TEST(ParameterUsage, OfEveryStudy)
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no rule of when it is used";
     }
-  for (const std::string &beginning : conditional_parameters())
-    EXPECT_TRUE(std::any_of(all_paths().begin(), all_paths().end(), [&](const std::string &path) { return path.rfind(beginning, 0) == 0; }))
-      << beginning;
 }
 
 TEST(ParameterUsage, OfGeometries)

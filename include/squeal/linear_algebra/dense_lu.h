@@ -13,16 +13,9 @@ namespace Squeal
   public:
     explicit DenseLU(const Matrix &A);
 
-    /// A⁻¹ B, and A⁻ᵀ B; only if the reciprocal condition is not zero. B may have no columns, which Eigen itself does not bear: it
-    /// refers to the first entry.
-    [[nodiscard]] Matrix solve(const Matrix &B) const
-    {
-      return B.cols() == 0 ? B : Matrix(factors.solve(B));
-    }
-    [[nodiscard]] Matrix solve_transposed(const Matrix &B) const
-    {
-      return B.cols() == 0 ? B : Matrix(factors.transpose().solve(B));
-    }
+    /// A⁻¹ B, and A⁻ᵀ B; only if the reciprocal condition is not zero. B may have no columns.
+    [[nodiscard]] Matrix solve(const Matrix &B) const;
+    [[nodiscard]] Matrix solve_transposed(const Matrix &B) const;
 
     /// Estimated 1 / (‖A‖₁ ‖A⁻¹‖₁); 0 for a zero pivot and for entries that are not finite.
     double reciprocal_condition() const

@@ -141,9 +141,6 @@ namespace Squeal
   /// Largest sum of absolute entries of a row.
   double row_sum_norm(const SparseMatrix &A);
 
-  /// max |A - Aᵀ| / max |A| of a square matrix; 0 for a zero matrix.
-  double symmetry_defect(const SparseMatrix &A);
-
   /// A copy as a dense matrix, the same on every process: for small matrices only.
   DenseMatrix to_dense(const SparseMatrix &A);
 

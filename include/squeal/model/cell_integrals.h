@@ -4,6 +4,7 @@
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/model/model.h>
 
+#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <functional>

@@ -2,6 +2,8 @@
 
 #include <squeal/model/model.h>
 
+#include <deal.II/grid/tria.h>
+
 namespace Squeal
 {
   /// A circular cylinder about an axis parallel to z.

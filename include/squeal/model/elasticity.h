@@ -57,9 +57,6 @@ namespace Squeal
   /// Values of the parameters of body_terms(), but for stiffnesses of zero.
   ParameterValues body_values(const Model &model, const MaterialParameters &materials);
 
-  /// M, C and K of the bodies, the sum of body_terms(); C is null if no material is damped.
-  SecondOrderSystem assemble(const Model &model, const MaterialParameters &materials);
-
   /**
    * Adds what the rotation of the disc about the z axis does in the fixed frame, where its material moves with
    * u̇ + Ω ∂_θ u, ∂_θ u = −y ∂_x u + x ∂_y u of Cartesian components, so that the base vectors turn, too:

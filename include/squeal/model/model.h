@@ -5,12 +5,6 @@
 #include <squeal/linear_algebra/row_map.h>
 #include <squeal/parameters/materials.h>
 
-#include <deal.II/base/index_set.h>
-#include <deal.II/distributed/fully_distributed_tria.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/mapping_q.h>
-
 #include <boost/serialization/array.hpp>
 
 #include <array>
@@ -19,6 +13,15 @@
 #include <set>
 #include <string>
 #include <vector>
+
+// Whoever asks for these includes deal.II's headers, which take seconds to read
+namespace dealii
+{
+  template <int, int>
+  class DoFHandler;
+  template <int, int>
+  class Mapping;
+} // namespace dealii
 
 namespace Squeal
 {
@@ -57,21 +60,10 @@ namespace Squeal
      * Throws MeshError, on all processes, if deal.II refuses the mesh.
      */
     Model(const HexMesh &mesh, Element element, MPI_Comm communicator);
+    ~Model();
 
-    const dealii::Triangulation<3> &triangulation() const
-    {
-      return tria;
-    }
-
-    const dealii::DoFHandler<3> &dof_handler() const
-    {
-      return dofs;
-    }
-
-    const dealii::Mapping<3> &mapping() const
-    {
-      return geometry_mapping;
-    }
+    const dealii::DoFHandler<3, 3> &dof_handler() const;
+    const dealii::Mapping<3, 3>    &mapping() const;
 
     Element element() const
     {
@@ -81,12 +73,12 @@ namespace Squeal
     /// Polynomial degree of the nodal displacements.
     unsigned int degree() const
     {
-      return fe.degree;
+      return degree_of(element_type);
     }
 
     MPI_Comm communicator() const
     {
-      return tria.get_communicator();
+      return processes;
     }
 
     /// Names of the components, in the order of the cells' material ids.
@@ -105,11 +97,11 @@ namespace Squeal
     std::vector<Node> gathered_nodes() const;
 
     /// Place among nodes() of the node of a dof of deal.II's numbering, one of the cells that this process has.
-    unsigned int node_of_dof(dealii::types::global_dof_index dof) const;
+    unsigned int node_of_dof(std::size_t dof) const;
 
     /// Boundary ids of the faces of a named surface, one for each combination of names that they bear; throws MeshError naming the
     /// known surfaces if there is none of this name.
-    const std::set<dealii::types::boundary_id> &surface_ids(const std::string &name) const;
+    const std::set<unsigned int> &surface_ids(const std::string &name) const;
 
     bool has_surface(const std::string &name) const;
 
@@ -120,30 +112,26 @@ namespace Squeal
     }
 
     /// Number of a deal.II dof, one of the cells that this process has, among the free ones of all processes; -1 where clamped.
-    int free_dof(dealii::types::global_dof_index dof) const;
+    int free_dof(std::size_t dof) const;
 
     /// Number of all dofs, clamped ones included.
-    unsigned int n_dofs() const
-    {
-      return dofs.n_dofs();
-    }
+    unsigned int n_dofs() const;
 
   private:
+    struct Discretisation;
+
     void create_triangulation(const HexMesh &mesh);
     void number_free_dofs();
     void find_nodes();
 
-    std::vector<std::string>                             components, surfaces;
-    std::vector<std::set<dealii::types::boundary_id>>    ids_of_surfaces;
-    Element                                              element_type;
-    dealii::parallel::fullydistributed::Triangulation<3> tria;
-    dealii::FESystem<3>                                  fe;
-    dealii::MappingQ<3>                                  geometry_mapping;
-    dealii::DoFHandler<3>                                dofs;
-    dealii::IndexSet                                     relevant;     ///< dofs of the cells that this process has
-    std::vector<int>                                     free_numbers; ///< of these
-    std::vector<unsigned int>                            dof_nodes;    ///< of these
-    std::vector<Node>                                    node_table;
-    RowMap                                               map;
+    std::vector<std::string>            components, surfaces;
+    std::vector<std::set<unsigned int>> ids_of_surfaces;
+    Element                             element_type;
+    MPI_Comm                            processes;
+    std::unique_ptr<Discretisation>     discretisation;
+    std::vector<int>                    free_numbers; ///< of the dofs of the cells that this process has
+    std::vector<unsigned int>           dof_nodes;    ///< of these
+    std::vector<Node>                   node_table;
+    RowMap                              map;
   };
 } // namespace Squeal

@@ -4,8 +4,6 @@
 #include <squeal/model/model.h>
 #include <squeal/output/vtu_file.h>
 
-#include <deal.II/base/partitioner.h>
-
 #include <complex>
 #include <map>
 #include <memory>
@@ -13,6 +11,11 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+namespace dealii::Utilities::MPI
+{
+  class Partitioner;
+}
 
 namespace Squeal
 {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/tracking/chart_point.h>
 
 #include <complex>
@@ -31,9 +30,6 @@ namespace Squeal
 
   /// Number of the cluster of each λ: chains of neighbours that are indistinguishable.
   std::vector<int> mode_clusters(const std::vector<std::complex<double>> &lambda);
-
-  /// Orthonormal basis of the span of vectors; only what is dependent up to rounding is left out.
-  OrthonormalBasis<ComplexDenseMatrix> orthonormal_basis(const ComplexDenseMatrix &X);
 
   /// The vectors with those of each cluster of λ replaced by an orthonormal basis of their span: an eigensolver chooses them within that
   /// span by rounding errors, and what is summed over them must not depend on its choice.

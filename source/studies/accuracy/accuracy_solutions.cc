@@ -3,12 +3,11 @@
 #include <squeal/base/memory.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/reduction_errors.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/studies/accuracy/accuracy.h>
 #include <squeal/studies/steps/mode_results.h>
 #include <squeal/studies/steps/reduction_sets.h>
-
-#include <deal.II/base/mpi.h>
 
 namespace Squeal
 {
@@ -21,8 +20,11 @@ namespace Squeal
     {
       const bool   has_peak       = reset_peak_memory();
       const double left_by_others = resident_memory() - resident_before;
-      return
-        [=] { return dealii::Utilities::MPI::sum((has_peak ? peak_resident_memory() : resident_memory()) - left_by_others, communicator); };
+      return [=] {
+        double memory = (has_peak ? peak_resident_memory() : resident_memory()) - left_by_others;
+        sum_over_processes(communicator, &memory, 1);
+        return memory;
+      };
     }
 
     std::vector<double> algebraic_errors(const ComplexModes &modes)

@@ -2,7 +2,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/studies/designs/design_work.h>
 
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/utilities.h>
 
 #include <new>
@@ -13,8 +12,7 @@ namespace Squeal
 {
   namespace
   {
-    namespace fs  = std::filesystem;
-    namespace MPI = dealii::Utilities::MPI;
+    namespace fs = std::filesystem;
 
     /// Numbers of a list such as "3, 7-9".
     std::vector<int> parse_designs(const std::string &list, const int n)

@@ -156,18 +156,4 @@ namespace Squeal
       note += (note.empty() ? "  note: not used here: " : ", ") + path + " (Accuracy = " + to_string(parameters.goal) + " chooses it)";
     return note;
   }
-
-  std::vector<std::string> conditional_parameters()
-  {
-    std::vector<std::string> paths;
-    for (const UsageRule &rule : general_rules())
-      paths.emplace_back(rule.path);
-    for (const Study *study : studies())
-      {
-        paths.insert(paths.end(), study->own_parameters.begin(), study->own_parameters.end());
-        for (const UsageRule &rule : study->rules)
-          paths.emplace_back(rule.path);
-      }
-    return paths;
-  }
 } // namespace Squeal

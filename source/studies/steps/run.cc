@@ -1,9 +1,8 @@
 #include <squeal/base/tasks.h>
 #include <squeal/linear_algebra/blas_threads.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/parameters/design_plan.h>
 #include <squeal/studies/steps/run.h>
-
-#include <deal.II/base/mpi.h>
 
 #include <cmath>
 #include <fstream>
@@ -22,12 +21,11 @@ namespace Squeal
   }
 
   Run::Run(const Parameters &parameters, const RunOptions &options, MPI_Comm communicator, Progress &progress, std::ostream &screen)
-    : RunContext{parameters, communicator, progress, screen, options.dry_run, dealii::Utilities::MPI::this_mpi_process(communicator) == 0,
-                 options}
+    : RunContext{parameters, communicator, progress, screen, options.dry_run, this_process(communicator) == 0, options}
   {
     record.command      = options.command;
     record.revision     = options.revision;
-    record.n_processes  = static_cast<int>(dealii::Utilities::MPI::n_mpi_processes(communicator));
+    record.n_processes  = n_processes(communicator);
     record.n_threads    = usable_threads(parameters.solvers.n_threads, n_processes_here(communicator));
     record.blas_threads = set_blas_threads(parameters.solvers.blas_threads);
     set_task_threads(record.n_threads);

@@ -26,7 +26,4 @@ namespace Squeal
 
   /// Paths of the parameters that differ from their defaults.
   std::vector<std::string> changed_parameters(Parameters parameters);
-
-  /// Paths of all parameters, and sections with "/" at the end, that some run does not use.
-  std::vector<std::string> conditional_parameters();
 } // namespace Squeal
