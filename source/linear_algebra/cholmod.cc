@@ -17,8 +17,13 @@ namespace Squeal
     /// Matrices with fewer rows are ordered faster by minimum degree than their better order would be found.
     constexpr int rows_for_dissection = 2000;
 
-    /// Right-hand sides of a task: the factor is read once for all of them.
-    constexpr int columns_of_task = 32;
+    /// Right-hand sides of a task, for all of which the factor is read once: as many as give every thread a task, within limits.
+    int columns_of_task(const int n_columns)
+    {
+      constexpr int fewest = 4, most = 32;
+      const int     n_threads = static_cast<int>(n_task_threads());
+      return std::clamp((n_columns + n_threads - 1) / n_threads, n_threads == 1 ? most : fewest, most);
+    }
 
     class CholmodFactorization : public Factorization
     {
@@ -56,7 +61,7 @@ namespace Squeal
 
       void apply(const MultiVector &X, MultiVector &Y) const override
       {
-        run_parts(X.n_columns(), columns_of_task, [&](const int first, const int n) {
+        run_parts(X.n_columns(), columns_of_task(X.n_columns()), [&](const int first, const int n) {
           cholmod_common own;
           cholmod_start(&own);
           cholmod_dense  right_sides = columns(X, first, n);
