@@ -6,6 +6,7 @@
 #   scripts/setup.sh browser      also the browser in which scripts/test.sh looks at pages of scripts/report.py
 #   scripts/setup.sh pictures     also what scripts/render_*.py need
 #   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
+#   scripts/setup.sh import       also what scripts/import_mesh.py needs
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.
@@ -25,6 +26,7 @@ packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 # Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
+packages_import=(python3-meshio python3-yaml)
 packages_peers=(python3-petsc4py python3-slepc4py)
 
 complain() { printf '%s\n' "$*" >&2; }
@@ -195,8 +197,9 @@ if [[ ${BASH_SOURCE[0]} == "$0" ]]; then
         fi
         additional+=("${packages_pictures[@]}") ;;
       paraview) additional+=("${packages_paraview[@]}") ;;
+      import) additional+=("${packages_import[@]}") ;;
       peers) additional+=("${packages_peers[@]}") ;;
-      *) complain "usage: scripts/setup.sh [browser] [pictures] [paraview] [peers]"; exit 2 ;;
+      *) complain "usage: scripts/setup.sh [browser] [pictures] [paraview] [import] [peers]"; exit 2 ;;
     esac
   done
   install_packages "${packages[@]}" "${additional[@]}"

@@ -15,7 +15,7 @@ if [[ ${1:-} == --extended ]]; then
   selection=(-L extended)
 fi
 
-install_packages "${packages[@]}" "${packages_browser[@]}"
+install_packages "${packages[@]}" "${packages_browser[@]}" "${packages_import[@]}"
 setup release
 
 cd "$squeal_root"

@@ -1,0 +1,287 @@
+#!/usr/bin/python3
+"""Writes a mesh of another pre-processor as a .msh that squeal reads.
+
+    scripts/import_mesh.py brake.inp                       what is in the file
+    scripts/import_mesh.py brake.inp brake.msh --unit mm \\
+        --volume disc=ROTOR --volume pin_inner=PAD_I,PLATE_I --volume pin_outer=PAD_O,PLATE_O \\
+        --surface disc_contact=ROTOR_SURF --surface pin_contact=PAD_SURF_I,PAD_SURF_O --surface pin_clamp=BACKS
+
+Sets of elements become volumes; surfaces, sets of shells and sets of nodes become faces: those on the outside of a body, all of whose
+corners are in the set of nodes. A set that is named like a volume or surface of squeal, in any case, needs no --volume or --surface.
+--names FILE reads the same from a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...}}. --unit is the unit of length of the
+file, always to be given. Nothing is left out silently: what belongs to no volume is listed.
+
+Read are Abaqus .inp (sets, surfaces, elastic materials: these go to FILE.prm beside FILE.msh), Nastran .bdf (volumes by the number of their
+property) and what meshio reads: Exodus, MED, VTK, Gmsh and others. Needs python3-meshio.
+"""
+
+import argparse
+import collections
+import os
+import pathlib
+import re
+import sys
+import tempfile
+
+import numpy as np
+
+from importing.foreign_mesh import read, with_meshio
+from importing.mesh_shapes import ImportRefused, faces_of
+
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
+STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # Pa and kg/m^3 of the unit systems N, m, kg, s and N, mm, t, s
+SURFACES = ("disc_contact", "pin_contact", "pin_clamp", "pin_side", "disc_bore", "disc_rim")
+PLAUSIBLE = (0.05, 1.5)  # extent of a brake [m]
+PLAUSIBLE_DENSITY = (100, 30000)  # [kg/m^3]
+
+
+def length_hint(mesh):
+    extent = np.ptp(mesh.points[sorted({node for number, (_, nodes) in enumerate(mesh.elements) if mesh.is_solid(number) for node in nodes})], axis=0)
+    fitting = [f"--unit {unit} ({size * extent.max():.3g} m)" for unit, size in UNITS.items() if PLAUSIBLE[0] <= size * extent.max() <= PLAUSIBLE[1]]
+    return " x ".join(f"{x:.4g}" for x in extent), " or ".join(fitting) or "none of a brake"
+
+
+def is_volume(name):
+    return name.lower() == "disc" or name.lower().startswith("pin_") and not is_surface(name)
+
+
+def is_surface(name):
+    return name.lower() in SURFACES
+
+
+def chosen(given, sets, what, is_known, path):
+    """name of squeal -> names of the file: those given, and those that are called so already."""
+    result = {}
+    for name, members in given.items():
+        for member in members:
+            found = [member] if member in sets else [other for other in sets if other.lower() == member.lower()]
+            if len(found) != 1:
+                raise ImportRefused(f"there is no {what} `{member}`" if not found else f"`{member}` may be {' or '.join(found)}", path,
+                                    f"name some of: {', '.join(sorted(sets)) or '(none)'}")
+            result.setdefault(name, []).extend(found)
+    used = {member for members in result.values() for member in members}
+    for name in sorted(sets):
+        if is_known(name) and name.lower() not in given and name not in used:
+            result.setdefault(name.lower(), []).append(name)
+    return result
+
+
+class Import:
+    """The volumes and faces that were asked for, of one mesh."""
+
+    def __init__(self, mesh, volumes, surfaces, path):
+        self.mesh, self.path, self.volume_of, self.left = mesh, path, {}, list(mesh.dropped)
+        solids = {name for name, numbers in mesh.element_sets.items() if any(map(mesh.is_solid, numbers))}
+        self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
+        if "disc" not in self.volumes:
+            raise ImportRefused("no set of elements becomes the disc", path,
+                                f"say --volume disc=SET with some of: {', '.join(sorted(solids)) or '(none)'}")
+        for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
+            for number in mesh.element_sets[member]:
+                if not faces_of(mesh.elements[number][0]):
+                    raise ImportRefused(f"`{member}` has elements of type {mesh.elements[number][0]}, which are not read", path,
+                                        "name sets without them")
+                if mesh.is_solid(number) and self.volume_of.setdefault(number, name) != name:
+                    raise ImportRefused(f"elements of `{member}` are in volumes {self.volume_of[number]} and {name}", path,
+                                        "name sets that share no elements")
+        self.outer = self._outer_faces()
+        regions = {*mesh.node_sets, *mesh.faces, *filter(mesh.shells, mesh.element_sets)}
+        self.surfaces = chosen(surfaces, regions, "surface, set of shells or set of nodes", is_surface, path)
+        if both := self.surfaces.keys() & self.volumes.keys():
+            raise ImportRefused(f"`{both.pop()}` is both volume and surface", path, "give the surface another name")
+        self.faces = {name: list({key: self.outer[key] for member in members for key in self._faces_of(name, member)}.values())
+                      for name, members in self.surfaces.items()}
+
+    def _outer_faces(self):
+        """Corners in ascending order -> corners, of faces that belong to one element only."""
+        found = collections.defaultdict(list)
+        for number in self.volume_of:
+            shape, nodes = self.mesh.elements[number]
+            for face in faces_of(shape):
+                corners = tuple(nodes[i] for i in face)
+                found[tuple(sorted(corners))].append(corners)
+        if any(len(faces) > 2 for faces in found.values()):
+            raise ImportRefused("more than two elements share a face", self.path, "take away elements that are there twice")
+        return {key: faces[0] for key, faces in found.items() if len(faces) == 1}
+
+    def _faces_of(self, name, member):
+        """Those on the outside, as keys of `outer`."""
+        found = [{tuple(sorted(face)) for face in faces} for faces in (self.mesh.faces.get(member), self.mesh.shells(member)) if faces]
+        if nodes := set(self.mesh.node_sets.get(member, ())):
+            found.append({key for key in self.outer if nodes.issuperset(key)})
+            if len(found) == 1 and (alone := len(nodes & {node for key in self.outer for node in key} - {node for key in found[0] for node in key})):
+                self.left.append(f"{alone} nodes of {member} on the outside, where not all corners of a face are in the set")
+        outside = [sorted(keys & self.outer.keys()) for keys in found] or [[]]
+        if any(other != outside[0] for other in outside):
+            raise ImportRefused(f"`{member}` names different faces as a surface and as a set", self.path, "rename one of them")
+        if not outside[0]:
+            raise ImportRefused(f"`{member}` has no face on the outside of the volumes", self.path, f"name faces of these for {name}")
+        if inside := len(found[0]) - len(outside[0]):
+            self.left.append(f"{inside} faces of {member} that are not on the outside of a volume")
+        return outside[0]
+
+    def write(self, path, scale):
+        """Gmsh's format 2.2, where an element that bears several names stands several times."""
+        order = sorted(self.volume_of)
+        used = sorted({node for number in order for node in self.mesh.elements[number][1]})
+        new = {node: number for number, node in enumerate(used)}
+        tags = {name: tag for tag, name in enumerate([*self.faces, *self.volumes], 1)}
+        blocks = collections.defaultdict(lambda: ([], []))  # shape -> nodes of elements, tags
+        elements = [("triangle" if len(corners) == 3 else "quad", corners, name) for name, faces in self.faces.items() for corners in faces]
+        for shape, nodes, name in elements + [(*self.mesh.elements[number], self.volume_of[number]) for number in order]:
+            blocks[shape][0].append([new[node] for node in nodes])
+            blocks[shape][1].append(tags[name])
+        physical = [np.array(tag) for _, tag in blocks.values()]
+        fields = {name: np.array([tag, 3 if name in self.volumes else 2]) for name, tag in tags.items()}
+        cells = [(shape, np.array(nodes)) for shape, (nodes, _) in blocks.items()]
+        with_meshio(lambda meshio: meshio.write(path, meshio.Mesh(
+            scale * self.mesh.points[used], cells, cell_data={"gmsh:physical": physical, "gmsh:geometrical": physical}, field_data=fields),
+            file_format="gmsh22", binary=False), path)
+
+    def report(self):
+        lines = []
+        for name, members in self.volumes.items():
+            shapes = collections.Counter(self.mesh.elements[n][0] for n, volume in self.volume_of.items() if volume == name)
+            lines.append(f"  volume {name}: {', '.join(f'{n} {shape}' for shape, n in shapes.items())} of {', '.join(members)}")
+        lines += [f"  surface {name}: {len(faces)} faces of {', '.join(self.surfaces[name])}" for name, faces in self.faces.items()]
+        named = {member for members in [*self.volumes.values(), *self.surfaces.values()] for member in members}
+        faces = {number for members in self.surfaces.values() for member in members for number in self.mesh.element_sets.get(member, [])}
+        left = collections.Counter(shape for number, (shape, _) in enumerate(self.mesh.elements)
+                                   if number not in self.volume_of and (number not in faces or self.mesh.is_solid(number)))
+        unused = sorted({*self.mesh.element_sets, *self.mesh.faces, *self.mesh.node_sets} - named)
+        self.left += [f"{n} elements of type {shape}" for shape, n in left.items()] + (["sets " + ", ".join(unused)] if unused else [])
+        return "\n".join(lines + [f"  left out: {what}" for what in self.left])
+
+    def materials(self, unit):
+        """Volume -> E, nu, rho in SI, of volumes all of whose elements have the same, in units that are known."""
+        found, (stress, density) = {}, STRESS_AND_DENSITY.get(unit, (0.0, 0.0))
+        for name in self.volumes:
+            known = {self.mesh.materials.get(number) for number, volume in self.volume_of.items() if volume == name}
+            if len(known) == 1 and (material := known.pop()) and PLAUSIBLE_DENSITY[0] <= material[2] * density <= PLAUSIBLE_DENSITY[1]:
+                found[name] = material[0] * stress, material[1], material[2] * density
+            elif self.mesh.materials:
+                self.left.append(f"material of {name}: not one that is isotropic, at one temperature, with a density in N, mm, t, s or SI")
+        return found
+
+
+def parameter_file(mesh_file, materials):
+    def section(name, lines):
+        return f"subsection {name}\n" + "".join(f"  set {key} = {value}\n" for key, value in lines) + "end\n"
+
+    text = section("Geometry", [("File", mesh_file.name)])
+    names = ("Young modulus", "Poisson ratio", "Density")
+    if "disc" in materials:
+        text += section("Disc material", zip(names, (f"{value:.10g}" for value in materials["disc"])))
+    if pins := {name: values for name, values in materials.items() if name != "disc"}:
+        single = (f"{pin}: " + ", ".join(f"{x:.10g}" for x in values) for pin, values in pins.items())
+        text += section("Pin material", [("Single pins", "; ".join(single))])
+    return text
+
+
+def names_file(path):
+    """What is in a YAML file, of which JSON is a part; of keys that stand there twice yaml would take the last."""
+    try:
+        import yaml
+    except ImportError as error:
+        raise ImportRefused("yaml is missing", path, "apt-get install python3-yaml") from error
+
+    class Loader(yaml.SafeLoader):
+        def construct_mapping(self, node, deep=False):
+            if len({key.value for key, _ in node.value}) < len(node.value):
+                raise ValueError(f"a name stands there twice{node.start_mark}")
+            return super().construct_mapping(node, deep)
+
+    try:
+        return yaml.load(pathlib.Path(path).read_text(encoding="utf-8").expandtabs(), Loader)
+    except (ValueError, TypeError, yaml.YAMLError) as error:
+        raise ImportRefused("the names cannot be read: " + " ".join(str(error).split()), path, "write YAML or JSON") from error
+
+
+def names_of(arguments):
+    """Volumes, surfaces and unit of the command line and of --names."""
+    given = names_file(arguments.names) if arguments.names else {}
+    if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces"} and
+            all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces"))):
+        raise ImportRefused("the names are not those of unit, volumes and surfaces", arguments.names,
+                            "write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}}")
+    result = []
+    for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):
+        pairs = [(str(name), members if isinstance(members, list) else [members]) for name, members in given.get(key, {}).items()]
+        pairs += [(name, members.split(",")) for name, _, members in (word.partition("=") for word in words)]
+        names = {}
+        for name, members in pairs:
+            name = name.lower() if is_known(name) else name
+            if not (re.fullmatch(r"[\w.-]+", name) and members and all(isinstance(m, (str, int)) and str(m).strip() for m in members)):
+                raise ImportRefused(f"`{name}` is not given as NAME=SET", arguments.names or "command line", "write, e.g., --volume disc=ROTOR")
+            if key == "volumes" and not is_volume(name) or name in names:
+                raise ImportRefused(f"`{name}` is given twice" if name in names else f"`{name}` is no volume of squeal",
+                                    arguments.names or "command line", "give each once; volumes are disc and pin_...")
+            names[name] = [str(member).strip() for member in members]
+        result.append(names)
+    return *result, arguments.unit or given.get("unit")
+
+
+def run(arguments):
+    path = pathlib.Path(arguments.file)
+    if not path.is_file():
+        raise ImportRefused("there is no such file", path, "check its name")
+    mesh = read(path)
+    shapes = ", ".join(f"{n} {shape}" for shape, n in collections.Counter(shape for shape, _ in mesh.elements).items())
+    if not any(map(mesh.is_solid, range(len(mesh.elements)))):
+        raise ImportRefused("the file has no solid elements", path, f"mesh the volumes; the file has {shapes or 'no elements'}")
+    if not np.isfinite(mesh.points).all():
+        raise ImportRefused("coordinates are not finite", path, "write the mesh anew")
+    size, fitting = length_hint(mesh)
+    summary = f"{path}: {len(mesh.points)} nodes, {shapes}; {size} in the file's unit"
+    if not arguments.output:
+        print(summary)
+        for what, sets in (("elements", mesh.element_sets), ("faces", mesh.faces), ("nodes", mesh.node_sets)):
+            for name, members in sets.items():
+                print(f"  set of {what} {name}: {len(members)}")
+        print(*(f"  left out: {what}" for what in mesh.dropped), f"  the size suits {fitting}", sep="\n")
+        return
+    output = pathlib.Path(arguments.output)
+    if output.suffix != ".msh" or not output.parent.is_dir() or output.is_dir() or output.exists() and output.samefile(path):
+        raise ImportRefused("the mesh cannot be written to this file", output, "name another file that ends in .msh, in a folder that is there")
+    volumes, surfaces, unit = names_of(arguments)
+    if unit not in tuple(UNITS):
+        raise ImportRefused("no unit of length is given" if unit is None else f"`{unit}` is no unit of length", path,
+                            f"say --unit {' or '.join(UNITS)}; the mesh is {size}, which suits {fitting}")
+    result = Import(mesh, volumes, surfaces, path)
+    materials, stub = result.materials(unit), output.with_suffix(".prm")
+    with tempfile.TemporaryDirectory(dir=output.parent) as folder:
+        written = pathlib.Path(folder) / output.name
+        result.write(written, UNITS[unit])
+        written.with_suffix(".prm").write_text(parameter_file(output, materials), encoding="utf-8")
+        os.replace(written, output)
+        if is_new := materials and not stub.exists():
+            os.replace(written.with_suffix(".prm"), stub)
+    print(summary, result.report(), f"written: {output}", sep="\n")
+    if materials:
+        print(f"written: {stub}, with the materials of {', '.join(materials)}" if is_new else f"kept: {stub}; delete it to write the materials")
+
+
+class Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise ImportRefused(message, "command line", "see --help")
+
+
+def main():
+    parser = Parser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("file")
+    parser.add_argument("output", nargs="?", help="the .msh to be written; without it, the sets of FILE are listed")
+    parser.add_argument("--unit", help=f"unit of length of FILE: {', '.join(UNITS)}")
+    parser.add_argument("--volume", action="append", default=[], metavar="NAME=SET[,SET]")
+    parser.add_argument("--surface", action="append", default=[], metavar="NAME=SET[,SET]")
+    parser.add_argument("--names", metavar="FILE")
+    try:
+        run(parser.parse_args())
+    except ImportRefused as refused:
+        what, where, change = refused.args
+        sys.exit(f"error: {what}\n  where:  {where}\n  change: {change}")
+    except OSError as error:
+        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the file and its folder, and who may read and write there")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,45 @@
+"""What the readers of meshes share: shapes of elements and their faces, and how they refuse."""
+
+import functools
+import re
+
+SOLIDS = {4: "tetra", 10: "tetra10", 6: "wedge", 15: "wedge15", 5: "pyramid", 8: "hexahedron", 20: "hexahedron20"}
+SHELLS = {3: "triangle", 6: "triangle6", 4: "quad", 8: "quad8"}
+# Faces S1, S2, ... of a shape by the numbers of their corners; a shell has one
+FACES = {
+    "triangle": ((0, 1, 2),),
+    "quad": ((0, 1, 2, 3),),
+    "tetra": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+    "wedge": ((0, 1, 2), (3, 5, 4), (0, 3, 4, 1), (1, 4, 5, 2), (2, 5, 3, 0)),
+    "pyramid": ((0, 1, 2, 3), (0, 4, 1), (1, 4, 2), (2, 4, 3), (3, 4, 0)),
+    "hexahedron": ((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1), (1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+}
+
+
+class ImportRefused(Exception):
+    """What is wrong, where, and what to change."""
+
+
+@functools.cache
+def faces_of(shape):
+    """Faces of an element by its corners, whatever its order; none of a shape that is not read."""
+    return FACES.get(re.sub(r"\d+$", "", shape), ())
+
+
+def shape_of(element_type):
+    """Shape of a type of Abaqus, and number of nodes: variants such as C3D8R and C3D10M have the nodes of the plain element, continuum shells
+    those of solids; a type that is not read is its own shape, without nodes."""
+    if match := re.fullmatch(r"(?:C3D|SC)(\d+)[A-Z]*", element_type):
+        shapes = SOLIDS
+    elif match := re.fullmatch(r"(?:S|M3D|SFM3D|R3D)(\d)(?:R5?|RS|S|)", element_type):
+        shapes = SHELLS
+    if not match or int(match[1]) not in shapes:
+        return element_type, 0
+    return shapes[int(match[1])], int(match[1])
+
+
+def read_text(path):
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        return path.read_text(encoding="latin-1")

@@ -1,0 +1,168 @@
+"""scripts/import_mesh.py: the same mesh from several pre-processors gives the same modes; nothing is guessed or left out silently."""
+
+import itertools
+import json
+import subprocess
+import sys
+import unittest
+
+try:
+    import meshio
+except ImportError:
+    meshio = None
+
+from hex_mesh import PARAMETERS, disc_with_pads
+from program import SOURCE, ProgramTest, eigenvalues
+
+# Sides S1 to S6 of C3D8 by the corners of the element, from 0
+SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
+NAMES = {"disc": "ROTOR", "pin_top": "PAD_T", "pin_bottom": "PAD_B"}
+MATERIALS = {"ROTOR": ("210000.", "0.3", "7.85e-9"), "PAD_T": ("2000.", "0.1", "2.5e-9"), "PAD_B": ("2000.", "0.1", "2.5e-9")}
+
+
+def rows(numbers, per_row=10):
+    numbers = list(numbers)
+    return [", ".join(map(str, numbers[i:i + per_row])) for i in range(0, len(numbers), per_row)]
+
+
+def abaqus(mesh):
+    """Millimetres; contact and bore as surfaces of element faces, backs of the pads as a set of nodes; bodies named as a designer would."""
+    lines = ["** a comment", "*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
+    for body, name in NAMES.items():
+        lines.append(f"*Element, type=C3D8R, elset={name.lower()}")
+        lines += [f"{i}, " + ", ".join(str(n + 1) for n in nodes) for i, (b, nodes) in enumerate(mesh.cells, 1) if b == body]
+    sides = {}
+    for (_, nodes), (number, side) in itertools.product(mesh.cells, enumerate(SIDES, 1)):
+        sides.setdefault(frozenset(nodes[i] for i in side), []).append((nodes, number))
+    element = {id(nodes): i for i, (_, nodes) in enumerate(mesh.cells, 1)}
+    for surface in ("disc_contact", "pin_contact", "disc_bore"):
+        lines.append(f"*SURFACE, NAME={surface.upper()}, TYPE=ELEMENT")
+        for names, nodes in mesh.faces:
+            if surface in names:
+                (cell, number), = sides[frozenset(nodes)]
+                lines.append(f"{element[id(cell)]}, S{number}")
+    lines += ["*NSET, NSET=BACKS", *rows(sorted({n + 1 for names, nodes in mesh.faces if "pin_clamp" in names for n in nodes}))]
+    lines += ["*ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS", "9001, 1, 2"]
+    for name, (modulus, ratio, density) in MATERIALS.items():
+        lines += [f"*SOLID SECTION, ELSET={name}, MATERIAL=M_{name}", f"*MATERIAL, NAME=M_{name}", "*ELASTIC", f"{modulus}, {ratio}", "*DENSITY", f"{density},"]
+    return "\n".join(lines) + "\n"
+
+
+def nastran(mesh):
+    """Millimetres in free format; bodies and surfaces, the latter as shells, by the numbers of their properties."""
+    numbers = {name: i for i, name in enumerate([*mesh.bodies(), *mesh.surfaces()], 1)}
+    lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
+    cells = [("CHEXA", body, nodes) for body, nodes in mesh.cells] + [("CQUAD4", name, nodes) for names, nodes in mesh.faces for name in names]
+    for i, (card, name, nodes) in enumerate(cells, 1):
+        words = [card, str(i), str(numbers[name]), *(str(n + 1) for n in nodes)]
+        lines += [",".join(words[:9]) + (",+" if len(words) > 9 else "")] + ([",".join(["+", *words[9:]])] if len(words) > 9 else [])
+    return "\n".join([*lines, "ENDDATA", ""]), numbers
+
+
+def assignments(numbers, mesh):
+    volumes = [word for name in mesh.bodies() for word in ("--volume", f"{name}={numbers[name]}")]
+    return volumes + [word for name in mesh.surfaces() for word in ("--surface", f"{name}={numbers[name]}")]
+
+
+@unittest.skipIf(meshio is None, "needs python3-meshio")
+class Import(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.mesh = disc_with_pads()[0]
+        cls.mesh.write_4(cls.folder / "original.msh")
+        (cls.folder / "brake.inp").write_text(abaqus(cls.mesh), encoding="utf-8")
+        cls.baseline = eigenvalues(cls.run_mesh("original"))
+
+    @classmethod
+    def run_mesh(cls, name, *overrides):
+        (cls.folder / f"run_{name}.prm").write_text(PARAMETERS.format(file=f"{name}.msh", mount="disc_bore"), encoding="utf-8")
+        return cls.run_scene(f"out_{name}", *overrides, file=f"run_{name}.prm")
+
+    def imports(self, *arguments):
+        return subprocess.run([sys.executable, "-B", SOURCE / "scripts" / "import_mesh.py", *arguments], cwd=self.folder, text=True, capture_output=True, timeout=60)
+
+    def imported(self, *arguments):
+        process = self.imports(*arguments)
+        self.assertEqual((process.returncode, process.stderr), (0, ""))
+        return process.stdout
+
+    ABAQUS = ("--volume", "disc=ROTOR", "--volume", "pin_top=PAD_T", "--volume", "pin_bottom=pad_b", "--surface", "pin_clamp=BACKS")
+
+    def test_abaqus(self):
+        text = self.imported("brake.inp", "abaqus.msh", "--unit", "mm", *self.ABAQUS)
+        for line in ("volume disc: 72 hexahedron of ROTOR", "surface disc_contact: 6 faces of DISC_CONTACT", "left out: 1 elements of type SPRINGA"):
+            self.assertIn(line, text)
+        self.assert_same_eigenvalues(eigenvalues(self.run_mesh("abaqus")), self.baseline)
+        stub = (self.folder / "abaqus.prm").read_text(encoding="utf-8")
+        for line in ("File = abaqus.msh", "Young modulus = 2.1e+11", "Density = 7850", "pin_top: 2000000000, 0.1, 2500; pin_bottom"):
+            self.assertIn(line, stub)
+        self.assertIn("kg", self.call("abaqus.prm", "--dry-run", "--set", "Mounts/Elastic mounts=disc_bore: 0, 7.8e10, 1.88e10").stdout)
+
+    def test_what_pre_processors_write(self):
+        text = abaqus(self.mesh)
+        part = "*PART, NAME=P\n" + text + "*END PART\n*ASSEMBLY, NAME=A\n*INSTANCE, NAME=P-1, PART=P\n*END INSTANCE\n*ELSET, ELSET=ALL\nP-1.ROTOR\n*END ASSEMBLY\n"
+        for variant, left in ((text.replace(", elset=rotor", ",\n elset=rotor").lower().replace(", ", ",\t").replace("\n", "\r\n"), None), (part, None),
+                              (text + "*ELSET, ELSET=ALL, GENERATE\n1, 999999999\n", None), (text.replace("0.3\n", "0.3, 20.\n1., 0.3, 90.\n"), "material of disc")):
+            self.write("variant.inp", variant)
+            (self.folder / "variant.prm").unlink(missing_ok=True)
+            self.assertIn(left or "with the materials of disc, pin_top", self.imported("variant.inp", "variant.msh", "--unit", "mm", *self.ABAQUS))
+            self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
+
+    def test_names_from_a_file(self):
+        names = {"unit": "mm", "volumes": {"disc": "ROTOR", "pin_top": ["PAD_T"], "pin_bottom": ["PAD_B"]}, "surfaces": {"pin_clamp": "BACKS"}}
+        for name, text in (("names.json", json.dumps(names)), ("names.yaml", "\n".join(f"{key}: {json.dumps(value)}" for key, value in names.items()))):
+            self.write(name, text)
+            self.imported("brake.inp", f"{name}.msh", "--names", name)
+            self.assertEqual(meshio.read(self.folder / f"{name}.msh").cells[0].data.shape, (len(self.mesh.faces), 4))
+
+    def test_formats_of_meshio(self):
+        text, numbers = nastran(self.mesh)
+        self.write("brake.bdf", text)
+        self.mesh.write_2(self.folder / "brake_2.msh")
+        for source, unit, names in (("brake.bdf", "mm", assignments(numbers, self.mesh)), ("brake_2.msh", "m", []), ("original.msh", "m", [])):
+            with self.subTest(source=source):
+                name = source.replace(".", "_")
+                self.imported(source, f"{name}.msh", "--unit", unit, *names)
+                self.assert_same_eigenvalues(eigenvalues(self.run_mesh(name)), self.baseline)
+
+    def test_lists_what_is_in_a_file(self):
+        text = self.imported("brake.inp")
+        for line in (f"{len(self.mesh.cells)} hexahedron", "set of elements ROTOR: 72", "set of faces DISC_CONTACT: 6", "--unit mm (0.6 m)"):
+            self.assertIn(line, text)
+
+    def refused(self, mentions, *arguments):
+        self.assert_message(self.imports(*arguments), mentions)
+        self.assertFalse((self.folder / "refused.msh").exists())
+
+    def test_refusals(self):
+        given = ("brake.inp", "refused.msh", "--unit", "mm")
+        self.refused(["no unit of length", "--unit mm (0.6 m)"], "brake.inp", "refused.msh", *self.ABAQUS)
+        self.refused(["`furlong`"], "brake.inp", "refused.msh", "--unit", "furlong", *self.ABAQUS)
+        self.refused(["becomes the disc", "PAD_B, PAD_T, ROTOR"], *given)
+        self.refused(["no set of solids `ROTER`", "ROTOR"], *given, "--volume", "disc=ROTER")
+        self.refused(["in volumes disc and pin_top"], *given, "--volume", "disc=ROTOR", "--volume", "pin_top=ROTOR")
+        self.refused(["`disc`"], *given, "--volume", "disc")
+        self.refused(["no such file"], "brakes.inp", "refused.msh")
+        self.refused(["`disc` is given twice"], *given, *self.ABAQUS, "--volume", "disc=PAD_T")
+        self.refused(["cannot be written"], "brake.inp", "nowhere/refused.msh", "--unit", "mm", *self.ABAQUS)
+        self.refused(["cannot be written"], "original.msh", "original.msh", "--unit", "m")
+        for names in ("volumes: [disc]", "volums: {disc: ROTOR}", "unit: [mm", "unit: [mm]", "volumes: {disc: ROTOR, disc: PAD_T}"):
+            self.refused([], *given[:2], "--names", self.write("refused.yaml", names))
+        nodes = nastran(self.mesh)[0]
+        for name, content in (("broken.msh", "no mesh"), ("broken.bdf", nodes.replace("GRID,1,,", "GRID,1,5,")), ("broken.bdf", nodes.replace("ENDDATA", ""))):
+            self.refused([], self.write(name, content), "refused.msh", "--unit", "m", "--volume", "disc=1")
+        text = abaqus(self.mesh)
+        for broken, mentions in ((text.replace("*NSET", "*NODE\n1, 0., 0., 0.\n*NSET"), ["node 1 is there twice", "parts"]),
+                                 (text.replace("type=C3D8R", "type=C3D20", 1), ["*ELEMENT cannot be read", "C3D20"]),
+                                 (text.replace("*NODE\n", "*NODE, SYSTEM=C\n"), ["*NODE generates or moves"]),
+                                 (text.replace("\n1, ", "\n777, ", 1), ["has node 1, which is not in the file"]),
+                                 ("*INCLUDE, INPUT=nodes.inp\n" + text, ["nodes.inp", "is not there"]),
+                                 (text.replace("S2", "SPOS", 1), ["side SPOS", "S1 to S6"]),
+                                 (text + "*SURFACE, NAME=DISC_BORE\n1, S1\n", ["surface DISC_BORE is there twice"]),
+                                 (text + "*ELSET, ELSET=MORE\nROTOR, STATOR\n", ["set MORE names `STATOR`"]),
+                                 (text + "*NSET, NSET=DISC_BORE\nBACKS\n", ["`DISC_BORE` names different faces"]),
+                                 (text.replace("ELEMENT, TYPE=SPRINGA, ELSET=SPRINGS", "ELEMENT, TYPE=GK3D8, ELSET=PAD_T"), ["type GK3D8, which are not read"]),
+                                 ("*PART, NAME=P\n" + text + "*END PART\n*INSTANCE, NAME=P-1, PART=P\n0., 0., 1.\n*END INSTANCE\n", ["moved"]),
+                                 ("*NODE\n1, 0., 0., 0.\n", ["no solid elements"])):
+            self.refused(mentions, self.write("broken.inp", broken), "refused.msh", "--unit", "mm", *self.ABAQUS)
