@@ -2,6 +2,8 @@
 
 import itertools
 import json
+import pathlib
+import re
 import subprocess
 import sys
 import unittest
@@ -12,10 +14,11 @@ except ImportError:
     meshio = None
 
 from hex_mesh import PARAMETERS, disc_with_pads
-from program import SOURCE, ProgramTest, eigenvalues
+from program import EXECUTABLE, SOURCE, ProgramTest, eigenvalues
 
 # Sides S1 to S6 of C3D8 by the corners of the element, from 0
 SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
+SURFACES = {"disc_contact": "ROTOR_SURF", "pin_contact": "PAD_SURF", "disc_bore": "HUB"}
 NAMES = {"disc": "ROTOR", "pin_top": "PAD_T", "pin_bottom": "PAD_B"}
 MATERIALS = {"ROTOR": ("210000.", "0.3", "7.85e-9"), "PAD_T": ("2000.", "0.1", "2.5e-9"), "PAD_B": ("2000.", "0.1", "2.5e-9")}
 
@@ -35,8 +38,8 @@ def abaqus(mesh):
     for (_, nodes), (number, side) in itertools.product(mesh.cells, enumerate(SIDES, 1)):
         sides.setdefault(frozenset(nodes[i] for i in side), []).append((nodes, number))
     element = {id(nodes): i for i, (_, nodes) in enumerate(mesh.cells, 1)}
-    for surface in ("disc_contact", "pin_contact", "disc_bore"):
-        lines.append(f"*SURFACE, NAME={surface.upper()}, TYPE=ELEMENT")
+    for surface, name in SURFACES.items():
+        lines.append(f"*SURFACE, NAME={name}, TYPE=ELEMENT")
         for names, nodes in mesh.faces:
             if surface in names:
                 (cell, number), = sides[frozenset(nodes)]
@@ -89,11 +92,12 @@ class Import(ProgramTest):
         self.assertEqual((process.returncode, process.stderr), (0, ""))
         return process.stdout
 
-    ABAQUS = ("--volume", "disc=ROTOR", "--volume", "pin_top=PAD_T", "--volume", "pin_bottom=pad_b", "--surface", "pin_clamp=BACKS")
+    ABAQUS = ("--volume", "disc=ROTOR", "--volume", "pin_top=PAD_T", "--volume", "pin_bottom=pad_b", "--surface", "pin_clamp=BACKS",
+              *(word for name, given in SURFACES.items() for word in ("--surface", f"{name}={given}")))
 
     def test_abaqus(self):
         text = self.imported("brake.inp", "abaqus.msh", "--unit", "mm", *self.ABAQUS)
-        for line in ("volume disc: 72 hexahedron of ROTOR", "surface disc_contact: 6 faces of DISC_CONTACT", "left out: 1 elements of type SPRINGA"):
+        for line in ("volume disc: 72 hexahedron of ROTOR", "surface disc_contact: 6 faces of ROTOR_SURF", "left out: 1 elements of type SPRINGA"):
             self.assertIn(line, text)
         self.assert_same_eigenvalues(eigenvalues(self.run_mesh("abaqus")), self.baseline)
         stub = (self.folder / "abaqus.prm").read_text(encoding="utf-8")
@@ -114,12 +118,24 @@ class Import(ProgramTest):
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
     def test_names_from_a_file(self):
-        names = {"unit": "mm", "volumes": {"disc": "ROTOR", "pin_top": ["PAD_T"], "pin_bottom": ["PAD_B"]}, "surfaces": {"pin_clamp": "BACKS"}}
+        names = {"unit": "mm", "volumes": {"disc": "ROTOR", "pin_top": ["PAD_T"], "pin_bottom": ["PAD_B"]}, "surfaces": {**SURFACES, "pin_clamp": ["BACKS"]}}
         yaml = "\n".join(f"{key}: {json.dumps(value)}" for key, value in names.items())
         for name, text in (("names.json", json.dumps(names)), ("names.yaml", yaml)):
             self.write(name, text)
             self.imported("brake.inp", f"{name}.msh", "--names", name)
             self.assertEqual(meshio.read(self.folder / f"{name}.msh").cells[0].data.shape, (len(self.mesh.faces), 4))
+
+    def test_commands_of_the_page(self):
+        """From an Abaqus mesh to the chart."""
+        (self.folder / "build").mkdir()
+        for link, target in (("scripts", SOURCE / "scripts"), ("build/release", pathlib.Path(EXECUTABLE).parent)):
+            (self.folder / link).symlink_to(target)
+        page = (SOURCE / "doc" / "own_geometry.md").read_text(encoding="utf-8")
+        commands = re.search(r"## Meshes of other pre-processors.*?```sh\n(.*?)```", page, re.DOTALL)[1]
+        process = subprocess.run(["bash", "-e", "-c", commands], cwd=self.folder, text=True, capture_output=True, timeout=300)
+        self.assertEqual(process.returncode, 0, process.stdout + process.stderr)
+        self.assertIn("unstable", process.stdout)
+        self.assertTrue(list((self.folder / "results" / "chart" / "plots").glob("*.svg")))
 
     def test_formats_of_meshio(self):
         text, numbers = nastran(self.mesh)
@@ -133,7 +149,7 @@ class Import(ProgramTest):
 
     def test_lists_what_is_in_a_file(self):
         text = self.imported("brake.inp")
-        for line in (f"{len(self.mesh.cells)} hexahedron", "set of elements ROTOR: 72", "set of faces DISC_CONTACT: 6", "--unit mm (0.6 m)"):
+        for line in (f"{len(self.mesh.cells)} hexahedron", "set of elements ROTOR: 72", "set of faces ROTOR_SURF: 6", "--unit mm (0.6 m)"):
             self.assertIn(line, text)
 
     def refused(self, mentions, *arguments):
@@ -165,9 +181,9 @@ class Import(ProgramTest):
                                  (text.replace("\n1, ", "\n777, ", 1), ["has node 1, which is not in the file"]),
                                  ("*INCLUDE, INPUT=nodes.inp\n" + text, ["nodes.inp", "is not there"]),
                                  (text.replace("S2", "SPOS", 1), ["side SPOS", "S1 to S6"]),
-                                 (text + "*SURFACE, NAME=DISC_BORE\n1, S1\n", ["surface DISC_BORE is there twice"]),
+                                 (text + "*SURFACE, NAME=HUB\n1, S1\n", ["surface HUB is there twice"]),
                                  (text + "*ELSET, ELSET=MORE\nROTOR, STATOR\n", ["set MORE names `STATOR`"]),
-                                 (text + "*NSET, NSET=DISC_BORE\nBACKS\n", ["`DISC_BORE` names different faces"]),
+                                 (text + "*NSET, NSET=HUB\nBACKS\n", ["`HUB` names different faces"]),
                                  (text.replace("TYPE=SPRINGA, ELSET=SPRINGS", "TYPE=GK3D8, ELSET=PAD_T"), ["type GK3D8, which are not read"]),
                                  ("*PART, NAME=P\n" + text + "*END PART\n*INSTANCE, NAME=P-1, PART=P\n0., 0., 1.\n*END INSTANCE\n", ["moved"]),
                                  ("*NODE\n1, 0., 0., 0.\n", ["no solid elements"])):
