@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  constexpr double mu = 0.4;
+  constexpr double friction_coefficient = 0.4;
 
   /// Designs on one mesh: other pins, another mount, another damping.
   std::vector<MaterialParameters> designs()
@@ -75,13 +75,13 @@ TEST(Families, ReducedMembersAndTheirResidualsAreThoseOfFullOrder)
       const CoupledSystem direct = family.direct(design);
       ReducedModel        other(direct);
       other.extend(T * Z);
-      const ReducedPencil ours = small.at(member.system.at(mu)), others = other.at(direct.at(mu));
+      const ReducedPencil ours = small.at(member.system.at(friction_coefficient)), others = other.at(direct.at(friction_coefficient));
       expect_near(ours.mass, others.mass);
       expect_near(ours.damping, others.damping);
       expect_near(ours.stiffness, others.stiffness);
       expect_near(small.stiffness(), other.stiffness());
 
-      const ParameterValues values          = member.system.at(mu);
+      const ParameterValues values          = member.system.at(friction_coefficient);
       const ReducedModes    modes           = local_reduced_modes(small, values, omega_max);
       const auto            direct_products = residual_vectors(member.system, inverse, small, modes).products();
       const auto            products        = residuals.restricted(member, Z).products(values, modes.lambda, modes.right, modes.left);

@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  constexpr double mu = 0.6;
+  constexpr double large_friction = 0.6;
 
   /// A scene with its real modes and complex reference modes.
   struct Reference
@@ -19,7 +19,7 @@ namespace
       : s(mesh_of(skewed_pins), damped(mounted()), operating(RadialDissipation::consistent))
       , inverse(s.coupled, 0., FactorizationLibrary::automatic)
       , real(real_modes(s.coupled))
-      , complex(krylov(s.coupled, mu))
+      , complex(krylov(s.coupled, large_friction))
     {}
 
     ReducedModel reduced(const MultiVector &T) const
@@ -32,7 +32,7 @@ namespace
     std::vector<ModeError> errors(const MultiVector &T) const
     {
       const ReducedModel model = reduced(T);
-      return reduction_errors(s.coupled, inverse, model, reduced_modes(model, mu, omega_max, BandEnd::open), complex);
+      return reduction_errors(s.coupled, inverse, model, reduced_modes(model, large_friction, omega_max, BandEnd::open), complex);
     }
 
     Scene          s;
@@ -50,7 +50,7 @@ namespace
   }
 
   /// The two degrees of freedom of flutter, K = [k11 k12 - μ k_c; k12 k22], and a stiff third one, without which k11 is known too stiff.
-  struct Flutter
+  struct StiffenedFlutter
   {
     double damping = 0., k11 = 3., k22 = 2., k12 = 0.7, k_c = 1.3, c = 0.3, k33 = 100.;
 
@@ -104,7 +104,7 @@ TEST(ReductionErrors, AreTheFormulasOfThePaper)
 {
   const Reference    r;
   const ReducedModel model  = r.reduced(*r.real.vectors);
-  const ReducedModes modes  = reduced_modes(model, mu, omega_max, BandEnd::open);
+  const ReducedModes modes  = reduced_modes(model, large_friction, omega_max, BandEnd::open);
   const auto         errors = reduction_errors(r.s.coupled, r.inverse, model, modes, r.complex);
   EXPECT_GT(largest(errors, &ModeError::shape), 1e-6);
   EXPECT_THROW(r.errors(view(*r.real.vectors, 0, r.real.vectors->n_columns() - 3)), SolverError); // fewer than the reference
@@ -205,11 +205,11 @@ TEST(EigenvalueEstimates, FindTheErrorAndMendIt)
   // Flutter with a degree of freedom left out: the estimate is the error to first order, away from the coalescence.
   for (const double damping : {0., 0.02})
     {
-      const Flutter        flutter{damping};
-      const CoupledSystem  system = flutter.system();
-      const UpdatedInverse inverse(system, 0., FactorizationLibrary::automatic);
-      const MultiVector    units = unit_vectors(system.map());
-      ReducedModel         model(system), full(system);
+      const StiffenedFlutter flutter{damping};
+      const CoupledSystem    system = flutter.system();
+      const UpdatedInverse   inverse(system, 0., FactorizationLibrary::automatic);
+      const MultiVector      units = unit_vectors(system.map());
+      ReducedModel           model(system), full(system);
       model.extend(view(units, 0, 2));
       full.extend(units);
       const auto estimated = [&](const ReducedModes &modes) {

@@ -10,12 +10,11 @@ using namespace Scenes;
 
 namespace
 {
-  const double pi = std::acos(-1.);
 
   /// Area of a regular polygon in a circle.
   double polygon(const double radius, const unsigned int n)
   {
-    return 0.5 * n * radius * radius * std::sin(2. * pi / n);
+    return 0.5 * n * radius * radius * std::sin(2. * M_PI / n);
   }
 
   /// Distance from each node of one surface to the nearest of another, the largest.
@@ -82,7 +81,7 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
       EXPECT_NEAR(area(mesh, "pin_contact"), pin_area, 1e-12);
       EXPECT_NEAR(area(mesh, "disc_contact"), pin_area, 1e-12);
       EXPECT_NEAR(volume(mesh, "pin_"), pin_area * parameters.pin_height, 1e-12);
-      EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.9 * std::min(0.35, std::sin(pi / (3. * k))));
+      EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.9 * std::min(0.35, std::sin(M_PI / (3. * k))));
     }
 }
 
@@ -106,8 +105,8 @@ TEST(GenerateMesh, BodiesAndSurfacesAreAtTheirPlaces)
       const unsigned int n_rim  = nodes_on(mesh, "disc_rim").size() / (parameters.disc_layers + 1);
       EXPECT_NEAR(volume(mesh, "disc"), t * (polygon(parameters.disc_outer_radius, n_rim) - polygon(parameters.disc_inner_radius, n_bore)),
                   1e-4 * volume(mesh, "disc"));
-      EXPECT_NEAR(area(mesh, "disc_bore"), 2. * pi * parameters.disc_inner_radius * t, 0.01 * area(mesh, "disc_bore"));
-      EXPECT_NEAR(area(mesh, "disc_rim"), 2. * pi * parameters.disc_outer_radius * t, 0.01 * area(mesh, "disc_rim"));
+      EXPECT_NEAR(area(mesh, "disc_bore"), 2. * M_PI * parameters.disc_inner_radius * t, 0.01 * area(mesh, "disc_bore"));
+      EXPECT_NEAR(area(mesh, "disc_rim"), 2. * M_PI * parameters.disc_outer_radius * t, 0.01 * area(mesh, "disc_rim"));
       for (const unsigned int node : nodes_on(mesh, "disc_bore"))
         EXPECT_NEAR(std::hypot(mesh.points[node][0], mesh.points[node][1]), parameters.disc_inner_radius, 1e-9);
     }
@@ -229,7 +228,7 @@ TEST(GenerateMesh, PadPlanIsExtruded)
   const HexMesh            mesh       = generate_mesh(parameters);
   EXPECT_EQ(mesh.volume_names, (std::vector<std::string>{"disc", "pin_top_1", "pin_bottom_1"}));
   expect_contact_pairs(mesh, nodes_on(mesh, "pin_clamp").size());
-  const double pad_area = 50. / 360. * pi * (0.285 * 0.285 - 0.175 * 0.175);
+  const double pad_area = 50. / 360. * M_PI * (0.285 * 0.285 - 0.175 * 0.175);
   EXPECT_NEAR(volume(mesh, "pin_"), 2. * pad_area * parameters.pin_height, 0.01 * volume(mesh, "pin_"));
 }
 

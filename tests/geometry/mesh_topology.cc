@@ -14,8 +14,6 @@ namespace
   using Values = std::vector<double>;
   using Choice = std::function<bool(const Point &)>;
 
-  const double pi = std::acos(-1.);
-
   Values interval(const double first, const double last, const int n)
   {
     Values values;
@@ -27,7 +25,7 @@ namespace
   /// Angles of parts of a circle of n, from one to another.
   Values angles(const int n, const int first, const int last)
   {
-    return interval(2. * pi * first / n, 2. * pi * last / n, last - first);
+    return interval(2. * M_PI * first / n, 2. * M_PI * last / n, last - first);
   }
 
   const Place  cylindrical = [](const Point &p) { return Point(p[0] * std::cos(p[1]), p[0] * std::sin(p[1]), p[2]); };
@@ -100,7 +98,7 @@ namespace
   {
     return [n_sectors](const Point &p) {
       const double r = std::hypot(p[0], p[1]), theta = std::atan2(p[1], p[0]);
-      return std::abs(p[2] - 0.02) < 1e-9 && r > 0.19 && theta > -0.01 && theta < 2. * pi / 24. * (n_sectors + 0.01);
+      return std::abs(p[2] - 0.02) < 1e-9 && r > 0.19 && theta > -0.01 && theta < 2. * M_PI / 24. * (n_sectors + 0.01);
     };
   }
 

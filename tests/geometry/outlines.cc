@@ -8,7 +8,6 @@ using namespace Scenes;
 
 namespace
 {
-  constexpr double pi = 3.14159265358979323846;
 
   /// Area and polar moment about the centroid of faces of a plan [m², m⁴].
   std::pair<double, double> area_and_polar_moment(const std::vector<Plan::Edge> &outline, const std::vector<Plan::Point> &points)
@@ -50,13 +49,13 @@ namespace
 
 TEST(Outlines, RoundPinsGetAreaAndMomentOfTheirCircle)
 {
-  const double r = 0.026, area = pi * r * r, moment = area * r * r / 2.;
+  const double r = 0.026, area = M_PI * r * r, moment = area * r * r / 2.;
   for (const unsigned int k : {1u, 4u})
     {
       const Plan inscribed = polygon_pins(k, r);
       Plan       enlarged  = inscribed;
       enlarge_to_true_area(enlarged);
-      const double theta    = pi / (3. * k);
+      const double theta    = M_PI / (3. * k);
       const auto [A_i, J_i] = area_and_polar_moment(boundary_edges(inscribed.faces), inscribed.points);
       const auto [A, J]     = area_and_polar_moment(boundary_edges(enlarged.faces), enlarged.points);
       EXPECT_NEAR(A / area, 1., 1e-13);
@@ -72,8 +71,8 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
   parameters.outlines           = Outlines::true_area;
   const HexMesh mesh            = generate_mesh(parameters);
   const double  r               = parameters.pin_diameter / 2.;
-  EXPECT_NEAR(volume(mesh, "pin_") / (pi * r * r * parameters.pin_height), 1., 1e-12);
-  const double annulus = pi * (std::pow(parameters.disc_outer_radius, 2) - std::pow(parameters.disc_inner_radius, 2));
+  EXPECT_NEAR(volume(mesh, "pin_") / (M_PI * r * r * parameters.pin_height), 1., 1e-12);
+  const double annulus = M_PI * (std::pow(parameters.disc_outer_radius, 2) - std::pow(parameters.disc_inner_radius, 2));
   EXPECT_NEAR(volume(mesh, "disc") / (annulus * parameters.disc_thickness), 1., 1e-12);
 }
 

@@ -10,14 +10,13 @@ using namespace Scenes;
 
 namespace
 {
-  constexpr double pi = 3.14159265358979323846;
 
   /// Nodes on a circle of radius 1 about (3, 4).
   std::vector<Plan::Point> circle(const unsigned int n)
   {
     std::vector<Plan::Point> points;
     for (unsigned int i = 0; i < n; ++i)
-      points.emplace_back(3. + std::cos(2. * pi * i / n), 4. + std::sin(2. * pi * i / n));
+      points.emplace_back(3. + std::cos(2. * M_PI * i / n), 4. + std::sin(2. * M_PI * i / n));
     return points;
   }
 
@@ -36,7 +35,7 @@ namespace
       for (unsigned int v = 0; v < 4; ++v)
         {
           const Corner corner(face, v, points);
-          double       angle = std::atan2(corner.cross, corner.a * corner.b) * 180. / pi;
+          double       angle = std::atan2(corner.cross, corner.a * corner.b) * 180. / M_PI;
           angle += angle < 0. ? 360. : 0.;
           least = std::min(least, angle);
           most  = std::max(most, angle);
@@ -60,7 +59,7 @@ TEST(PinGrid, RingsFillTheOutlineWithoutFlatCorners)
         double area = 0.;
         for (const Plan::Face &face : grid.faces)
           area += signed_area(face, points);
-        EXPECT_NEAR(area, 3. * k * std::sin(pi / (3. * k)), 1e-13);
+        EXPECT_NEAR(area, 3. * k * std::sin(M_PI / (3. * k)), 1e-13);
         EXPECT_EQ(boundary_edges(grid.faces).size(), 6 * k);
 
         const auto [least, most] = angles(grid.faces, points);
@@ -94,7 +93,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   // Distances from the axes: of every pin the same, on both sides
   for (std::size_t pin = 0; pin < 2; ++pin)
     {
-      const double      angle = parameters.bottom.angles[pin] * pi / 180., radius = parameters.pin_diameter / 2.;
+      const double      angle = parameters.bottom.angles[pin] * M_PI / 180., radius = parameters.pin_diameter / 2.;
       const Plan::Point axis(parameters.bottom.radii[pin] * std::cos(angle), parameters.bottom.radii[pin] * std::sin(angle));
       unsigned int      n_found = 0;
       for (const HexMesh::Point &p : mesh.points)

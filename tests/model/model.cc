@@ -40,7 +40,7 @@ namespace
     return result;
   }
 
-  double distance(const Node &a, const Node &b)
+  double distance_between(const Node &a, const Node &b)
   {
     return std::hypot(a.position[0] - b.position[0], a.position[1] - b.position[1], a.position[2] - b.position[2]);
   }
@@ -61,7 +61,7 @@ TEST(Models, HaveTheSameNodesHoweverTheyAreDistributed)
         {
           ASSERT_EQ(expected.count(number), 1u);
           const Node &other = expected.at(number);
-          EXPECT_LT(distance(node, other), 1e-15);
+          EXPECT_LT(distance_between(node, other), 1e-15);
           EXPECT_EQ(node.component, other.component);
           for (int d = 0; d < 3; ++d)
             {
@@ -78,7 +78,7 @@ TEST(Models, HaveTheSameNodesHoweverTheyAreDistributed)
         {
           ASSERT_EQ(nodes.count(node.number), 1u);
           EXPECT_EQ(nodes.at(node.number).dofs, node.dofs);
-          EXPECT_LT(distance(nodes.at(node.number), node), 1e-15);
+          EXPECT_LT(distance_between(nodes.at(node.number), node), 1e-15);
           EXPECT_EQ(node.is_own, node.dofs[0] < 0 ? node.is_own : model.free_map().place(node.dofs[0]) >= 0);
         }
     }

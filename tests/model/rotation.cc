@@ -15,7 +15,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  const std::vector<PolarPin> two_pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
+  const std::vector<PolarPin> pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
 
   BodyTerms rotating(const Model &model, const MaterialParameters &materials, const double angular_velocity)
   {
@@ -88,17 +88,17 @@ namespace
       return dense_quadratic_modes(M, &G, K).values;
     }
 
-    Model                               model;
-    BodyTerms                           still;
-    std::shared_ptr<const SparseMatrix> kernel;
-    SymmetricModes                      modes;
+    Model                                       model;
+    BodyTerms                                   still;
+    std::shared_ptr<const Squeal::SparseMatrix> kernel;
+    SymmetricModes                              modes;
   };
 } // namespace
 
 TEST(Rotation, IsThatOfLinearFields)
 {
   // vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) with u = H x, v = F x, J x = e_z × x, from ∫ x xᵀ; N likewise
-  const HexMesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
+  const HexMesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
     return Point3{{p[0] + 0.01 * std::sin(40. * p[1]), p[1] + 0.01 * std::sin(35. * p[0]), p[2] + 0.004 * std::sin(45. * p[0])}};
   });
   for (const Element element : {Element::trilinear, Element::quadratic})

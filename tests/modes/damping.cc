@@ -10,7 +10,7 @@ using namespace Squeal::Testing;
 
 namespace
 {
-  constexpr double mu = 0.6;
+  constexpr double friction_coefficient = 0.6;
 
   /// Disc and pins of one material with C = α M + β K.
   MaterialParameters proportional(const double alpha, const double beta, const std::vector<Mount> &mounts = {})
@@ -82,7 +82,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
       EXPECT_LT(largest(distances(iterated(s.coupled, 0., 1e-10).lambda, expected)), 1e-9);
 
       // With friction C̃ = α M̃ + β K̃: each undamped λ_0, of either growth, becomes the root of λ² + (α + β κ) λ + κ = 0, κ = −λ_0².
-      const auto           growing = krylov(undamped(s.coupled), mu);
+      const auto           growing = krylov(undamped(s.coupled), friction_coefficient);
       std::vector<Complex> shifted;
       for (const Complex &l : growing.lambda)
         {
@@ -90,7 +90,7 @@ TEST(RayleighDamping, ProportionalDampingOfEveryMode)
           shifted.push_back(-half + (root.imag() > 0. ? root : -root));
         }
       n_growing += n_unstable(growing);
-      EXPECT_LT(largest(distances(krylov(s.coupled, mu).lambda, shifted)), 1e-8);
+      EXPECT_LT(largest(distances(krylov(s.coupled, friction_coefficient).lambda, shifted)), 1e-8);
     }
   EXPECT_GT(n_growing, 0);
 }
@@ -110,7 +110,7 @@ TEST(RayleighDamping, ADiscThatMovesFreely)
   options.tolerance                  = 1e-9;
   UpdatedInverse inverse(s.coupled, shift, FactorizationLibrary::automatic);
   Progress       progress;
-  for (const double friction : {0., mu})
+  for (const double friction : {0., friction_coefficient})
     {
       const auto modes = krylov_modes(s.coupled, inverse, shift, friction, omega_max, real.eigenvalues.size(), solvers, progress);
       const auto other = residual_iteration(s.coupled, inverse, *real.vectors, friction, options, progress);
@@ -134,11 +134,11 @@ TEST(RayleighDamping, ResidualsOfBothSidesAreThoseOfTheMatrices)
   const auto                 system = with_modal_damping(s.coupled, real_modes(s.coupled));
   const std::vector<Complex> lambda = {{-300., 9000.}, {50., 20000.}};
   const MultiVector          X = random_vectors(system.map(), 4), re = view(X, 0, 2), im = view(X, 2, 2);
-  const auto                 matrices = with_friction(s.coupled, mu);
+  const auto                 matrices = with_friction(s.coupled, friction_coefficient);
   const Eigen::VectorXcd     factors = as_column(lambda), squares = factors.array().square();
   for (const bool left : {false, true})
     {
-      const ComplexDenseMatrix R     = from_halves(replicate(force_residuals(system, system.at(mu), lambda, re, im, left)));
+      const ComplexDenseMatrix R = from_halves(replicate(force_residuals(system, system.at(friction_coefficient), lambda, re, im, left)));
       const auto               times = [&](const SparseMatrix &A) { return from_halves(replicate(left ? transpose_times(A, X) : A * X)); };
       const ComplexDenseMatrix modal = from_halves(replicate(modal_forces(system, X))) * factors.asDiagonal();
       const ComplexDenseMatrix expected =
@@ -219,11 +219,11 @@ TEST(ModalDamping, BothSolversAgreeWithFriction)
   const CoupledSystem bare =
     couple(s.system, s.contact, {std::vector<double>(s.interface.size(), 50.), std::vector<double>(s.interface.size(), -20.)});
   const auto system    = with_modal_damping(bare, real_modes(bare));
-  const auto reference = krylov(system, mu);
+  const auto reference = krylov(system, friction_coefficient);
   for (const double tolerance : {1e-4, 1e-8})
-    EXPECT_LT(largest(distances(iterated(system, mu, tolerance).lambda, reference.lambda)), 2. * tolerance);
+    EXPECT_LT(largest(distances(iterated(system, friction_coefficient, tolerance).lambda, reference.lambda)), 2. * tolerance);
   EXPECT_LT(largest(reference.residuals), 1e-11);
-  EXPECT_GT(largest(distances(krylov(bare, mu).lambda, reference.lambda)), 1e-3); // it matters
+  EXPECT_GT(largest(distances(krylov(bare, friction_coefficient).lambda, reference.lambda)), 1e-3); // it matters
 }
 
 TEST(ModalDamping, OfADiscThatMovesFreely)
