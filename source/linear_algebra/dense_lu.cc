@@ -49,8 +49,7 @@ namespace Squeal
     return {modulus, std::remainder(argument, 2. * M_PI)};
   }
 
-  // Eigen's own solve refers to the first entry of a matrix without columns
-
+  // Eigen's own solve refers to the first entry, which a matrix without columns lacks
   template <typename Matrix>
   Matrix DenseLU<Matrix>::solve(const Matrix &B) const
   {

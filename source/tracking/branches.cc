@@ -2,8 +2,8 @@
 
 #include <squeal/base/exceptions.h>
 #include <squeal/base/groups.h>
-#include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/base/tasks.h>
+#include <squeal/linear_algebra/orthonormal_basis.h>
 
 #include <algorithm>
 #include <cmath>

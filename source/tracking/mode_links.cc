@@ -22,7 +22,7 @@ namespace Squeal
     constexpr double negligible_part = 0.25;
     /// |φ_iᴴφ_j|² at one point from which two modes are about to coalesce.
     constexpr double parallel = 0.7;
-    /// The same of vectors so close to a coalescence that rounding decides on the rest.
+    /// Norm of what Gram and Schmidt leave of a unit vector so close to a coalescence that rounding decides on the rest.
     constexpr double defective = 1e-7;
     /// |Im δ²| / |δ²| of the difference δ of two λ up to which δ² is real, as it is where modes may coalesce.
     constexpr double real_discriminant = 1e-6;
