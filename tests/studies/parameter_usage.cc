@@ -177,6 +177,17 @@ TEST(ParameterUsage, OfEveryStudy)
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no rule of when it is used";
     }
+  // What studies name exists; a general rule of a parameter that does not exist leaves the one that was meant without a rule above.
+  for (const Study *study : studies())
+    {
+      std::vector<std::string> beginnings(study->own_parameters.begin(), study->own_parameters.end());
+      for (const UsageRule &rule : study->rules)
+        beginnings.emplace_back(rule.path);
+      for (const std::string &beginning : beginnings)
+        EXPECT_TRUE(
+          std::any_of(all_paths().begin(), all_paths().end(), [&](const std::string &path) { return path.rfind(beginning, 0) == 0; }))
+          << beginning;
+    }
 }
 
 TEST(ParameterUsage, OfGeometries)
