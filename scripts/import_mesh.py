@@ -3,15 +3,18 @@
 
     scripts/import_mesh.py brake.inp                       what is in the file
     scripts/import_mesh.py brake.inp brake.msh --unit mm \\
-        --volume disc=ROTOR --volume pin_inner=PAD_I,PLATE_I --volume pin_outer=PAD_O,PLATE_O \\
-        --surface disc_contact=ROTOR_SURF --surface pin_contact=PAD_SURF_I,PAD_SURF_O --surface pin_clamp=BACKS
+        --volume disc=ROTOR --volume pad_lining=PAD --volume pad_backplate=PLATE \\
+        --surface disc_top=ROTOR_SURF --surface pad_face=PAD_SURF --surface pad_back=BACKS --surface disc_bore=HUB \\
+        --contact "disc_top / pad_face" --mount "disc_bore: 0, 7.8e10, 1.88e10" --mount "pad_back: 2e10, 2e10, 2e10"
 
 Sets of elements become volumes; surfaces, sets of shells and sets of nodes become faces: those on the outside of a body, all of whose
 corners are in the set of nodes. A set that is named like a volume or surface of squeal, in any case, needs no --volume or --surface.
---names FILE reads the same from a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...}}. --unit is the unit of length of the
-file, always to be given. Nothing is left out silently: what belongs to no volume is listed.
+--names FILE reads the same from a YAML or JSON file: {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {...}, contact: [disc_top / pad_face],
+mounts: ["pad_back: 2e10, 2e10, 2e10"]}. --unit is the unit of length of the file, always to be given. Nothing is left out silently: what belongs
+to no volume is listed. FILE.prm beside FILE.msh, which an import never overwrites, runs the brake: contact and mounts as given, otherwise as
+comments to fill in, quadratic elements if the mesh has them, and the elastic materials of an Abaqus file.
 
-Read are Abaqus .inp (sets, surfaces, elastic materials: these go to FILE.prm beside FILE.msh), Nastran .bdf (volumes by the number of their
+Read are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by the number of their
 property) and what meshio reads: Exodus, MED, VTK, Gmsh and others. Needs python3-meshio.
 """
 
@@ -26,10 +29,11 @@ import tempfile
 import numpy as np
 
 from importing.foreign_mesh import read, with_meshio
-from importing.mesh_shapes import ImportRefused, faces_of
+from importing.mesh_shapes import ImportRefused, faces_of, middle_nodes
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "in": 0.0254}
 STRESS_AND_DENSITY = {"m": (1.0, 1.0), "mm": (1e6, 1e12)}  # Pa and kg/m^3 of the unit systems N, m, kg, s and N, mm, t, s
+FACES = {3: "triangle", 4: "quad", 6: "triangle6", 8: "quad8"}  # by the number of nodes
 SURFACES = ("disc_contact", "pin_contact", "pin_clamp", "pin_side", "disc_bore", "disc_rim")
 PLAUSIBLE = (0.05, 1.5)  # extent of a brake [m]
 PLAUSIBLE_DENSITY = (100, 30000)  # [kg/m^3]
@@ -41,7 +45,12 @@ def length_hint(mesh):
     return " x ".join(f"{x:.4g}" for x in extent), " or ".join(fitting) or "none of a brake"
 
 
+def is_of_disc(name):
+    return name == "disc" or name.startswith("disc_")
+
+
 def is_volume(name):
+    """Of sets that are volumes without being named by the user."""
     return name.lower() == "disc" or name.lower().startswith("pin_") and not is_surface(name)
 
 
@@ -73,7 +82,7 @@ class Import:
         self.mesh, self.path, self.volume_of, self.left = mesh, path, {}, list(mesh.dropped)
         solids = {name for name, numbers in mesh.element_sets.items() if any(map(mesh.is_solid, numbers))}
         self.volumes = chosen(volumes, solids, "set of solids", is_volume, path)
-        if "disc" not in self.volumes:
+        if not any(map(is_of_disc, self.volumes)):
             raise ImportRefused("no set of elements becomes the disc", path,
                                 f"say --volume disc=SET with some of: {', '.join(sorted(solids)) or '(none)'}")
         for name, member in ((name, member) for name, members in self.volumes.items() for member in members):
@@ -91,15 +100,18 @@ class Import:
             raise ImportRefused(f"`{both.pop()}` is both volume and surface", path, "give the surface another name")
         self.faces = {name: list({key: self.outer[key] for member in members for key in self._faces_of(name, member)}.values())
                       for name, members in self.surfaces.items()}
+        self.is_quadratic = any(middle_nodes(*mesh.elements[number]) for number in self.volume_of)
 
     def _outer_faces(self):
-        """Corners in ascending order -> corners, of faces that belong to one element only."""
+        """Corners in ascending order -> corners and middle nodes, of faces that belong to one element only."""
         found = collections.defaultdict(list)
         for number in self.volume_of:
             shape, nodes = self.mesh.elements[number]
+            middle = middle_nodes(shape, nodes)
             for face in faces_of(shape):
                 corners = tuple(nodes[i] for i in face)
-                found[tuple(sorted(corners))].append(corners)
+                edges = zip(corners, (*corners[1:], corners[0])) if middle else ()
+                found[tuple(sorted(corners))].append(corners + tuple(middle[frozenset(edge)] for edge in edges))
         if any(len(faces) > 2 for faces in found.values()):
             raise ImportRefused("more than two elements share a face", self.path, "take away elements that are there twice")
         return {key: faces[0] for key, faces in found.items() if len(faces) == 1}
@@ -127,7 +139,7 @@ class Import:
         new = {node: number for number, node in enumerate(used)}
         tags = {name: tag for tag, name in enumerate([*self.faces, *self.volumes], 1)}
         blocks = collections.defaultdict(lambda: ([], []))  # shape -> nodes of elements, tags
-        elements = [("triangle" if len(corners) == 3 else "quad", corners, name) for name, faces in self.faces.items() for corners in faces]
+        elements = [(FACES[len(nodes)], nodes, name) for name, faces in self.faces.items() for nodes in faces]
         for shape, nodes, name in elements + [(*self.mesh.elements[number], self.volume_of[number]) for number in order]:
             blocks[shape][0].append([new[node] for node in nodes])
             blocks[shape][1].append(tags[name])
@@ -137,6 +149,10 @@ class Import:
         with_meshio(lambda meshio: meshio.write(path, meshio.Mesh(
             scale * self.mesh.points[used], cells, cell_data={"gmsh:physical": physical, "gmsh:geometrical": physical}, field_data=fields),
             file_format="gmsh22", binary=False), path)
+
+    def is_on_disc(self, name):
+        nodes = {node for number, volume in self.volume_of.items() if is_of_disc(volume) for node in self.mesh.elements[number][1]}
+        return nodes.issuperset(self.faces[name][0])
 
     def report(self):
         lines = []
@@ -164,17 +180,33 @@ class Import:
         return found
 
 
-def parameter_file(mesh_file, materials):
-    def section(name, lines):
-        return f"subsection {name}\n" + "".join(f"  set {key} = {value}\n" for key, value in lines) + "end\n"
+def parameter_file(mesh_file, result, materials, contact, mounts):
+    """A study of the brake; what was not given and is not known by its name is a comment to fill in."""
+    def section(name, *lines):
+        return f"subsection {name}\n" + "".join(f"  {line}\n" for line in lines) + "end\n"
 
-    text = section("Geometry", [("File", mesh_file.name)])
-    names = ("Young modulus", "Poisson ratio", "Density")
-    if "disc" in materials:
-        text += section("Disc material", zip(names, (f"{value:.10g}" for value in materials["disc"])))
-    if pins := {name: values for name, values in materials.items() if name != "disc"}:
-        single = (f"{pin}: " + ", ".join(f"{x:.10g}" for x in values) for pin, values in pins.items())
-        text += section("Pin material", [("Single pins", "; ".join(single))])
+    def names(is_wanted):
+        return ", ".join(filter(is_wanted, result.surfaces)) or "(none)"
+
+    text = section("Geometry", f"set File = {mesh_file.name}")
+    if contact:
+        text += section("Contact", "set Pairs = " + "; ".join(contact))
+    elif not {"disc_contact", "pin_contact"} <= result.surfaces.keys():
+        text += section("Contact", f"# Surfaces of the disc: {names(result.is_on_disc)}; of other bodies: {names(lambda name: not result.is_on_disc(name))}",
+                        "# set Pairs = surface of the disc / surface of another body: friction factor; ...")
+    disc = next(filter(is_of_disc, result.volumes))
+    if disc in materials:
+        text += section("Disc material", *(f"set {name} = {value:.10g}" for name, value in
+                                           zip(("Young modulus", "Poisson ratio", "Density"), materials[disc])))
+    if others := {name: values for name, values in materials.items() if not is_of_disc(name) or values != materials.get(disc)}:
+        text += section("Materials", "set Volumes = " + "; ".join(f"{name}: " + ", ".join(f"{x:.10g}" for x in values) for name, values in others.items()))
+    if mounts:
+        text += section("Mounts", "set Elastic mounts = " + "; ".join(mounts))
+    elif "disc_bore" not in result.surfaces:
+        text += section("Mounts", f"# Surfaces: {names(lambda name: True)}; stiffness in N/m^3",
+                        "# set Elastic mounts = surface: radial, tangential, axial; ...")
+    if result.is_quadratic:
+        text += section("Discretization", "set Element = quadratic")
     return text
 
 
@@ -198,12 +230,13 @@ def names_file(path):
 
 
 def names_of(arguments):
-    """Volumes, surfaces and unit of the command line and of --names."""
+    """Volumes, surfaces, contact, mounts and unit of the command line and of --names."""
     given = names_file(arguments.names) if arguments.names else {}
-    if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces"} and
-            all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces"))):
-        raise ImportRefused("the names are not those of unit, volumes and surfaces", arguments.names,
-                            "write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}}")
+    if not (isinstance(given, dict) and given.keys() <= {"unit", "volumes", "surfaces", "contact", "mounts"} and
+            all(isinstance(given.get(key, {}), dict) for key in ("volumes", "surfaces")) and
+            all(isinstance(given.get(key, []), list) and all(isinstance(entry, str) for entry in given.get(key, [])) for key in ("contact", "mounts"))):
+        raise ImportRefused("the names are not those of unit, volumes, surfaces, contact and mounts", arguments.names,
+                            'write {unit: mm, volumes: {disc: [ROTOR]}, surfaces: {}, contact: [disc_top / pad_face], mounts: ["pad_back: 0, 0, 1e10"]}')
     result = []
     for key, words, is_known in (("volumes", arguments.volume, is_volume), ("surfaces", arguments.surface, is_surface)):
         pairs = [(str(name), members if isinstance(members, list) else [members]) for name, members in given.get(key, {}).items()]
@@ -213,12 +246,21 @@ def names_of(arguments):
             name = name.lower() if is_known(name) else name
             if not (re.fullmatch(r"[\w.-]+", name) and members and all(isinstance(m, (str, int)) and str(m).strip() for m in members)):
                 raise ImportRefused(f"`{name}` is not given as NAME=SET", arguments.names or "command line", "write, e.g., --volume disc=ROTOR")
-            if key == "volumes" and not is_volume(name) or name in names:
-                raise ImportRefused(f"`{name}` is given twice" if name in names else f"`{name}` is no volume of squeal",
-                                    arguments.names or "command line", "give each once; volumes are disc and pin_...")
+            if name in names:
+                raise ImportRefused(f"`{name}` is given twice", arguments.names or "command line", "give each once")
             names[name] = [str(member).strip() for member in members]
         result.append(names)
-    return *result, arguments.unit or given.get("unit")
+    return *result, given.get("contact", []) + arguments.contact, given.get("mounts", []) + arguments.mount, arguments.unit or given.get("unit")
+
+
+def check_entries(entries, parse, surfaces, what, path):
+    """Refuses entries of Contact/Pairs or Mounts/Elastic mounts that have other names than those of the surfaces."""
+    for entry in entries:
+        match = re.fullmatch(parse, entry)
+        unknown = [name for name in match.groups() if name not in surfaces] if match else [""]
+        if unknown:
+            raise ImportRefused(f"`{entry}` names no surface" + (f", there is no `{unknown[0]}`" if match else f" in the form `{what}`"), path,
+                                f"write, e.g., `{what}` with some of: {', '.join(surfaces) or '(none)'}")
 
 
 def run(arguments):
@@ -243,22 +285,24 @@ def run(arguments):
     output = pathlib.Path(arguments.output)
     if output.suffix != ".msh" or not output.parent.is_dir() or output.is_dir() or output.exists() and output.samefile(path):
         raise ImportRefused("the mesh cannot be written to this file", output, "name another file that ends in .msh, in a folder that is there")
-    volumes, surfaces, unit = names_of(arguments)
+    volumes, surfaces, contact, mounts, unit = names_of(arguments)
     if unit not in tuple(UNITS):
         raise ImportRefused("no unit of length is given" if unit is None else f"`{unit}` is no unit of length", path,
                             f"say --unit {' or '.join(UNITS)}; the mesh is {size}, which suits {fitting}")
     result = Import(mesh, volumes, surfaces, path)
+    check_entries(contact, r"\s*([\w.-]+)\s*/\s*([\w.-]+)\s*(?::[^:;]+)?", result.surfaces, "disc_top / pad_face: 0.9", path)
+    check_entries(mounts, r"\s*([\w.-]+)\s*:(?:[^:;,]+,){2}[^:;,]+", result.surfaces, "pad_back: 0, 0, 1e10", path)
     materials, stub = result.materials(unit), output.with_suffix(".prm")
     with tempfile.TemporaryDirectory(dir=output.parent) as folder:
         written = pathlib.Path(folder) / output.name
         result.write(written, UNITS[unit])
-        written.with_suffix(".prm").write_text(parameter_file(output, materials), encoding="utf-8")
+        written.with_suffix(".prm").write_text(parameter_file(output, result, materials, contact, mounts), encoding="utf-8")
         os.replace(written, output)
-        if is_new := materials and not stub.exists():
+        if is_new := not stub.exists():
             os.replace(written.with_suffix(".prm"), stub)
     print(summary, result.report(), f"written: {output}", sep="\n")
-    if materials:
-        print(f"written: {stub}, with the materials of {', '.join(materials)}" if is_new else f"kept: {stub}; delete it to write the materials")
+    known = f", with the materials of {', '.join(materials)}" if materials else ""
+    print(f"written: {stub}{known}" if is_new else f"kept: {stub}; delete it to have it written anew")
 
 
 class Parser(argparse.ArgumentParser):
@@ -273,6 +317,8 @@ def main():
     parser.add_argument("--unit", help=f"unit of length of FILE: {', '.join(UNITS)}")
     parser.add_argument("--volume", action="append", default=[], metavar="NAME=SET[,SET]")
     parser.add_argument("--surface", action="append", default=[], metavar="NAME=SET[,SET]")
+    parser.add_argument("--contact", action="append", default=[], metavar="DISC_SURFACE / SURFACE[: FACTOR]")
+    parser.add_argument("--mount", action="append", default=[], metavar="SURFACE: RADIAL, TANGENTIAL, AXIAL", help="N/m^3")
     parser.add_argument("--names", metavar="FILE")
     try:
         run(parser.parse_args())

@@ -11,8 +11,8 @@ TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
 
 class VtuFile:
     """
-    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 9
-    is a quadrilateral, 12 a hexahedron. Coincident points of several pieces are repeated. The title, or None.
+    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 5
+    is a triangle, 9 a quadrilateral, 10 a tetrahedron, 12 a hexahedron, 13 a wedge, 14 a pyramid. Coincident points of several pieces are repeated. The title, or None.
     """
 
     def __init__(self, path):

@@ -13,7 +13,7 @@
 namespace Squeal::Testing
 {
   /// Slopes of the contact faces towards the rim, and some tilt about x so that no face is like another.
-  inline HexMesh sloped(const HexMesh &mesh, const double slope)
+  inline Mesh sloped(const Mesh &mesh, const double slope)
   {
     return mapped(mesh, [slope](const Point3 &p) {
       return Point3{{p[0], p[1], p[2] + slope * (std::hypot(p[0], p[1]) - 0.2) + 0.3 * slope * p[1]}};

@@ -211,6 +211,11 @@ namespace Squeal::Testing
     return {assemble(K, foundation * h * h), assemble(M, 0.)};
   }
 
+  inline double largest_entry(const MultiVector &X)
+  {
+    return max_norm(replicate(X));
+  }
+
   /// Largest relative distance of columns of @p X from those of @p Y.
   inline double relative_difference(const MultiVector &X, const MultiVector &Y)
   {

@@ -109,7 +109,7 @@ namespace Squeal::Testing
   // ------------------------------------------------------------------ meshes
 
   /// The mesh with all points moved.
-  inline HexMesh mapped(HexMesh mesh, const std::function<Point3(const Point3 &)> &map)
+  inline Mesh mapped(Mesh mesh, const std::function<Point3(const Point3 &)> &map)
   {
     for (auto &point : mesh.points)
       {
@@ -120,7 +120,7 @@ namespace Squeal::Testing
   }
 
   /// A disc about z = 0 with faces of radius 0.2 m as a ring: pins above press on it from outside, those below from inside.
-  inline HexMesh turned_to_rims(const HexMesh &disc)
+  inline Mesh turned_to_rims(const Mesh &disc)
   {
     return mapped(disc, [](const Point3 &p) {
       const double r = std::hypot(p[0], p[1]), factor = (0.25 + p[2]) / r;
@@ -129,16 +129,16 @@ namespace Squeal::Testing
   }
 
   /// The mirror image about the plane y = 0.
-  inline HexMesh mirrored(HexMesh mesh)
+  inline Mesh mirrored(Mesh mesh)
   {
     for (auto &point : mesh.points)
       point[1] = -point[1];
-    for (auto &hexahedron : mesh.hexahedra)
+    for (auto &hexahedron : mesh.cells)
       {
         std::swap(hexahedron.nodes[1], hexahedron.nodes[3]);
         std::swap(hexahedron.nodes[5], hexahedron.nodes[7]);
       }
-    for (auto &quadrilateral : mesh.quadrilaterals)
+    for (auto &quadrilateral : mesh.faces)
       std::swap(quadrilateral.nodes[1], quadrilateral.nodes[3]);
     return mesh;
   }
@@ -153,11 +153,11 @@ namespace Squeal::Testing
   }
 
   /// Volume of the trilinear hexahedra of one component, by Gauss' rule of two points, which is exact.
-  inline double volume(const HexMesh &mesh, const unsigned int component)
+  inline double volume(const Mesh &mesh, const unsigned int component)
   {
     constexpr int corner[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     double        sum          = 0.;
-    for (const auto &hexahedron : mesh.hexahedra)
+    for (const auto &hexahedron : mesh.cells)
       if (hexahedron.volume == component)
         for (int q = 0; q < 8; ++q)
           {
@@ -196,7 +196,7 @@ namespace Squeal::Testing
   /// A mesh with all that is computed from it before any modes.
   struct Scene
   {
-    Scene(const HexMesh             &mesh,
+    Scene(const Mesh                &mesh,
           const MaterialParameters  &materials,
           const OperationParameters &operation,
           const Element              element      = Element::trilinear,
@@ -204,7 +204,7 @@ namespace Squeal::Testing
       : mesh(mesh)
       , operation(operation)
       , model(mesh, element, communicator)
-      , interface(pair_contact_nodes(model, operation.rotation, 1e-6))
+      , interface(contact_nodes(model, ContactParameters().pairs, operation.rotation, 1e-6).interface)
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))
       , damping{radial_dissipation(interface, equal_load_shares(model, interface, operation), operation), {}}
@@ -212,7 +212,7 @@ namespace Squeal::Testing
       , coupled(couple(system, contact, damping))
     {}
 
-    HexMesh                             mesh;
+    Mesh                                mesh;
     OperationParameters                 operation;
     Model                               model;
     ContactInterface                    interface;

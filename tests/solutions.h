@@ -34,7 +34,7 @@ namespace Squeal::Testing
                                                        {Plan::Side::top, 3, 2, 0, 1},
                                                        {Plan::Side::bottom, 0, 2, 1, 1}};
 
-  inline HexMesh mesh_of(const std::vector<PolarPin> &pins)
+  inline Mesh mesh_of(const std::vector<PolarPin> &pins)
   {
     return extrude(polar_plan(0.1505, 0.3155, 3, 18, pins), layers(1, 2));
   }

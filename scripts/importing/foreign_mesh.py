@@ -10,6 +10,9 @@ from importing.mesh_shapes import ImportRefused, faces_of
 from importing.nastran_input import NastranInput
 
 READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput)}
+# meshio leaves these in Gmsh's order; their middle nodes of faces are left out, squeal adds them
+GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11)),
+              "pyramid14": ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12))}
 
 
 class ForeignMesh:
@@ -68,7 +71,11 @@ def from_meshio(path):
     names = {(int(value[1]), int(value[0])): [name] for name, value in source.field_data.items() if np.size(value) == 2}
     for index, block in enumerate(source.cells):
         first = len(mesh.elements)
-        mesh.elements += [(block.type, [int(node) for node in nodes] if faces_of(block.type) else []) for nodes in block.data]
+        shape, data = block.type, block.data
+        if shape in GMSH_ORDER:
+            shape, order = GMSH_ORDER[shape]
+            data = data[:, order if path.suffix == ".msh" else range(len(order))]
+        mesh.elements += [(shape, [int(node) for node in nodes] if faces_of(shape) else []) for nodes in data]
         members = {name: sets[index] for name, sets in source.cell_sets.items() if not name.startswith("gmsh:") and sets[index] is not None}
         for key, values in source.cell_data.items():
             values = np.asarray(values[index])

@@ -1,5 +1,6 @@
 #include <squeal/base/groups.h>
 #include <squeal/bases/component_modes.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
 #include <algorithm>
@@ -12,21 +13,40 @@ namespace Squeal
   {
     /// Smallest participation of component modes after which a mode is named [-].
     constexpr double smallest_participation = 0.1;
+
+    /// Of the row at a place of this process.
+    double entry(const SparseMatrix &A, const int place, const int column)
+    {
+      SparseMatrix::Row row;
+      A.get_row(place, row);
+      const auto found = std::find_if(row.begin(), row.end(), [column](const auto &other) { return other.first == column; });
+      return found == row.end() ? 0. : found->second;
+    }
   } // namespace
 
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass)
   {
-    // Row sums of the x displacements: M e_x
-    MultiVector e_x(model.free_map(), 1);
+    // Of the x displacements: M e_x, and the diagonal
+    MultiVector     e_x(model.free_map(), 1);
+    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(e_x.n_local_rows());
     for (const Node &node : model.nodes())
       if (const int i = e_x.map().place(node.dofs[0]); i >= 0)
-        e_x(i, 0) = 1.;
-    const MultiVector   row_sums = mass * e_x;
+        {
+          e_x(i, 0)   = 1.;
+          diagonal[i] = entry(mass, i, node.dofs[0]);
+        }
+    Eigen::VectorXd lumped  = (mass * e_x).col(0);
+    double          sums[3] = {0., lumped.sum(), diagonal.sum()};
+    for (int i = 0; i < lumped.size(); ++i)
+      sums[0] += diagonal[i] > 0. && !(lumped[i] > 0.);
+    sum_over_processes(model.communicator(), sums, 3);
+    if (sums[0] > 0.)
+      lumped = sums[1] / sums[2] * diagonal;
     std::vector<double> masses;
     for (const Node &node : model.nodes())
       {
-        const int i = row_sums.map().place(node.dofs[0]);
-        masses.push_back(i >= 0 ? row_sums(i, 0) : 0.);
+        const int i = e_x.map().place(node.dofs[0]);
+        masses.push_back(i >= 0 ? lumped[i] : 0.);
       }
     return masses;
   }

@@ -13,11 +13,11 @@ namespace Squeal
 {
   namespace
   {
-    std::string text_of(const ModeLabel &label, const char *minus, const char *plus)
+    std::string text_of(const ModeLabel &label, const std::string &blank, const char *minus, const char *plus)
     {
       std::string text = to_string(label.family);
-      if (label.is_of_pins())
-        text += std::to_string(label.rank);
+      if (label.rank > 0)
+        text += label.body + blank + std::to_string(label.rank);
       else if (label.family != ModeFamily::unnamed && label.family != ModeFamily::rigid_body)
         text += std::to_string(label.nodal_circles) + "-" + std::to_string(label.nodal_diameters);
       return text + (label.sign == DoubletSign::none ? "" : label.sign == DoubletSign::minus ? minus : plus);
@@ -291,6 +291,22 @@ namespace Squeal
           energies(2, m) += translation.coefficients(axially).squaredNorm();
         }
     }
+
+    bool is_pin(const Model &model, const std::size_t body)
+    {
+      return model.component_names()[body].rfind(PhysicalNames::pin_prefix, 0) == 0;
+    }
+
+    /// Σ m |u|² over the nodes of each body, bodies × modes.
+    DenseMatrix body_energies(const Model &model, const std::vector<double> &nodal_masses, const MultiVector &modes)
+    {
+      DenseMatrix result = DenseMatrix::Zero(model.component_names().size(), modes.n_columns());
+      for (std::size_t i = 0; i < nodal_masses.size(); ++i)
+        for (const int dof : model.nodes()[i].dofs)
+          if (const int row = modes.map().place(dof); row >= 0)
+            result.row(model.nodes()[i].component) += nodal_masses[i] * modes.local().row(row).cwiseAbs2();
+      return summed(model.communicator(), result);
+    }
   } // namespace
 
   bool operator==(const ModeLabel &a, const ModeLabel &b)
@@ -300,12 +316,12 @@ namespace Squeal
 
   std::string to_string(const ModeLabel &label)
   {
-    return text_of(label, " -", " +");
+    return text_of(label, label.body.empty() ? "" : " ", " -", " +");
   }
 
   std::string file_text(const ModeLabel &label)
   {
-    return text_of(label, "_minus", "_plus");
+    return text_of(label, label.body.empty() ? "" : "_", "_minus", "_plus");
   }
 
   std::string shape_text(ModeLabel label)
@@ -374,8 +390,12 @@ namespace Squeal
                                     const std::vector<double> &nodal_masses,
                                     const MultiVector         &modes)
   {
-    const auto  axes     = pin_axes(interface);
-    DenseMatrix energies = DenseMatrix::Zero(3, modes.n_columns());
+    auto axes = pin_axes(interface);
+    for (auto axis = axes.begin(); axis != axes.end();)
+      axis = is_pin(model, axis->first) ? std::next(axis) : axes.erase(axis);
+    const DenseMatrix           of_bodies = body_energies(model, nodal_masses, modes);
+    std::map<Eigen::Index, int> n_of_body;
+    DenseMatrix                 energies = DenseMatrix::Zero(3, modes.n_columns());
     for (const auto &[pin, axis] : axes)
       add_energies(Nodes(model, nodal_masses, pin), axis, modes, energies);
 
@@ -387,7 +407,13 @@ namespace Squeal
     const std::array<int, 3>            per_order = {{2 * n_pins, n_pins, n_pins}};
     for (int m = 0; m < modes.n_columns(); ++m)
       {
-        Eigen::Index f;
+        Eigen::Index f, body;
+        of_bodies.col(m).maxCoeff(&body);
+        if (!is_pin(model, body))
+          {
+            labels.push_back({ModeFamily::body, 0, 0, ++n_of_body[body], DoubletSign::none, 0., model.component_names()[body]});
+            continue;
+          }
         energies.col(m).maxCoeff(&f);
         labels.push_back({families[f], 0, 0, count[f]++ / per_order[f] + 1});
       }

@@ -1,17 +1,20 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/contact/contact_interface.h>
+#include <squeal/contact/mortar.h>
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_values.h>
+
+#include <boost/serialization/vector.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <optional>
+#include <set>
 
 namespace Squeal
 {
@@ -25,67 +28,95 @@ namespace Squeal
     /// Nodes closer to the axis, compared with the outermost one, have no sliding direction but that of rounding errors [-].
     constexpr double smallest_axis_distance = 1e-8;
 
-    /// A node of a contact surface with the area-weighted normal of the faces that meet there.
-    struct SurfaceNode
+    /// A face with its nodes, to be sent.
+    struct SentFace
     {
-      Node            node;
-      Eigen::Vector3d area_normal = Eigen::Vector3d::Zero();
-      double          area        = 0.;
-
-      Eigen::Vector3d position() const
-      {
-        return Eigen::Vector3d::Map(node.position.data());
-      }
+      Shape             shape;
+      std::int64_t      number;
+      std::vector<Node> nodes;
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
       {
-        archive &node &area_normal[0] & area_normal[1] & area_normal[2] & area;
+        archive &shape &number &nodes;
       }
     };
 
-    /// Those that this process owns; it has all their faces.
-    std::vector<SurfaceNode> own_surface_nodes(const Model &model, const char *surface)
+    /// A contact surface as every process has it: nodes in the order of their numbers, each with the area and the area-weighted normal of the
+    /// faces that meet there.
+    struct ContactSurface
     {
-      const auto     &ids = model.surface_ids(surface);
-      const auto     &fe  = model.dof_handler().get_fe();
-      FEFaceValues<3> values(model.mapping(), fe, QGauss<2>(model.degree() + 1), update_values | update_normal_vectors | update_JxW_values);
-      std::vector<types::global_dof_index> dofs(fe.n_dofs_per_cell());
-      std::map<unsigned int, SurfaceNode>  nodes;
-      for (const auto &cell : model.dof_handler().active_cell_iterators())
-        for (const unsigned int f : cell->face_indices())
-          if (!cell->is_artificial() && cell->at_boundary(f) && ids.count(cell->face(f)->boundary_id()) > 0)
-            {
-              values.reinit(cell, f);
-              cell->get_dof_indices(dofs);
-              for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
-                if (fe.system_to_component_index(i).first == 0 && fe.has_support_on_face(i, f))
-                  {
-                    const unsigned int number = model.node_of_dof(dofs[i]);
-                    SurfaceNode       &entry  = nodes[number];
-                    entry.node                = model.nodes()[number];
-                    for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-                      {
-                        entry.area += values.shape_value(i, q) * values.JxW(q);
-                        entry.area_normal += values.JxW(q) * Eigen::Vector3d::Map(values.normal_vector(q).begin_raw());
-                      }
-                  }
-            }
-      std::vector<SurfaceNode> result;
-      for (const auto &[number, entry] : nodes)
-        if (entry.node.is_own)
-          result.push_back(entry);
-      return result;
+      std::vector<Node>            nodes;
+      SurfacePatch                 patch;
+      std::vector<double>          areas;
+      std::vector<Eigen::Vector3d> area_normals;
+
+      Eigen::Vector3d position(const std::size_t i) const
+      {
+        return Eigen::Vector3d::Map(nodes[i].position.data());
+      }
+    };
+
+    std::vector<SentFace> all_faces_of(const Model &model, const std::string &surface)
+    {
+      std::vector<SentFace> own, all;
+      for (const Face *face : model.faces_of(surface))
+        if (face->is_own)
+          {
+            own.push_back({face->shape, face->number, {}});
+            for (const unsigned int node : face->nodes)
+              own.back().nodes.push_back(model.nodes()[node]);
+          }
+      for (const std::vector<SentFace> &part : Utilities::MPI::all_gather(model.communicator(), own))
+        all.insert(all.end(), part.begin(), part.end());
+      std::sort(all.begin(), all.end(), [](const SentFace &a, const SentFace &b) { return a.number < b.number; });
+      return all;
     }
 
-    /// Nodes of a named surface on every process, in the order of their numbers.
-    std::vector<SurfaceNode> surface_nodes(const Model &model, const char *surface)
+    void add_areas(ContactSurface &surface, const SurfaceElement &element, const unsigned int degree)
     {
-      std::vector<SurfaceNode> result;
-      for (const std::vector<SurfaceNode> &part : Utilities::MPI::all_gather(model.communicator(), own_surface_nodes(model, surface)))
-        result.insert(result.end(), part.begin(), part.end());
-      std::sort(result.begin(), result.end(), [](const SurfaceNode &a, const SurfaceNode &b) { return a.node.number < b.node.number; });
-      return result;
+      const ShapeFunctions &functions = ShapeFunctions::of(element.shape, degree);
+      for (const QuadraturePoint &point : quadrature(element.shape, degree))
+        {
+          Eigen::Vector3d along[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+          for (unsigned int i = 0; i < functions.n(); ++i)
+            for (unsigned int d = 0; d < 2; ++d)
+              along[d] += functions.gradient(i, point.x)[d] * surface.position(element.nodes[i]);
+          const Eigen::Vector3d normal = point.weight * along[0].cross(along[1]);
+          for (unsigned int i = 0; i < functions.n(); ++i)
+            {
+              surface.areas[element.nodes[i]] += functions.value(i, point.x) * normal.norm();
+              surface.area_normals[element.nodes[i]] += normal;
+            }
+        }
+    }
+
+    ContactSurface contact_surface(const Model &model, const std::string &name)
+    {
+      const std::vector<SentFace>    faces = all_faces_of(model, name);
+      std::map<std::int64_t, Node>   sorted;
+      std::map<std::int64_t, size_t> places;
+      for (const SentFace &face : faces)
+        for (const Node &node : face.nodes)
+          sorted.emplace(node.number, node);
+      ContactSurface surface;
+      for (const auto &[number, node] : sorted)
+        {
+          places[number] = surface.nodes.size();
+          surface.nodes.push_back(node);
+          surface.patch.points.emplace_back(node.position[0], node.position[1], node.position[2]);
+        }
+      surface.areas.assign(surface.nodes.size(), 0.);
+      surface.area_normals.assign(surface.nodes.size(), Eigen::Vector3d::Zero());
+      for (const SentFace &face : faces)
+        {
+          SurfaceElement element{face.shape, {}};
+          for (const Node &node : face.nodes)
+            element.nodes.push_back(places.at(node.number));
+          surface.patch.elements.push_back(element);
+          add_areas(surface, element, model.degree());
+        }
+      return surface;
     }
 
     std::string place(const Eigen::Vector3d &p)
@@ -114,82 +145,175 @@ namespace Squeal
       node.sliding = (1. / sliding.norm()) * sliding;
       node.radial  = node.normal.cross(node.sliding);
     }
+
+    void refuse_clamped(const ContactNode &node)
+    {
+      for (const WeightedNodes *side : {&node.on_disc, &node.on_pin})
+        for (const auto &[partner, weight] : *side)
+          if (partner.dofs[0] < 0)
+            throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(node.position),
+                            "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
+    }
+
+    /// For every node of the pins the one of the disc within the tolerance; nothing where a node of either has no partner of its own.
+    std::optional<std::vector<std::size_t>> partners(const ContactSurface &disc, const ContactSurface &pins, const double tolerance)
+    {
+      if (disc.nodes.size() != pins.nodes.size())
+        return {};
+      // Sorted by x: a partner is looked for among the neighbours only
+      std::vector<std::pair<double, std::size_t>> sorted;
+      for (std::size_t d = 0; d < disc.nodes.size(); ++d)
+        sorted.emplace_back(disc.position(d)[0], d);
+      std::sort(sorted.begin(), sorted.end());
+      std::vector<std::size_t> result;
+      std::vector<bool>        is_taken(disc.nodes.size());
+      for (std::size_t p = 0; p < pins.nodes.size(); ++p)
+        {
+          const Eigen::Vector3d x  = pins.position(p);
+          auto                  it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(x[0] - tolerance, std::size_t(0)));
+          while (it != sorted.end() && it->first <= x[0] + tolerance && (disc.position(it->second) - x).norm() > tolerance)
+            ++it;
+          if (it == sorted.end() || it->first > x[0] + tolerance || is_taken[it->second])
+            return {};
+          is_taken[it->second] = true;
+          result.push_back(it->second);
+        }
+      return result;
+    }
+
+    WeightedNodes weighted(const ContactSurface &surface, const std::vector<std::pair<unsigned int, double>> &weights)
+    {
+      WeightedNodes result;
+      for (const auto &[node, weight] : weights)
+        result.push_back({surface.nodes[node], weight});
+      return result;
+    }
+
+    /// Contact nodes of both kinds, without their frames' t and b; n is not yet of unit length.
+    ContactInterface pairs(const ContactSurface &disc, const ContactSurface &pins, const std::vector<std::size_t> &of_disc)
+    {
+      ContactInterface result(pins.nodes.size());
+      for (std::size_t p = 0; p < pins.nodes.size(); ++p)
+        {
+          ContactNode &node  = result[p];
+          node.pin_node      = pins.nodes[p];
+          node.on_disc       = {{disc.nodes[of_disc[p]], 1.}};
+          node.on_pin        = {{node.pin_node, 1.}};
+          node.forces_of_pin = node.on_pin;
+          node.position      = disc.position(of_disc[p]);
+          node.normal        = disc.area_normals[of_disc[p]];
+          node.area          = pins.areas[p];
+        }
+      return result;
+    }
+
+    /// Gaps between surfaces that count as contact, beside the mean size of the pins' faces [-].
+    constexpr double largest_gap = 0.5;
+
+    /// Gaps beside the mean size of the pins' faces that a note mentions: more than chords of a curved face leave [-].
+    constexpr double small_gap = 0.05;
+
+    /// How many times as large as those of the disc faces of the pins may be before their pressure oscillates [-].
+    constexpr double most_coarseness = 3.;
+
+    /// Part of the contact face of a body that must at least lie on the disc [-].
+    constexpr double least_of_body = 0.2;
+
+    void check_overlap(const Model &model, const ContactSurface &pins, const ContactInterface &found)
+    {
+      std::vector<double> whole(model.component_names().size(), 0.), covered = whole;
+      for (std::size_t node = 0; node < pins.nodes.size(); ++node)
+        whole[pins.nodes[node].component] += pins.areas[node];
+      for (const ContactNode &node : found)
+        covered[node.pin_node.component] += node.area;
+      for (std::size_t body = 0; body < whole.size(); ++body)
+        if (covered[body] < least_of_body * whole[body])
+          throw MeshError(
+            text("only ", std::round(100. * covered[body] / whole[body]), " % of the contact face of ", model.component_names()[body],
+                 " lies on the surface that it rubs"),
+            "contact of " + model.component_names()[body],
+            text("let at least ", 100. * least_of_body, " % of it lie on that surface, with gaps well below the size of its elements"));
+    }
+
+    FoundContact mortar_nodes(const Model &model, const ContactSurface &disc, const ContactSurface &pins)
+    {
+      const double area     = std::accumulate(pins.areas.begin(), pins.areas.end(), 0.);
+      const double size     = std::sqrt(area / pins.patch.elements.size());
+      const Mortar coupling = mortar(pins.patch, disc.patch, largest_gap * size);
+      FoundContact result;
+      for (const MortarRow &row : coupling.rows)
+        {
+          ContactNode node;
+          node.pin_node      = pins.nodes[row.node];
+          node.on_disc       = weighted(disc, row.master);
+          node.on_pin        = weighted(pins, row.slave);
+          node.forces_of_pin = weighted(pins, row.left_inverse);
+          node.position      = pins.position(row.node);
+          node.normal        = -pins.area_normals[row.node];
+          node.area          = row.area;
+          result.interface.push_back(node);
+        }
+      check_overlap(model, pins, result.interface);
+      result.notes.push_back(text("faces do not match node by node: coupled by mortar elements over ",
+                                  std::round(1000. * coupling.overlap_area / coupling.slave_area) / 10., " % of ", coupling.slave_area,
+                                  " m^2"));
+      if (coupling.largest_gap > small_gap * size)
+        result.notes.push_back(
+          text("gaps or penetrations of up to ", coupling.largest_gap, " m: the faces are coupled as if they touched"));
+      if (coupling.coarseness > most_coarseness)
+        result.notes.push_back(text("faces are up to ", coupling.coarseness,
+                                    " times as large as those of the disc: the pressure is resolved by the coarser side only"));
+      return result;
+    }
+
+    FoundContact nodes_of_pair(const Model &model, const ContactPair &pair, const Rotation rotation, const double tolerance)
+    {
+      const ContactSurface disc = contact_surface(model, pair.disc), pins = contact_surface(model, pair.pin);
+      const auto           of_disc   = partners(disc, pins, tolerance);
+      double               outermost = 0.;
+      FoundContact         result;
+      try
+        {
+          result = of_disc ? FoundContact{pairs(disc, pins, *of_disc), {}} : mortar_nodes(model, disc, pins);
+        }
+      catch (const MeshError &error)
+        {
+          throw MeshError(error.reason, "surfaces " + pair.disc + " and " + pair.pin, error.change);
+        }
+      for (const ContactNode &node : result.interface)
+        outermost = std::max(outermost, node.axis_distance());
+      for (ContactNode &node : result.interface)
+        {
+          node.pin       = node.pin_node.component;
+          node.friction  = pair.friction_factor;
+          node.stiffness = pair.normal_stiffness;
+          refuse_clamped(node);
+          set_frame(node, node.normal, outermost, rotation);
+        }
+      for (std::string &note : result.notes)
+        note = pair.disc + " / " + pair.pin + ": " + note;
+      return result;
+    }
   } // namespace
 
-  ContactInterface pair_contact_nodes(const Model &model, const Rotation rotation, const double tolerance)
+  FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const Rotation rotation, const double tolerance)
   {
-    const auto disc_nodes = surface_nodes(model, PhysicalNames::disc_contact);
-    const auto pin_nodes  = surface_nodes(model, PhysicalNames::pin_contact);
-
-    // Disc nodes sorted by x: a partner is looked for among the neighbours only
-    std::vector<std::pair<double, unsigned int>> sorted;
-    double                                       outermost = 0.;
-    for (unsigned int d = 0; d < disc_nodes.size(); ++d)
+    FoundContact           result;
+    std::set<std::int64_t> known;
+    for (const ContactPair &pair : pairs)
       {
-        const Eigen::Vector3d p = disc_nodes[d].position();
-        sorted.emplace_back(p[0], d);
-        outermost = std::max(outermost, std::hypot(p[0], p[1]));
+        FoundContact found = nodes_of_pair(model, pair, rotation, tolerance);
+        for (ContactNode &node : found.interface)
+          node.pair = static_cast<unsigned int>(&pair - pairs.data());
+        for (const ContactNode &node : found.interface)
+          if (!known.insert(node.pin_node.number).second)
+            throw MeshError("a node of " + pair.pin + " is in contact twice",
+                            "parameter Contact/Pairs, contact node at " + place(node.position),
+                            "let every face of a body rub one surface of the disc; give parts of a surface one name");
+        result.interface.insert(result.interface.end(), found.interface.begin(), found.interface.end());
+        result.notes.insert(result.notes.end(), found.notes.begin(), found.notes.end());
       }
-    std::sort(sorted.begin(), sorted.end());
-
-    // Partners
-    ContactInterface            interface;
-    std::map<unsigned int, int> partners;
-    unsigned int                n_single = 0;
-    std::string                 example; // of a node without one
-    for (const SurfaceNode &pin_node : pin_nodes)
-      {
-        const Eigen::Vector3d p       = pin_node.position();
-        unsigned int          nearest = 0;
-        double                gap     = std::numeric_limits<double>::infinity();
-        // Far partners are sought in a wider window so that the message can name the distance.
-        const double window = std::max(tolerance, 1e-2);
-        for (auto it = std::lower_bound(sorted.begin(), sorted.end(), std::make_pair(p[0] - window, 0u));
-             it != sorted.end() && it->first <= p[0] + window; ++it)
-          if (const double distance = (disc_nodes[it->second].position() - p).norm(); distance < gap)
-            {
-              gap     = distance;
-              nearest = it->second;
-            }
-        if (gap > tolerance)
-          {
-            if (n_single++ == 0)
-              example = place(p) + (std::isinf(gap) ? " no node of the disc is within 10 mm" :
-                                                      text(" the nearest node of the disc is ", gap, " m away"));
-            continue;
-          }
-        if (partners[nearest]++ > 0)
-          throw MeshError("a node of the disc touches two pin nodes", "contact node at " + place(p),
-                          "separate the pins, so that no two of them share a point of the disc");
-
-        ContactNode node;
-        node.disc_node = disc_nodes[nearest].node;
-        node.pin_node  = pin_node.node;
-        node.pin       = pin_node.node.component;
-        node.position  = disc_nodes[nearest].position();
-        node.area      = pin_node.area;
-        set_frame(node, disc_nodes[nearest].area_normal, outermost, rotation);
-        for (const Node *partner : {&node.disc_node, &node.pin_node})
-          for (const int dof : partner->dofs)
-            if (dof < 0)
-              throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(p),
-                              "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
-        interface.push_back(node);
-      }
-
-    // Nothing may be left over on either side
-    const auto refuse = [](const std::string &what, const char *where) {
-      throw MeshError(what, where, "mesh both contact faces from the same plan, or raise Geometry/Pairing tolerance");
-    };
-    if (n_single > 0)
-      refuse(text(n_single, " of ", pin_nodes.size(), " nodes of pin_contact have no partner on disc_contact; e.g. at ", example),
-             "pairing of contact nodes");
-    if (interface.size() != disc_nodes.size())
-      refuse(text(disc_nodes.size() - interface.size(), " of ", disc_nodes.size(), " nodes of disc_contact have no partner on pin_contact"),
-             "pairing of contact nodes");
-    if (interface.empty())
-      refuse("disc and pins share no contact node", "surfaces disc_contact and pin_contact");
-    return interface;
+    return result;
   }
 
   std::vector<double> radial_dissipation(const ContactInterface    &interface,
@@ -199,17 +323,22 @@ namespace Squeal
     std::vector<double> c_b(interface.size(), 0.);
     if (operation.radial_dissipation == RadialDissipation::none)
       return c_b;
-    const double factor = operation.radial_dissipation == RadialDissipation::consistent ? operation.friction_coefficient : 1.;
     for (unsigned int c = 0; c < interface.size(); ++c)
-      c_b[c] = factor * std::abs(reactions[c]) / (operation.rotation_speed * interface[c].axis_distance());
+      {
+        const bool   is_consistent = operation.radial_dissipation == RadialDissipation::consistent;
+        const double factor        = is_consistent ? operation.friction_coefficient * interface[c].friction : 1.;
+        c_b[c]                     = factor * std::abs(reactions[c]) / (operation.rotation_speed * interface[c].axis_distance());
+      }
     return c_b;
   }
 
-  std::vector<double> sliding_dissipation(const std::vector<double> &reactions, const OperationParameters &operation)
+  std::vector<double> sliding_dissipation(const ContactInterface    &interface,
+                                          const std::vector<double> &reactions,
+                                          const OperationParameters &operation)
   {
     std::vector<double> c_t;
-    for (const double reaction : reactions)
-      c_t.push_back(std::abs(reaction) * operation.friction_slope);
+    for (std::size_t c = 0; c < interface.size(); ++c)
+      c_t.push_back(std::abs(reactions[c]) * operation.friction_slope / interface[c].friction);
     return c_t;
   }
 } // namespace Squeal

@@ -1,6 +1,9 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/linear_algebra/communication.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -19,21 +22,44 @@ namespace Squeal
       return k;
     }
 
-    /// Eliminates one dof of @p node from n·u = s: its other directions, and those of @p partner (s = n·u_partner) where there is one.
-    void eliminate(SlaveRows &rows, const ContactNode &contact, const Node &node, const Node *partner)
+    /// Eliminates one dof of a node of @p own from n·(Σ w u of @p own − Σ w u of @p partners) = 0: what is left are the other dofs of both.
+    void eliminate(SlaveRows &rows, const ContactNode &contact, const Node &node, const WeightedNodes &own, const WeightedNodes &partners)
     {
-      const unsigned int k     = eliminated_direction(contact);
-      const auto        &slave = node.dofs;
-      auto              &row   = rows[slave[k]];
-      for (unsigned int j = 0; j < 3; ++j)
+      const unsigned int k    = eliminated_direction(contact);
+      const auto         self = std::find_if(own.begin(), own.end(), [&](const WeightedNode &w) { return w.node.number == node.number; });
+      auto              &row  = rows[node.dofs[k]];
+      for (const auto &[nodes, sign] : {std::make_pair(&own, -1.), std::make_pair(&partners, 1.)})
+        for (const auto &[other, weight] : *nodes)
+          for (unsigned int j = 0; j < 3; ++j)
+            if (const double ratio = contact.normal[j] / contact.normal[k]; ratio != 0. && other.dofs[j] != node.dofs[k])
+              row.emplace_back(other.dofs[j], sign * weight / self->weight * ratio);
+    }
+
+    /// Replaces masters that are slaves of other rows by their masters, as between nodes on edges and at corners of quadratic faces.
+    void resolve(SlaveRows &rows)
+    {
+      constexpr int most_passes = 20;
+      bool          is_done     = false;
+      for (int pass = 0; !is_done; ++pass)
         {
-          const double ratio = contact.normal[j] / contact.normal[k];
-          if (ratio == 0.)
-            continue;
-          if (j != k)
-            row.emplace_back(slave[j], -ratio);
-          if (partner != nullptr)
-            row.emplace_back(partner->dofs[j], ratio);
+          if (pass == most_passes)
+            throw MeshError("contact nodes depend on each other in a circle", "surfaces disc_contact and pin_contact",
+                            "let the contact faces overlap by whole elements");
+          is_done = true;
+          for (auto &[slave, row] : rows)
+            {
+              SlaveRows::mapped_type resolved;
+              for (const auto &[master, coefficient] : row)
+                if (const auto known = rows.find(master); known == rows.end())
+                  resolved.emplace_back(master, coefficient);
+                else
+                  for (const auto &[its_master, share] : known->second)
+                    {
+                      resolved.emplace_back(its_master, coefficient * share);
+                      is_done = false;
+                    }
+              row = std::move(resolved);
+            }
         }
     }
 
@@ -80,34 +106,90 @@ namespace Squeal
       });
     }
 
-    /// Rows v_c·(u_D − u_P) for the vector v of each contact node that @p direction picks.
-    std::shared_ptr<SparseMatrix> relative_displacement(const Model            &model,
-                                                        const ContactInterface &interface,
-                                                        const Eigen::Vector3d ContactNode::*const direction)
+    /// A row for each contact node: @p fill(node, row).
+    template <typename Fill>
+    std::shared_ptr<SparseMatrix> contact_rows(const Model &model, const ContactInterface &interface, const Fill &fill)
     {
       const RowMap rows = RowMap::even(interface.size(), model.communicator());
-      return std::make_shared<SparseMatrix>(rows, model.free_map(), [&](const int i, SparseMatrix::Row &row) {
-        const ContactNode &node = interface[rows.number(i)];
-        for (unsigned int k = 0; k < 3; ++k)
-          if (const double value = (node.*direction)[k]; value != 0.)
-            {
-              row.emplace_back(node.disc_node.dofs[k], value);
-              row.emplace_back(node.pin_node.dofs[k], -value);
-            }
+      return std::make_shared<SparseMatrix>(rows, model.free_map(),
+                                            [&](const int i, SparseMatrix::Row &row) { fill(interface[rows.number(i)], row); });
+    }
+
+    /// v·Σ weight u of nodes, times a factor.
+    void add_along(const Eigen::Vector3d &v, const WeightedNodes &nodes, const double factor, SparseMatrix::Row &row)
+    {
+      for (unsigned int k = 0; k < 3; ++k)
+        if (v[k] != 0.)
+          for (const auto &[node, weight] : nodes)
+            row.emplace_back(node.dofs[k], factor * weight * v[k]);
+    }
+
+    /// Rows v_c·(u_D − u_P) for the vector v of each contact node that @p direction(node) returns.
+    template <typename Direction>
+    std::shared_ptr<SparseMatrix> relative_displacement(const Model &model, const ContactInterface &interface, const Direction &direction)
+    {
+      return contact_rows(model, interface, [direction](const ContactNode &node, SparseMatrix::Row &row) {
+        const Eigen::Vector3d v = direction(node);
+        add_along(v, node.on_disc, 1., row);
+        add_along(v, node.on_pin, -1., row);
       });
     }
+
+    std::shared_ptr<const SparseMatrix> reaction(const Model &model, const ContactInterface &interface)
+    {
+      const bool all_pairs = std::all_of(interface.begin(), interface.end(), [](const ContactNode &node) { return node.is_pair(); });
+      return contact_rows(model, interface, [all_pairs](const ContactNode &node, SparseMatrix::Row &row) {
+        if (!node.is_rigid())
+          return;
+        if (all_pairs)
+          add_along(node.normal, node.on_disc, 0.5, row);
+        add_along(node.normal, node.forces_of_pin, all_pairs ? -0.5 : -1., row);
+      });
+    }
+
+    std::vector<ContactSpring> springs(const Model &model, const ContactInterface &interface, const SparseMatrix &normal)
+    {
+      std::map<unsigned int, double> stiffnesses;
+      for (const ContactNode &node : interface)
+        if (!node.is_rigid())
+          stiffnesses[node.pair] = node.stiffness;
+      std::vector<ContactSpring> result;
+      for (const auto &[pair, stiffness] : stiffnesses)
+        {
+          const auto negative = contact_rows(model, interface, [number = pair](const ContactNode &node, SparseMatrix::Row &row) {
+            if (node.pair == number)
+              {
+                add_along(node.normal, node.on_disc, -node.area, row);
+                add_along(node.normal, node.on_pin, node.area, row);
+              }
+          });
+          result.push_back({contact_stiffness_parameter(pair), stiffness,
+                            linear_combination({{-1., multiply(normal, *negative, true, false).get()}}), negative});
+        }
+      return result;
+    }
   } // namespace
+
+  std::string contact_stiffness_parameter(const unsigned int pair)
+  {
+    return text("normal stiffness of contact pair ", pair + 1);
+  }
 
   ContactOperators contact_operators(const Model &model, const ContactInterface &interface)
   {
     SlaveRows slaves;
     for (const ContactNode &contact : interface)
-      eliminate(slaves, contact, contact.pin_node, &contact.disc_node);
-    const auto normal = relative_displacement(model, interface, &ContactNode::normal);
-    return {normal, relative_displacement(model, interface, &ContactNode::sliding),
-            relative_displacement(model, interface, &ContactNode::radial),
+      if (contact.is_rigid())
+        eliminate(slaves, contact, contact.pin_node, contact.on_pin, contact.on_disc);
+    resolve(slaves);
+    const auto along  = [&](const auto &direction) { return relative_displacement(model, interface, direction); };
+    const auto normal = along([](const ContactNode &node) { return node.normal; });
+    return {normal,
+            along([](const ContactNode &node) -> Eigen::Vector3d { return node.friction * node.sliding; }),
+            along([](const ContactNode &node) { return node.radial; }),
             kernel_matrix(model.free_map(), std::vector<bool>(model.free_map().n_local(), true), slaves),
-            linear_combination({{0.5, normal.get()}})};
+            reaction(model, interface),
+            springs(model, interface, *normal)};
   }
 
   bool belongs_to(const Node &node, const Component component)
@@ -130,9 +212,13 @@ namespace Squeal
     SlaveRows slaves;
     if (boundary == ContactBoundary::sliding)
       for (const ContactNode &contact : interface)
-        for (const Node *node : {&contact.disc_node, &contact.pin_node})
-          if (belongs_to(*node, component))
-            eliminate(slaves, contact, *node, nullptr);
+        if (component == Component::pins)
+          eliminate(slaves, contact, contact.pin_node, contact.on_pin, {});
+        else
+          for (const WeightedNode &on_disc : contact.on_disc)
+            if (slaves.count(on_disc.node.dofs[eliminated_direction(contact)]) == 0)
+              eliminate(slaves, contact, on_disc.node, {on_disc}, {});
+    resolve(slaves);
     return kernel_matrix(model.free_map(), kept, slaves);
   }
 

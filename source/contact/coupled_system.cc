@@ -108,7 +108,14 @@ namespace Squeal
         coupled.push_back({body, multiply(*multiply(*contact.reaction, *body.matrix), T_c)});
         coupled.back().term.matrix = congruence(*body.matrix, T_c);
       }
-    CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping, values);
+    ParameterValues all_values = values;
+    for (const ContactSpring &spring : contact.springs)
+      {
+        coupled.push_back(
+          {sparse_term(spring.name, 0, {1., {{spring.name, 1}}}, congruence(*spring.matrix, T_c)), multiply(*spring.reaction, T_c)});
+        all_values[spring.name] = {spring.stiffness};
+      }
+    CoupledSystem result = coupled_system(coupled, multiply(*contact.tangential, T_c), multiply(*contact.radial, T_c), damping, all_values);
     result.kernel        = contact.kernel;
     return result;
   }

@@ -103,9 +103,12 @@ namespace Squeal
   {
     const std::vector<Travel> directions = travels(model, interface);
     const std::vector<int>    plates     = backplate_numbers(directions, false);
-    std::map<int, double>     forces; // along the travel, of unit reactions
+    // Nodes of mortar elements have areas of any size
+    const bool are_pairs = std::all_of(interface.begin(), interface.end(), [](const ContactNode &node) { return node.is_pair(); });
+    const auto unit      = [are_pairs](const ContactNode &node) { return are_pairs ? 1. : node.area; };
+    std::map<int, double> forces; // along the travel, of unit reactions
     for (const ContactNode &node : interface)
-      forces[plates[node.pin]] += directions[node.pin].force(node, operation.friction_coefficient);
+      forces[plates[node.pin]] += unit(node) * directions[node.pin].force(node, operation.friction_coefficient);
     std::vector<double> reactions;
     for (const ContactNode &node : interface)
       {
@@ -116,7 +119,7 @@ namespace Squeal
                  ": equal reactions of the contact nodes cannot balance it"),
             "parameter Operation/Friction coefficient, volume " + model.component_names()[node.pin],
             "lower the friction coefficient, or set Operation/Radial dissipation = none and Operation/Friction slope = 0");
-        reactions.push_back(operation.load_per_side / force);
+        reactions.push_back(operation.load_per_side / force * unit(node));
       }
     return reactions;
   }

@@ -1,14 +1,11 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/estimates/common_points.h>
-#include <squeal/model/model.h>
+#include <squeal/model/element_values.h>
 
 #include <boost/algorithm/string/join.hpp>
 #include <boost/serialization/utility.hpp>
-#include <deal.II/base/geometry_info.h>
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_values.h>
 #include <deal.II/numerics/rtree.h>
 
 #include <algorithm>
@@ -26,18 +23,18 @@ namespace Squeal
 
   namespace
   {
-    /// A point in the reference cell of a cell.
+    /// A point in a cell.
     struct PointInCell
     {
-      DoFHandler<3>::active_cell_iterator cell;
-      Point<3>                            reference; ///< in [0, 1]³
-      double                              distance;  ///< zero inside; infinite where no cell of this process is near [m]
+      const Cell *cell;
+      Point<3>    reference; ///< coordinates in the cell
+      double      distance;  ///< zero inside; infinite where this process has no cell of the body [m]
     };
 
     /// Where a point is looked for.
     enum class PointSearch
     {
-      inside, ///< in cells whose box by their vertices holds it
+      inside, ///< in cells whose box by their nodes holds it
       nearest ///< in the nearest cells, and beside them
     };
 
@@ -53,49 +50,61 @@ namespace Squeal
       unsigned int body(const std::string &name) const;
 
       /// The cell of a body that holds a point; with PointSearch::nearest, of a point beside the body, as between two outlines by polygons,
-      /// the nearest point among those of the nearest cells with their reference coordinates cut to [0, 1].
+      /// the nearest point among those of the nearest cells with reference coordinates cut to the cell.
       PointInCell find(unsigned int body, const Point<3> &point, PointSearch search) const;
 
     private:
-      using Cell = DoFHandler<3>::active_cell_iterator;
-      using Leaf = std::pair<BoundingBox<3>, unsigned int>;
+      using Leaf = std::pair<BoundingBox<3>, const Cell *>;
 
       const Model             &model;
-      std::vector<Cell>        cells;
       std::vector<RTree<Leaf>> trees; ///< of each body
     };
 
-    /// Cells that are tried: a point is in the box of about three, in irregular corners of a plan of ten.
-    constexpr unsigned int n_candidates = 16;
+    /// Cells beside a point that are tried, after all those whose boxes hold it.
+    constexpr unsigned int n_beside = 16;
 
-    /// How far reference coordinates of a point inside may be beyond [0, 1] by rounding.
+    /// How far reference coordinates of a point inside may be beyond the cell by rounding.
     constexpr double beyond_by_rounding = 1e-10;
 
-    /// Reference coordinates of a point, also of one outside; nothing where the iteration for them fails.
-    std::optional<Point<3>> reference_coordinates(const Mapping<3>                          &mapping,
-                                                  const DoFHandler<3>::active_cell_iterator &cell,
-                                                  const Point<3>                            &point)
+    /// A point of the reference cell near a given one, which it is if that is inside.
+    Point<3> cut_to(const Shape shape, Point<3> x)
     {
-      try
+      if (shape == Shape::pyramid)
         {
-          return mapping.transform_real_to_unit_cell(cell, point);
+          x[2] = std::clamp(x[2], 0., 1.);
+          for (unsigned int d = 0; d < 2; ++d)
+            x[d] = std::clamp(x[d], x[2] - 1., 1. - x[2]);
+          return x;
         }
-      catch (const Mapping<3>::ExcTransformationFailed &)
+      const unsigned int n_of_simplex = shape == Shape::tetrahedron ? 3 : shape == Shape::wedge ? 2 : 0;
+      double             sum          = 0.;
+      for (unsigned int d = 0; d < 3; ++d)
+        x[d] = std::clamp(x[d], 0., 1.);
+      for (unsigned int d = 0; d < n_of_simplex; ++d)
+        sum += x[d];
+      for (unsigned int d = 0; d < n_of_simplex; ++d)
+        x[d] /= std::max(1., sum);
+      return x;
+    }
+
+    std::vector<Point<3>> places_of_nodes(const Model &model, const Cell &cell)
+    {
+      std::vector<Point<3>> result;
+      for (const unsigned int node : cell.nodes)
         {
-          return {};
+          const auto &x = model.nodes()[node].position;
+          result.emplace_back(x[0], x[1], x[2]);
         }
+      return result;
     }
 
     PointLocation::PointLocation(const Model &model)
       : model(model)
     {
       std::vector<std::vector<Leaf>> leaves(model.component_names().size());
-      for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            leaves[cell->material_id()].emplace_back(model.mapping().get_bounding_box(cell), cells.size());
-            cells.push_back(cell);
-          }
+      for (const Cell &cell : model.cells())
+        if (cell.is_own)
+          leaves[cell.component].emplace_back(BoundingBox<3>(places_of_nodes(model, cell)), &cell);
       for (const auto &of_body : leaves)
         trees.push_back(pack_rtree(of_body));
     }
@@ -112,23 +121,31 @@ namespace Squeal
 
     PointInCell PointLocation::find(const unsigned int body, const Point<3> &point, const PointSearch search) const
     {
-      PointInCell nearest{{}, {}, std::numeric_limits<double>::infinity()};
-      const auto  query = boost::geometry::index::nearest(point, n_candidates);
+      PointInCell  nearest{{}, {}, std::numeric_limits<double>::infinity()};
+      const auto   query     = boost::geometry::index::nearest(point, std::max<std::size_t>(1, trees[body].size()));
+      const auto   is_nearer = [&](const Point<3> &x, const Point<3> &y) { return x.distance(point) < y.distance(point); };
+      unsigned int beside    = 0;
       for (auto leaf = trees[body].qbegin(query); leaf != trees[body].qend(); ++leaf)
         {
           // Boxes that hold the point come first
-          if (search == PointSearch::inside && !leaf->first.point_inside(point))
+          if (!leaf->first.point_inside(point) && (search == PointSearch::inside || ++beside > n_beside))
             break;
-          const Cell &cell      = cells[leaf->second];
-          const auto  reference = reference_coordinates(model.mapping(), cell, point);
-          if (!reference)
+          const Cell &cell      = *leaf->second;
+          const auto  nodes     = places_of_nodes(model, cell);
+          const auto  reference = reference_coordinates(cell.shape, model.degree(), nodes, point);
+          Point<3>    inside    = reference ? cut_to(cell.shape, *reference) : Point<3>();
+          if (reference && inside.distance(*reference) < beyond_by_rounding)
+            return {&cell, inside, 0.};
+          if (search == PointSearch::inside)
             continue;
-          const Point<3> inside = GeometryInfo<3>::project_to_unit_cell(*reference);
-          if (inside.distance(*reference) < beyond_by_rounding)
-            return {cell, inside, 0.};
-          const double from_cell = model.mapping().transform_unit_to_real_cell(cell, inside).distance(point);
-          if (search == PointSearch::nearest && from_cell < nearest.distance)
-            nearest = {cell, inside, from_cell};
+          if (!reference) // the cell is far away: its nearest node
+            inside = reference_nodes(cell.shape, model.degree())[std::min_element(nodes.begin(), nodes.end(), is_nearer) - nodes.begin()];
+          const auto &functions = ShapeFunctions::of(cell.shape, model.degree());
+          Point<3>    place;
+          for (unsigned int i = 0; i < nodes.size(); ++i)
+            place += functions.value(i, inside) * nodes[i];
+          if (const double distance = place.distance(point); distance < nearest.distance)
+            nearest = {&cell, inside, distance};
         }
       return nearest;
     }
@@ -142,7 +159,7 @@ namespace Squeal
     /// Points in a cell.
     struct CellPoints
     {
-      types::coarse_cell_id cell;
+      std::int64_t          cell;
       unsigned int          body;
       std::vector<Point<3>> points;
       std::vector<double>   masses;
@@ -189,27 +206,25 @@ namespace Squeal
     return static_cast<int>(sum);
   }
 
-  CommonPoints common_points(const Model &model, const MaterialParameters &materials, const unsigned int points_per_direction)
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials, const unsigned int degree)
   {
-    CommonPoints        result;
-    std::vector<double> densities;
+    CommonPoints result;
     for (const std::string &name : model.component_names())
-      {
-        result.bodies.push_back({name, {}, {}});
-        densities.push_back(materials.of(name).density);
-      }
-    FEValues<3>             values(model.mapping(), model.dof_handler().get_fe(), QGauss<3>(points_per_direction),
-                                   update_quadrature_points | update_JxW_values);
+      result.bodies.push_back({name, {}, {}});
+    std::vector<double> densities;
+    for (const std::string &name : model.volume_names())
+      densities.push_back(materials.of(name).density);
+    ElementValues           values(model, degree);
     std::vector<CellPoints> here;
-    for (const auto &cell : model.dof_handler().active_cell_iterators())
-      if (cell->is_locally_owned())
+    for (const Cell &cell : model.cells())
+      if (cell.is_own)
         {
           values.reinit(cell);
-          CellPoints of_cell{cell->id().get_coarse_cell_id(), cell->material_id(), {}, {}};
-          for (const unsigned int q : values.quadrature_point_indices())
+          CellPoints of_cell{cell.number, cell.component, {}, {}};
+          for (unsigned int q = 0; q < values.n_points(); ++q)
             {
-              of_cell.points.push_back(values.quadrature_point(q));
-              of_cell.masses.push_back(densities[cell->material_id()] * values.JxW(q));
+              of_cell.points.push_back(values.point(q));
+              of_cell.masses.push_back(densities[cell.volume] * values.JxW(q));
             }
           here.push_back(of_cell);
         }
@@ -273,13 +288,8 @@ namespace Squeal
       Utilities::MPI::min(distances, communicator, nearest);
       std::vector<int> process;
       for (i = 0; i < nearest.size(); ++i)
-        {
-          if (nearest[i] == std::numeric_limits<double>::infinity())
-            throw MeshError("no cell is near a point of another mesh", "displacements at the points of another mesh",
-                            "compare meshes of the same geometry");
-          process.push_back(distances[i] == nearest[i] ? static_cast<int>(Utilities::MPI::this_mpi_process(communicator)) :
-                                                         std::numeric_limits<int>::max());
-        }
+        process.push_back(distances[i] == nearest[i] ? static_cast<int>(Utilities::MPI::this_mpi_process(communicator)) :
+                                                       std::numeric_limits<int>::max());
       Utilities::MPI::min(process, communicator, process);
       return {std::move(found), std::move(process)};
     }
@@ -292,12 +302,10 @@ namespace Squeal
     for (const CommonPoints::Body &body : points.bodies)
       numbers.push_back(location.body(body.name));
 
-    const auto                          &fe           = model.dof_handler().get_fe();
-    const MPI_Comm                       communicator = model.communicator();
-    const std::vector<Row>               rows         = all_rows(points);
-    const RowMap                         map          = RowMap::even(rows.size(), communicator);
-    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell());
-    const auto [found, processes] = located(points, numbers, location, communicator);
+    const MPI_Comm         communicator = model.communicator();
+    const std::vector<Row> rows         = all_rows(points);
+    const RowMap           map          = RowMap::even(rows.size(), communicator);
+    const auto [found, processes]       = located(points, numbers, location, communicator);
 
     // Rows whose points are in cells of this process
     std::map<unsigned int, std::vector<RowEntries>> sent;
@@ -310,12 +318,11 @@ namespace Squeal
           const PointInCell        &place = found[number / 3];
           const Tensor<1, 3> factors = std::sqrt(body.masses[row.point]) * unit_vector(body.points[row.point], row.direction, directions);
           RowEntries         result{static_cast<int>(number), {}};
-          place.cell->get_dof_indices(cell_dofs);
-          for (unsigned int component = 0; component < 3; ++component)
-            if (factors[component] != 0.)
-              for (unsigned int i = 0; i < fe.base_element(0).n_dofs_per_cell(); ++i)
-                if (const int dof = model.free_dof(cell_dofs[fe.component_to_system_index(component, i)]); dof >= 0)
-                  result.entries.emplace_back(dof, factors[component] * fe.base_element(0).shape_value(i, place.reference));
+          const auto        &functions = ShapeFunctions::of(place.cell->shape, model.degree());
+          for (unsigned int i = 0; i < functions.n(); ++i)
+            for (unsigned int component = 0; component < 3; ++component)
+              if (const int dof = model.nodes()[place.cell->nodes[i]].dofs[component]; dof >= 0 && factors[component] != 0.)
+                result.entries.emplace_back(dof, factors[component] * functions.value(i, place.reference));
           sent[map.owner(number)].push_back(result);
         }
     std::vector<SparseMatrix::Row> own(map.n_local());

@@ -50,7 +50,7 @@ namespace Squeal
             const double                    z_upper,
             const std::vector<double>      &ends,
             const unsigned int              volume,
-            HexMesh                        &mesh)
+            Mesh                           &mesh)
         : nodes(ends.size(), std::vector<unsigned int>(plan.points.size()))
         , mesh(mesh)
       {
@@ -73,7 +73,8 @@ namespace Squeal
           for (const auto &[a, b, c, d] : faces)
             {
               const auto &below = nodes[layer], &above = nodes[layer + 1];
-              mesh.hexahedra.push_back({{{below[a], below[b], below[c], below[d], above[a], above[b], above[c], above[d]}}, volume});
+              mesh.cells.push_back(
+                {Shape::hexahedron, {below[a], below[b], below[c], below[d], above[a], above[b], above[c], above[d]}, volume});
             }
       }
 
@@ -81,25 +82,26 @@ namespace Squeal
       {
         const auto &end = is_upper ? nodes.back() : nodes.front();
         for (const auto &[a, b, c, d] : faces)
-          mesh.quadrilaterals.push_back({{{end[a], end[b], end[c], end[d]}}, surface});
+          mesh.faces.push_back({Shape::quadrilateral, {end[a], end[b], end[c], end[d]}, surface});
       }
 
       void name_side(const std::vector<Plan::Edge> &edges, const unsigned int surface)
       {
         for (unsigned int layer = 0; layer + 1 < nodes.size(); ++layer)
           for (const auto &[a, b] : edges)
-            mesh.quadrilaterals.push_back({{{nodes[layer][a], nodes[layer][b], nodes[layer + 1][b], nodes[layer + 1][a]}}, surface});
+            mesh.faces.push_back(
+              {Shape::quadrilateral, {nodes[layer][a], nodes[layer][b], nodes[layer + 1][b], nodes[layer + 1][a]}, surface});
       }
 
     private:
       std::vector<std::vector<unsigned int>> nodes; ///< by layer and node of the plan
-      HexMesh                               &mesh;
+      Mesh                                  &mesh;
     };
   } // namespace
 
-  HexMesh extrude(const Plan &plan, const GeometryParameters &parameters)
+  Mesh extrude(const Plan &plan, const GeometryParameters &parameters)
   {
-    HexMesh mesh;
+    Mesh mesh;
     mesh.surface_names = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp, PhysicalNames::pin_side};
     for (const Plan::Curve &curve : plan.curves)
       mesh.surface_names.push_back(curve.name);
@@ -132,6 +134,7 @@ namespace Squeal
         pin.name_end(is_top, faces, pin_clamp);
         pin.name_side(boundary_edges(faces), pin_side);
       }
+    find_bodies(mesh);
     return mesh;
   }
 } // namespace Squeal

@@ -12,6 +12,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include <boost/algorithm/string/join.hpp>
 #include <boost/serialization/utility.hpp>
 
 #include <algorithm>
@@ -21,6 +22,7 @@
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -159,7 +161,7 @@ namespace Squeal
         throw MeshError(mesh.n_unnamed_volume_elements == 0 ?
                           "The geometry has neither physical volumes nor physical surfaces" :
                           text("The mesh has ", mesh.n_unnamed_volume_elements, " volume elements, but no physical group"),
-                        where, "name the volumes of a solid 'disc', 'pin_...', or the surface of a plan 'disc'" + other_formats);
+                        where, "name the volumes of a solid 'disc', 'pin_1', ..., or the surface of a plan 'disc'" + other_formats);
       constexpr const char *kinds[] = {"point", "curve", "surface", "volume"};
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.name.empty() && (mesh.dimension() == 2 || group.dimension >= 2))
@@ -167,14 +169,77 @@ namespace Squeal
                           "give it one: Physical Volume(\"disc\") = {...} in a .geo, a line of $PhysicalNames in a .msh" + other_formats);
     }
 
-    HexMesh mesh_once(const GeometryParameters       &parameters,
-                      const std::string              &where,
-                      const std::vector<std::string> &additional_surfaces,
-                      MPI_Comm                        communicator)
+    /// Refuses names of surfaces that the mesh does not have, before any surface of the mesh counts as unused.
+    void check_named(const GmshMesh                 &gmsh,
+                     const std::vector<std::string> &mounted,
+                     const ContactParameters        &contact,
+                     const std::string              &where)
+    {
+      std::vector<std::string> present;
+      for (const GmshMesh::Group &group : gmsh.groups)
+        if (group.dimension == 2)
+          present.push_back(group.name);
+      const auto require = [&](const std::string &name, const char *parameter) {
+        if (std::find(present.begin(), present.end(), name) == present.end())
+          throw MeshError("There is no physical surface '" + name + "', which " + parameter +
+                            " names; the surfaces are: " + (present.empty() ? "(none)" : boost::algorithm::join(present, ", ")),
+                          where, text("give the surface this name, or correct the name in ", parameter));
+      };
+      for (const ContactPair &pair : contact.pairs)
+        {
+          require(pair.disc, "Contact/Pairs");
+          require(pair.pin, "Contact/Pairs");
+        }
+      for (const std::string &name : mounted)
+        require(name, "Mounts/Elastic mounts or Mounts/Dashpots");
+    }
+
+    /// Puts the faces of surfaces that rub on disc_contact and pin_contact as well.
+    void name_contact(Mesh &mesh, const ContactParameters &contact, const std::string &where)
+    {
+      const std::vector<unsigned int> bodies = body_of_nodes(mesh);
+      const auto                      number = [&mesh](const std::string &name) {
+        return std::find(mesh.surface_names.begin(), mesh.surface_names.end(), name) - mesh.surface_names.begin();
+      };
+      const auto add = [&](const std::string &surface, const std::string &contact_name) {
+        const std::size_t given = number(surface), n_faces = mesh.faces.size();
+        for (const Mesh::Face &face : mesh.faces)
+          if (const unsigned int body = bodies[face.nodes[0]];
+              face.surface == given && (body == 0) != (contact_name == PhysicalNames::disc_contact))
+            throw MeshError("Surface '" + surface + "' has a face on '" + mesh.body_names[body] + "'", where + ", parameter Contact/Pairs",
+                            "write a surface of the disc first, then one of another body; perhaps they are exchanged");
+        if (surface == contact_name)
+          return;
+        const std::size_t named = number(contact_name);
+        if (named == mesh.surface_names.size())
+          mesh.surface_names.push_back(contact_name);
+        std::set<std::array<unsigned int, 4>> known; // in the mesh of an earlier run
+        for (const Mesh::Face &face : mesh.faces)
+          if (face.surface == named)
+            known.insert(face_key(face));
+        for (std::size_t face = 0; face < n_faces; ++face)
+          if (mesh.faces[face].surface == given && known.insert(face_key(mesh.faces[face])).second)
+            {
+              mesh.faces.push_back(mesh.faces[face]);
+              mesh.faces.back().surface = named;
+            }
+      };
+      for (const ContactPair &pair : contact.pairs)
+        {
+          add(pair.disc, PhysicalNames::disc_contact);
+          add(pair.pin, PhysicalNames::pin_contact);
+        }
+    }
+
+    Mesh mesh_once(const GeometryParameters       &parameters,
+                   const std::string              &where,
+                   const std::vector<std::string> &additional_surfaces,
+                   const ContactParameters        &contact,
+                   MPI_Comm                        communicator)
     {
       const GmshMesh gmsh = run_gmsh_once(parameters, where, communicator);
       check_groups(gmsh, where);
-      const auto with_note = [&gmsh](HexMesh mesh) {
+      const auto with_note = [&gmsh](Mesh mesh) {
         if (!gmsh.why_not_confined.empty())
           mesh.notes.push_back("this system cannot keep a geometry from running programs and writing files (" + gmsh.why_not_confined +
                                ")");
@@ -182,10 +247,17 @@ namespace Squeal
       };
       if (gmsh.dimension() == 3)
         {
-          HexMesh mesh = make_hex_mesh(gmsh, additional_surfaces, where);
+          check_named(gmsh, additional_surfaces, contact, where);
+          std::vector<std::string> surfaces = additional_surfaces;
+          for (const ContactPair &pair : contact.pairs)
+            surfaces.insert(surfaces.end(), {pair.disc, pair.pin});
+          Mesh mesh = make_mesh(gmsh, surfaces, where);
+          if (contact.pairs.size() > 1 || contact.pairs[0].disc != PhysicalNames::disc_contact ||
+              contact.pairs[0].pin != PhysicalNames::pin_contact)
+            name_contact(mesh, contact, where);
+          check_unique(mesh, where);
           if (const unsigned int n = make_right_handed(mesh); n > 0)
-            mesh.notes.push_back(
-              text(n, " of ", mesh.hexahedra.size(), " hexahedra are left-handed; their bottom and top nodes have been exchanged"));
+            mesh.notes.push_back(text(n, " of ", mesh.cells.size(), " cells are left-handed; their nodes have been reordered"));
           return with_note(std::move(mesh));
         }
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
@@ -201,7 +273,10 @@ namespace Squeal
     constexpr double smaller_next_time = 0.9;
   } // namespace
 
-  HexMesh generate_mesh(const GeometryParameters &given, const std::vector<std::string> &additional_surfaces, MPI_Comm communicator)
+  Mesh generate_mesh(const GeometryParameters       &given,
+                     const std::vector<std::string> &additional_surfaces,
+                     MPI_Comm                        communicator,
+                     const ContactParameters        &contact)
   {
     given.check();
     const std::string  where       = given.path();
@@ -210,17 +285,17 @@ namespace Squeal
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
       check_least_memory(expected_size(parameters), where, communicator);
-    HexMesh mesh = mesh_once(parameters, where, additional_surfaces, communicator);
+    Mesh mesh = mesh_once(parameters, where, additional_surfaces, contact, communicator);
     check_parts(mesh, additional_surfaces, where);
     check_bodies(mesh, additional_surfaces, where);
     for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian;
          ++attempt)
       {
         parameters.element_size *= smaller_next_time;
-        mesh = mesh_once(parameters, where, additional_surfaces, communicator);
+        mesh = mesh_once(parameters, where, additional_surfaces, contact, communicator);
       }
     if (exponent != 0)
-      for (HexMesh::Point &point : mesh.points)
+      for (Mesh::Point &point : mesh.points)
         point *= std::pow(10., exponent);
     check_mesh(mesh);
     if (!is_built_in) // conforming by construction

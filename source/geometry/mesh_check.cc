@@ -1,55 +1,76 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
+#include <squeal/geometry/cell_volume.h>
 #include <squeal/geometry/mesh_check.h>
+#include <squeal/parameters/materials.h>
 
 #include <boost/algorithm/string/join.hpp>
 #include <boost/pending/disjoint_sets.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace Squeal
 {
   namespace
   {
-    /// For each corner, the corners at the ends of its edges, as a right-handed triple.
-    constexpr unsigned int edges_at_corner[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7}, {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
+    /// For each corner, the corners at the ends of three of its edges, as a right-handed triple; at a pyramid's apex, none.
+    struct CornerEdges
+    {
+      double                                   unit; ///< triple product of the directions in a regular cell
+      std::vector<std::array<unsigned int, 3>> ends;
+    };
+
+    const CornerEdges &corner_edges(const Shape shape)
+    {
+      static const double      half = std::sqrt(0.5);
+      static const CornerEdges tetrahedron{half, {{{1, 2, 3}}, {{2, 0, 3}}, {{0, 1, 3}}, {{0, 2, 1}}}},
+        pyramid{half, {{{1, 3, 4}}, {{2, 0, 4}}, {{3, 1, 4}}, {{0, 2, 4}}}},
+        wedge{std::sqrt(0.75), {{{1, 2, 3}}, {{2, 0, 4}}, {{0, 1, 5}}, {{5, 4, 0}}, {{3, 5, 1}}, {{4, 3, 2}}}},
+        hexahedron{1., {{{1, 3, 4}}, {{2, 0, 5}}, {{3, 1, 6}}, {{0, 2, 7}}, {{7, 5, 0}}, {{4, 6, 1}}, {{5, 7, 2}}, {{6, 4, 3}}}};
+      return shape == Shape::tetrahedron ? tetrahedron : shape == Shape::pyramid ? pyramid : shape == Shape::wedge ? wedge : hexahedron;
+    }
 
     /// At each corner, the triple product of the three edges that meet there, each divided by its length; 0 where one has none.
-    std::array<double, 8> scaled_jacobians(const HexMesh &mesh, const std::array<unsigned int, 8> &nodes)
+    std::vector<double> scaled_jacobians(const Mesh &mesh, const Mesh::Cell &cell)
     {
-      std::array<double, 8> result;
-      for (unsigned int corner = 0; corner < 8; ++corner)
+      const CornerEdges  &corners = corner_edges(cell.shape);
+      std::vector<double> result;
+      for (unsigned int corner = 0; corner < corners.ends.size(); ++corner)
         {
           dealii::Tensor<2, 3> edges;
-          double               lengths = 1.;
+          double               lengths = corners.unit;
           for (unsigned int e = 0; e < 3; ++e)
             {
-              edges[e] = mesh.points[nodes[edges_at_corner[corner][e]]] - mesh.points[nodes[corner]];
+              edges[e] = mesh.corner(cell, corners.ends[corner][e]) - mesh.corner(cell, corner);
               lengths *= edges[e].norm();
             }
-          result[corner] = lengths > 0. ? determinant(edges) / lengths : 0.;
+          result.push_back(lengths > 0. ? determinant(edges) / lengths : 0.);
         }
       return result;
     }
 
-    /// Whether the nodes of two faces, the same, follow each other in the same sense.
-    bool turn_alike(const HexFace &a, const HexFace &b)
+    /// Whether the corners of two faces, the same, follow each other in the same sense.
+    bool turn_alike(const CellFace &a, const CellFace &b)
     {
-      const auto first = std::find(b.nodes.begin(), b.nodes.end(), a.nodes[0]) - b.nodes.begin();
-      return b.nodes[(first + 1) % 4] == a.nodes[1];
+      const auto first = std::find(b.corners.begin(), b.corners.end(), a.corners[0]) - b.corners.begin();
+      return b.corners[(first + 1) % b.n_corners] == a.corners[1];
     }
 
-    std::string describe(const HexMesh &mesh, const unsigned int element)
+    std::string at_point(const Mesh::Point &p)
     {
-      const HexMesh::Hexahedron &hexahedron = mesh.hexahedra[element];
-      HexMesh::Point             centre;
-      for (const unsigned int node : hexahedron.nodes)
-        centre += mesh.points[node] / 8.;
+      return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
+    }
+
+    std::string describe(const Mesh &mesh, const std::size_t element)
+    {
+      const Mesh::Cell &cell = mesh.cells[element];
       return text("element ", mesh.element_tags.empty() ? element : mesh.element_tags[element], " of volume '",
-                  mesh.volume_names[hexahedron.volume], "', near (", centre[0], ", ", centre[1], ", ", centre[2], ") m");
+                  mesh.volume_names[cell.volume], "', near ", at_point(centre(mesh, cell)));
     }
 
     std::string list(const std::vector<std::string> &names)
@@ -57,41 +78,41 @@ namespace Squeal
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
 
-    void check_connected(const HexMesh &mesh, const std::string &where)
+    void check_connected(const Mesh &mesh, const std::string &where)
     {
       boost::disjoint_sets_with_storage<> sets(mesh.points.size());
-      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-        for (const unsigned int node : hexahedron.nodes)
-          sets.union_set(node, hexahedron.nodes[0]);
-      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.volume_names.size()); // elements, by root
-      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-        ++pieces[hexahedron.volume][sets.find_set(hexahedron.nodes[0])];
-      for (std::size_t volume = 0; volume < pieces.size(); ++volume)
-        if (pieces[volume].size() > 1)
+      for (const Mesh::Cell &cell : mesh.cells)
+        for (const unsigned int node : cell.nodes)
+          sets.union_set(node, cell.nodes[0]);
+      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size()); // elements, by root
+      for (const Mesh::Cell &cell : mesh.cells)
+        ++pieces[mesh.body_of(cell)][sets.find_set(cell.nodes[0])];
+      for (std::size_t body = 0; body < pieces.size(); ++body)
+        if (pieces[body].size() > 1)
           {
             std::string sizes;
-            for (const auto &[root, size] : pieces[volume])
+            for (const auto &[root, size] : pieces[body])
               sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
-            throw MeshError("Volume '" + mesh.volume_names[volume] + "' is in " + std::to_string(pieces[volume].size()) +
+            throw MeshError("Body '" + mesh.body_names[body] + "' is in " + std::to_string(pieces[body].size()) +
                               " pieces that share no node, of " + sizes + " elements",
                             where, "join them (Coherence, BooleanUnion or common curves), or give every pin a physical volume of its own");
           }
     }
 
-    /// Nodes of a named surface, by the volume they belong to.
-    std::vector<std::set<unsigned int>> nodes_by_volume(const HexMesh                   &mesh,
-                                                        const std::vector<unsigned int> &volume_of_node,
-                                                        const std::string               &name)
+    /// Nodes of a named surface, by the body they belong to.
+    std::vector<std::set<unsigned int>> nodes_by_body(const Mesh                      &mesh,
+                                                      const std::vector<unsigned int> &body_of_node,
+                                                      const std::string               &name)
     {
-      std::vector<std::set<unsigned int>> result(mesh.volume_names.size());
-      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-        if (mesh.surface_names[quadrilateral.surface] == name)
-          for (const unsigned int node : quadrilateral.nodes)
-            result[volume_of_node[node]].insert(node);
+      std::vector<std::set<unsigned int>> result(mesh.body_names.size());
+      for (const Mesh::Face &face : mesh.faces)
+        if (mesh.surface_names[face.surface] == name)
+          for (const unsigned int node : face.nodes)
+            result[body_of_node[node]].insert(node);
       return result;
     }
 
-    double distance(const HexMesh &mesh, const std::set<unsigned int> &some, const std::set<unsigned int> &others)
+    double distance(const Mesh &mesh, const std::set<unsigned int> &some, const std::set<unsigned int> &others)
     {
       double nearest = std::numeric_limits<double>::infinity();
       for (const unsigned int a : some)
@@ -99,17 +120,109 @@ namespace Squeal
           nearest = std::min(nearest, mesh.points[a].distance(mesh.points[b]));
       return nearest;
     }
+    // ------------------------------------------------------- curved elements
+
+    /// Refuses nodes of edges so far off their middles that the edge turns back or bulges beyond a half circle.
+    void check_middles(const Mesh &mesh)
+    {
+      constexpr double           farthest = 0.5; // of the edge's length
+      std::set<unsigned int>     off;
+      std::optional<std::size_t> first;
+      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+        {
+          const Mesh::Cell &cell    = mesh.cells[element];
+          std::size_t       on_edge = topology(cell.shape).corners.size();
+          for (const auto &[a, b] : topology(cell.shape).edges)
+            {
+              const unsigned int node = cell.nodes[on_edge++];
+              const Mesh::Point &p = mesh.corner(cell, a), &q = mesh.corner(cell, b);
+              if (mesh.points[node].distance(p + (q - p) / 2.) <= farthest * p.distance(q))
+                continue;
+              off.insert(node);
+              first = first.value_or(element);
+            }
+        }
+      if (first)
+        throw MeshError(
+          text(off.size(), off.size() == 1 ? " second-order node lies" : " second-order nodes lie",
+               " off the middle of the edge by more than half of its length; one of them is at ", at_point(mesh.points[*off.begin()])),
+          describe(mesh, *first), "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
+    }
+
+    /// Refuses edges and quadrilaterals whose middle nodes are not those of their neighbours, or are corners elsewhere: they would move apart.
+    void check_shared_middles(const Mesh &mesh)
+    {
+      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order, of edges each twice
+      std::vector<bool>                                   is_corner(mesh.points.size(), false);
+      std::set<std::size_t>                               unmatched; // elements
+      for (const Mesh::Cell &cell : mesh.cells)
+        for (unsigned int v = 0; v < topology(cell.shape).corners.size(); ++v)
+          is_corner[cell.nodes[v]] = true;
+      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+        {
+          const Mesh::Cell &cell  = mesh.cells[element];
+          const auto        check = [&](std::array<unsigned int, 4> corners, const unsigned int middle) {
+            std::sort(corners.begin(), corners.end());
+            if (is_corner[middle] || middles.emplace(corners, middle).first->second != middle)
+              unmatched.insert(element);
+          };
+          std::size_t on_edge = topology(cell.shape).corners.size();
+          for (const auto &[a, b] : topology(cell.shape).edges)
+            check({{cell.nodes[a], cell.nodes[a], cell.nodes[b], cell.nodes[b]}}, cell.nodes[on_edge++]);
+          for (unsigned int f = 0; f < topology(cell.shape).faces.size(); ++f)
+            if (const auto &numbers = nodes_of_face(cell.shape, 2, f); numbers.size() == 9)
+              check({{cell.nodes[numbers[0]], cell.nodes[numbers[1]], cell.nodes[numbers[2]], cell.nodes[numbers[3]]}},
+                    cell.nodes[numbers[8]]);
+        }
+      if (!unmatched.empty())
+        throw MeshError(text(unmatched.size(), " of ", mesh.cells.size(),
+                             " elements share corners with neighbours, but not the second-order nodes between these"),
+                        describe(mesh, *unmatched.begin()),
+                        "merge the second-order nodes as well as the corners, and mesh neighbours with elements of one size");
+    }
+
+    void check_curved(const Mesh &mesh)
+    {
+      check_shared_middles(mesh);
+      check_middles(mesh);
+      std::vector<std::size_t> inverted;
+      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+        if (!(worst_determinant(mesh, mesh.cells[element]) > 0.))
+          inverted.push_back(element);
+      if (!inverted.empty())
+        throw MeshError(text(inverted.size(), " of ", mesh.cells.size(), inverted.size() == 1 ? " elements is" : " elements are",
+                             " folded by second-order nodes: the Jacobian determinant is negative or zero"),
+                        describe(mesh, inverted[0]),
+                        "use smaller elements where surfaces curve, or let Gmsh straighten them (Mesh.HighOrderOptimize = 1)");
+    }
+
+    /// The nodes of a cell's mirror image, one for each node: bottom and top exchanged, or two coordinates of the base.
+    std::vector<unsigned int> mirrored_nodes(const Shape shape, const unsigned int degree)
+    {
+      const auto                nodes = reference_nodes(shape, degree);
+      std::vector<unsigned int> result;
+      for (Mesh::Point x : nodes)
+        {
+          if (shape == Shape::wedge || shape == Shape::hexahedron)
+            x[2] = 1. - x[2];
+          else
+            std::swap(x[0], x[1]);
+          result.push_back(std::find_if(nodes.begin(), nodes.end(), [&](const Mesh::Point &y) { return x.distance(y) < 1e-6; }) -
+                           nodes.begin());
+        }
+      return result;
+    }
   } // namespace
 
-  MeshQuality mesh_quality(const HexMesh &mesh)
+  MeshQuality mesh_quality(const Mesh &mesh)
   {
-    if (mesh.hexahedra.empty())
+    if (mesh.cells.empty())
       throw MeshError("The mesh has no elements", "mesh", "check the geometry");
 
     MeshQuality quality{1., 0, 0};
-    for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
+    for (unsigned int element = 0; element < mesh.cells.size(); ++element)
       {
-        const auto   corners         = scaled_jacobians(mesh, mesh.hexahedra[element].nodes);
+        const auto   corners         = scaled_jacobians(mesh, mesh.cells[element]);
         const double scaled_jacobian = *std::min_element(corners.begin(), corners.end());
         quality.n_bad += !(scaled_jacobian >= smallest_scaled_jacobian);
         if (scaled_jacobian < quality.worst_scaled_jacobian)
@@ -122,45 +235,74 @@ namespace Squeal
     return quality;
   }
 
-  MeshQuality check_mesh(const HexMesh &mesh)
+  MeshQuality check_mesh(const Mesh &mesh)
   {
     const MeshQuality quality = mesh_quality(mesh);
     if (quality.n_bad > 0)
-      throw MeshError(text(quality.n_bad, " of ", mesh.hexahedra.size(), quality.n_bad == 1 ? " elements is" : " elements are",
+      throw MeshError(text(quality.n_bad, " of ", mesh.cells.size(), quality.n_bad == 1 ? " elements is" : " elements are",
                            " inverted or degenerate; the worst one has scaled Jacobian ", quality.worst_scaled_jacobian, ", at least ",
                            smallest_scaled_jacobian, " is needed"),
                       describe(mesh, quality.worst_element),
                       "change the element size or the number of nodes per pin face; keep pins away from "
-                      "edges and from each other, and in a mesh of your own correct these elements");
+                      "edges and from each other, and in a mesh of your own correct these elements, flat tetrahedra of Gmsh by "
+                      "Mesh.Algorithm3D = 10 or another size");
+    if (mesh.degree == 2)
+      check_curved(mesh);
     return quality;
   }
 
-  unsigned int make_right_handed(HexMesh &mesh)
+  void check_unique(const Mesh &mesh, const std::string &where)
   {
-    std::vector<unsigned int> reordered;
-    for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
+    std::map<Mesh::Nodes, std::size_t>                 known; // first element with these nodes
+    std::optional<std::pair<std::size_t, std::size_t>> twins;
+    for (std::size_t element = 0; element < mesh.cells.size(); ++element)
       {
-        auto      &nodes   = mesh.hexahedra[element].nodes;
-        const auto corners = scaled_jacobians(mesh, nodes);
-        if (std::all_of(corners.begin(), corners.end(), [](const double corner) { return corner < 0.; }))
-          {
-            std::rotate(nodes.begin(), nodes.begin() + 4, nodes.end());
-            reordered.push_back(element);
-          }
+        Mesh::Nodes nodes = mesh.cells[element].nodes;
+        std::sort(nodes.begin(), nodes.end());
+        if (const auto [first, is_new] = known.emplace(nodes, element); !is_new)
+          twins = twins.value_or(std::make_pair(first->second, element));
+      }
+    if (twins)
+      throw MeshError(text(mesh.cells.size() - known.size(), " of ", mesh.cells.size(),
+                           " elements have the same nodes as others, the first one is ", describe(mesh, twins->second), ", the other one ",
+                           describe(mesh, twins->first)),
+                      where, "remove elements that occur twice, for example those of a volume that was meshed or exported twice");
+
+    const std::vector<CellFace> faces = all_faces(mesh);
+    std::set<std::size_t>       elements;
+    for (std::size_t i = 0; i + 2 < faces.size(); ++i)
+      if (faces[i].key == faces[i + 2].key)
+        elements.insert({faces[i].cell, faces[i + 1].cell, faces[i + 2].cell});
+    if (!elements.empty())
+      throw MeshError(text("More than two elements share a face; this concerns ", elements.size(), " elements, the first one is ",
+                           describe(mesh, *elements.begin())),
+                      where, "remove elements that overlap");
+  }
+
+  unsigned int make_right_handed(Mesh &mesh)
+  {
+    std::vector<std::size_t> reordered;
+    for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+      {
+        Mesh::Cell &cell    = mesh.cells[element];
+        const auto  corners = scaled_jacobians(mesh, cell);
+        if (std::any_of(corners.begin(), corners.end(), [](const double corner) { return !(corner < 0.); }))
+          continue;
+        const Mesh::Nodes given = cell.nodes;
+        const auto        from  = mirrored_nodes(cell.shape, mesh.degree);
+        for (unsigned int i = 0; i < from.size(); ++i)
+          cell.nodes[i] = given[from[i]];
+        reordered.push_back(element);
       }
     if (reordered.empty())
       return 0;
 
-    const std::vector<HexFace> faces = all_faces(mesh);
+    const std::vector<CellFace> faces = all_faces(mesh);
     for (std::size_t i = 0; i + 1 < faces.size(); ++i)
       if (faces[i].key == faces[i + 1].key && turn_alike(faces[i], faces[i + 1]))
         {
-          const auto has_face = [&](const unsigned int element) {
-            const auto &nodes = mesh.hexahedra[element].nodes;
-            return std::all_of(faces[i].key.begin(), faces[i].key.end(),
-                               [&](const unsigned int node) { return std::count(nodes.begin(), nodes.end(), node) > 0; });
-          };
-          const auto element = std::find_if(reordered.begin(), reordered.end(), has_face);
+          const auto element = std::find_if(reordered.begin(), reordered.end(),
+                                            [&](const std::size_t e) { return e == faces[i].cell || e == faces[i + 1].cell; });
           throw MeshError("An element is inverted: it and its neighbour lie on the same side of their common face",
                           describe(mesh, element == reordered.end() ? reordered[0] : *element),
                           "correct the nodes of this element, or let no two elements overlap");
@@ -168,102 +310,114 @@ namespace Squeal
     return reordered.size();
   }
 
-  void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
+  namespace
   {
-    // Volumes
-    std::vector<std::size_t> n_elements(mesh.volume_names.size(), 0);
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      ++n_elements[hexahedron.volume];
-    std::size_t n_pins = 0, n_discs = 0;
-    for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
-      {
-        if (n_elements[v] == 0)
-          throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh it with hexahedra, or remove the name");
-        ++(mesh.volume_names[v] == PhysicalNames::disc ? n_discs : n_pins);
-      }
-    if (n_discs == 0 || n_pins == 0)
-      throw MeshError(std::string("There is no physical volume '") + (n_discs == 0 ? "disc" : "pin_...") +
-                        "', only: " + list(mesh.volume_names),
-                      where, "name the disc's volume 'disc' and each pin's or pad's with a name that begins with 'pin_'");
+    void check_volumes(const Mesh &mesh, const std::string &where)
+    {
+      std::vector<std::size_t> n_elements(mesh.volume_names.size(), 0);
+      for (const Mesh::Cell &cell : mesh.cells)
+        ++n_elements[cell.volume];
+      std::size_t n_pins = 0, n_discs = 0;
+      for (std::size_t v = 0; v < mesh.volume_names.size(); ++v)
+        {
+          if (n_elements[v] == 0)
+            throw MeshError("Volume '" + mesh.volume_names[v] + "' has no elements", where, "mesh it, or remove the name");
+          ++(is_of_disc(mesh.volume_names[v]) ? n_discs : n_pins);
+        }
+      if (n_discs == 0 || n_pins == 0)
+        throw MeshError((n_discs == 0 ? "There is no physical volume 'disc', only: " : "There is no physical volume of a pin, only: ") +
+                          list(mesh.volume_names),
+                        where, "name the disc's volume 'disc' and each pin's or pad's otherwise, such as 'pin_1'");
+
+      // Volumes that share nodes are one body, but the disc slides
+      std::vector<std::optional<unsigned int>> volume_of_node(mesh.points.size());
+      for (const Mesh::Cell &cell : mesh.cells)
+        for (const unsigned int node : cell.nodes)
+          {
+            const std::string &one = mesh.volume_names[cell.volume], &other = mesh.volume_names[volume_of_node[node].value_or(cell.volume)];
+            if (is_of_disc(one) != is_of_disc(other))
+              throw MeshError(
+                "Volumes '" + one + "' and '" + other + "' share nodes, so nothing could slide", where,
+                "give disc and pins surfaces and nodes of their own where they touch; parts of the disc have names that begin with "
+                "'disc_'");
+            volume_of_node[node] = cell.volume;
+          }
+    }
+  } // namespace
+
+  void check_parts(const Mesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
+  {
+    check_volumes(mesh, where);
 
     // Surfaces
     std::vector<std::string> needed = {PhysicalNames::disc_contact, PhysicalNames::pin_contact};
     needed.insert(needed.end(), additional_surfaces.begin(), additional_surfaces.end());
     std::set<std::string> with_faces;
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      with_faces.insert(mesh.surface_names[quadrilateral.surface]);
+    for (const Mesh::Face &face : mesh.faces)
+      with_faces.insert(mesh.surface_names[face.surface]);
     for (const std::string &name : needed)
       if (with_faces.count(name) == 0)
         throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
-                        "give the surface this name");
-
-    // Nodes belong to one volume
-    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
-    for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
-      for (const unsigned int node : hexahedron.nodes)
-        if (volume_of_node[node] != hexahedron.volume)
-          throw MeshError("Volumes '" + mesh.volume_names[hexahedron.volume] + "' and '" + mesh.volume_names[volume_of_node[node]] +
-                            "' share nodes, so nothing could slide",
-                          where, "give each volume surfaces and nodes of its own where they touch");
+                        "give the surface this name, or say in Contact/Pairs which surfaces rub");
 
     // Named faces are outer faces of volumes of their kind
-    const std::vector<HexFace> faces = all_faces(mesh);
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
+    const std::vector<CellFace> faces = all_faces(mesh);
+    for (const Mesh::Face &face : mesh.faces)
       {
-        const std::string &name = mesh.surface_names[quadrilateral.surface];
-        auto               key  = quadrilateral.nodes;
-        std::sort(key.begin(), key.end());
-        const auto first =
-          std::lower_bound(faces.begin(), faces.end(), key, [](const HexFace &face, const auto &nodes) { return face.key < nodes; });
-        const auto last = std::find_if(first, faces.end(), [&](const HexFace &face) { return face.key != key; });
+        const std::string &name = mesh.surface_names[face.surface];
+        const auto         key  = face_key(face);
+        const auto         first =
+          std::lower_bound(faces.begin(), faces.end(), key, [](const CellFace &other, const auto &wanted) { return other.key < wanted; });
+        const auto last = std::find_if(first, faces.end(), [&](const CellFace &other) { return other.key != key; });
         if (last - first != 1)
-          throw MeshError("Surface '" + name + "' has a face that is " +
-                            (first == last ? "not a face of any hexahedron" : "inside a volume"),
+          throw MeshError("Surface '" + name + "' has a face that is " + (first == last ? "not a face of any element" : "inside a body"),
                           where, "name only outer faces of the disc and the pins");
 
-        const bool on_disc = mesh.volume_names[first->volume] == PhysicalNames::disc;
+        const bool on_disc = first->body == 0;
         const bool of_disc = name == PhysicalNames::disc_contact || name == PhysicalNames::disc_bore || name == PhysicalNames::disc_rim;
         const bool of_pin  = name == PhysicalNames::pin_contact || name == PhysicalNames::pin_clamp || name == PhysicalNames::pin_side;
         if ((of_disc && !on_disc) || (of_pin && on_disc))
-          throw MeshError("Surface '" + name + "' has a face on volume '" + mesh.volume_names[first->volume] + "'", where,
+          throw MeshError("Surface '" + name + "' has a face on '" + mesh.body_names[first->body] + "'", where,
                           "put disc_... on the disc and pin_... on pins; perhaps names of disc and pin are exchanged");
       }
   }
 
-  void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
+  void check_bodies(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
   {
     check_connected(mesh, where);
 
-    const std::vector<unsigned int> volume_of_node = volume_of_nodes(mesh);
-    const std::set<unsigned int>    disc           = nodes_by_volume(mesh, volume_of_node, PhysicalNames::disc_contact)[0];
-    const auto                      contacts       = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_contact);
-    const auto                      clamps         = nodes_by_volume(mesh, volume_of_node, PhysicalNames::pin_clamp);
-    std::set<unsigned int>          mounted; // volumes
+    const std::vector<unsigned int> body_of_node = body_of_nodes(mesh);
+    const std::set<unsigned int>    disc         = nodes_by_body(mesh, body_of_node, PhysicalNames::disc_contact)[0];
+    const auto                      contacts     = nodes_by_body(mesh, body_of_node, PhysicalNames::pin_contact);
+    const auto                      clamps       = nodes_by_body(mesh, body_of_node, PhysicalNames::pin_clamp);
+    std::set<unsigned int>          mounted; // bodies
     for (const std::string &surface : mounted_surfaces)
       {
-        const auto nodes   = nodes_by_volume(mesh, volume_of_node, surface);
+        const auto nodes   = nodes_by_body(mesh, body_of_node, surface);
         bool       is_free = false;
-        for (std::size_t volume = 0; volume < nodes.size(); ++volume)
+        for (std::size_t body = 0; body < nodes.size(); ++body)
           {
-            if (!nodes[volume].empty())
-              mounted.insert(volume);
-            is_free = is_free || !std::includes(clamps[volume].begin(), clamps[volume].end(), nodes[volume].begin(), nodes[volume].end());
+            if (!nodes[body].empty())
+              mounted.insert(body);
+            is_free = is_free || !std::includes(clamps[body].begin(), clamps[body].end(), nodes[body].begin(), nodes[body].end());
           }
         if (!is_free)
           throw MeshError("All nodes of '" + surface + "', on which Mounts/Elastic mounts puts a mount, are clamped by '" +
                             PhysicalNames::pin_clamp + "'",
                           where, "take the name 'pin_clamp' from these faces, or the mount from Mounts/Elastic mounts");
       }
-    for (std::size_t pin = 1; pin < mesh.volume_names.size(); ++pin)
+    for (std::size_t pin = 1; pin < mesh.body_names.size(); ++pin)
       {
-        const std::string &name = mesh.volume_names[pin];
+        const std::string &name = mesh.body_names[pin];
         if (contacts[pin].empty())
-          throw MeshError("'" + name + "' has no face on 'pin_contact', so it touches nothing", where,
-                          "put its face on the disc into the physical surface 'pin_contact', or leave the volume out");
+          throw MeshError("'" + name + "' has no face on 'pin_contact' or in Contact/Pairs, so it touches nothing", where,
+                          "put its face on the disc into the physical surface 'pin_contact' or into a pair of Contact/Pairs, or leave the "
+                          "volume out");
         if (clamps[pin].empty() && mounted.count(pin) == 0)
           throw MeshError(
             "'" + name + "' has no face on 'pin_clamp', so nothing holds it", where,
-            "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts");
+            "put its backplate face into the physical surface 'pin_clamp', or one of its surfaces into Mounts/Elastic mounts, or merge "
+            "its nodes with those of the volume that it is fixed to");
         if (distance(mesh, clamps[pin], disc) < distance(mesh, contacts[pin], disc))
           throw MeshError("'" + name + "' touches the disc with its face on 'pin_clamp', and its face on 'pin_contact' is away from it",
                           where, "exchange the names 'pin_clamp' and 'pin_contact' there");

@@ -1,12 +1,14 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/geometry/mesh_file.h>
+#include <squeal/geometry/second_order.h>
+#include <squeal/parameters/materials.h>
 
 #include <deal.II/base/bounding_box.h>
 
 #include <boost/algorithm/string/join.hpp>
-#include <boost/algorithm/string/predicate.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <ostream>
@@ -18,112 +20,178 @@ namespace Squeal
   {
     constexpr unsigned int not_numbered = static_cast<unsigned int>(-1);
 
-    /// Elements of the groups of one dimension by their tags, which write_msh() gives in the order of the mesh: nodes and index of the group.
-    template <std::size_t n_nodes>
-    using TaggedElements = std::multimap<std::size_t, std::pair<std::array<unsigned int, n_nodes>, unsigned int>>;
-
-    /// Adds the elements of a group, which all have to be of one type.
-    template <std::size_t n_nodes>
-    void add_group(TaggedElements<n_nodes>  &all,
-                   const GmshMesh::Group    &group,
-                   std::vector<std::string> &names,
-                   const std::string        &wanted,
-                   const std::string        &where)
+    /// A kind of Gmsh's elements.
+    struct ElementType
     {
-      for (const auto &[type, elements] : group.elements)
+      const char  *name;
+      int          number; ///< in a .msh
+      Shape        shape;
+      unsigned int degree;
+      bool         is_complete = true; ///< or a serendipity element, without nodes on faces and inside
+    };
+
+    constexpr ElementType element_types[] = {{"Triangle 3", 2, Shape::triangle, 1},
+                                             {"Quadrilateral 4", 3, Shape::quadrilateral, 1},
+                                             {"Tetrahedron 4", 4, Shape::tetrahedron, 1},
+                                             {"Hexahedron 8", 5, Shape::hexahedron, 1},
+                                             {"Prism 6", 6, Shape::wedge, 1},
+                                             {"Pyramid 5", 7, Shape::pyramid, 1},
+                                             {"Triangle 6", 9, Shape::triangle, 2},
+                                             {"Quadrilateral 9", 10, Shape::quadrilateral, 2},
+                                             {"Tetrahedron 10", 11, Shape::tetrahedron, 2},
+                                             {"Hexahedron 27", 12, Shape::hexahedron, 2},
+                                             {"Prism 18", 13, Shape::wedge, 2},
+                                             {"Pyramid 14", 14, Shape::pyramid, 2},
+                                             {"Quadrilateral 8", 16, Shape::quadrilateral, 2, false},
+                                             {"Hexahedron 20", 17, Shape::hexahedron, 2, false},
+                                             {"Prism 15", 18, Shape::wedge, 2, false},
+                                             {"Pyramid 13", 19, Shape::pyramid, 2, false}};
+
+    /// An element of one of the groups of a dimension.
+    struct GroupElement
+    {
+      const ElementType *type;
+      Mesh::Nodes        nodes;
+      unsigned int       group;
+    };
+
+    /// By their tags, which write_msh() gives in the order of the mesh.
+    using TaggedElements = std::multimap<std::size_t, GroupElement>;
+
+    void add_group(TaggedElements &all, const GmshMesh::Group &group, std::vector<std::string> &names, const std::string &where)
+    {
+      for (const auto &[name, elements] : group.elements)
         {
-          if (type != wanted)
-            throw MeshError("'" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + type + "'", where,
-                            "mesh it with elements of type '" + wanted + "' only");
+          const auto type = std::find_if(std::begin(element_types), std::end(element_types),
+                                         [&, &wanted = name](const ElementType &known) { return known.name == wanted; });
+          if (type == std::end(element_types))
+            throw MeshError("'" + group.name + "' has " + std::to_string(elements.size()) + " elements of type '" + name + "'", where,
+                            "mesh it with tetrahedra, pyramids, prisms and hexahedra of first or second order");
           for (const GmshMesh::Element &element : elements)
-            {
-              const auto added = all.emplace(element.tag, std::make_pair(std::array<unsigned int, n_nodes>(), names.size()));
-              std::copy_n(element.nodes.begin(), n_nodes, added->second.first.begin());
-            }
+            all.emplace(element.tag, GroupElement{type, Mesh::Nodes(element.nodes.begin(), element.nodes.end()),
+                                                  static_cast<unsigned int>(names.size())});
         }
       names.push_back(group.name);
     }
 
-    /// Groups of volumes, the disc first.
-    std::vector<const GmshMesh::Group *> volumes(const GmshMesh &mesh, const std::string &where)
+    /// Groups of volumes, those of the disc first.
+    std::vector<const GmshMesh::Group *> volumes(const GmshMesh &mesh)
     {
       std::vector<const GmshMesh::Group *> result;
       for (const GmshMesh::Group &group : mesh.groups)
         if (group.dimension == 3)
-          {
-            const bool is_disc = group.name == PhysicalNames::disc;
-            if (!is_disc && !boost::starts_with(group.name, PhysicalNames::pin_prefix))
-              throw MeshError("There is a physical volume '" + group.name + "'", where, "known names of volumes: disc, pin_...");
-            result.insert(is_disc ? result.begin() : result.end(), &group);
-          }
+          result.push_back(&group);
+      std::stable_partition(result.begin(), result.end(), [](const GmshMesh::Group *group) { return is_of_disc(group->name); });
       return result;
+    }
+
+    void add_surfaces(TaggedElements                 &all,
+                      const GmshMesh                 &mesh,
+                      const std::vector<std::string> &additional_surfaces,
+                      std::vector<std::string>       &names,
+                      const std::string              &where)
+    {
+      std::vector<std::string> known = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
+                                        PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
+      for (const std::string &name : additional_surfaces)
+        if (std::find(known.begin(), known.end(), name) == known.end())
+          known.push_back(name);
+      for (const GmshMesh::Group &group : mesh.groups)
+        if (group.dimension == 2)
+          {
+            if (std::find(known.begin(), known.end(), group.name) == known.end())
+              throw MeshError("There is a physical surface '" + group.name + "' that nothing uses", where,
+                              "name it in Contact/Pairs or Mounts/Elastic mounts, or take the name away; known names of surfaces: " +
+                                boost::algorithm::join(known, ", "));
+            add_group(all, group, names, where);
+          }
+    }
+
+    unsigned int common_degree(const TaggedElements &cells, const TaggedElements &faces, const std::string &where)
+    {
+      const ElementType *first = nullptr;
+      for (const TaggedElements *elements : {&cells, &faces})
+        for (const auto &[tag, element] : *elements)
+          {
+            first = first == nullptr ? element.type : first;
+            if (element.type->degree != first->degree)
+              throw MeshError(std::string("The mesh has elements of different orders: '") + first->name + "' and '" + element.type->name +
+                                "'",
+                              where, "mesh all volumes and surfaces with elements of one order, by Mesh.ElementOrder in Gmsh");
+          }
+      return first == nullptr ? 1 : first->degree;
+    }
+
+    /// Nodes of cells in the order of Gmsh's, which the cells then refer to; the new numbers of all.
+    std::vector<unsigned int> number_nodes(TaggedElements           &cells,
+                                           const GmshMesh           &mesh,
+                                           std::vector<Mesh::Point> &points,
+                                           const std::string        &where)
+    {
+      std::vector<unsigned int> new_index(mesh.points.size(), not_numbered);
+      for (const auto &[tag, cell] : cells)
+        for (const unsigned int node : cell.nodes)
+          new_index[node] = 0;
+      for (std::size_t node = 0; node < new_index.size(); ++node)
+        if (new_index[node] != not_numbered)
+          {
+            new_index[node] = points.size();
+            points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
+            if (!std::isfinite(points.back().norm()))
+              throw MeshError("A node has coordinates that are no finite numbers", where, "write the mesh again");
+          }
+      for (auto &[tag, cell] : cells)
+        for (unsigned int &node : cell.nodes)
+          node = new_index[node];
+      return new_index;
     }
   } // namespace
 
-  HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where)
+  Mesh make_mesh(const GmshMesh &gmsh, const std::vector<std::string> &additional_surfaces, const std::string &where)
   {
-    if (mesh.n_unnamed_volume_elements > 0)
-      throw MeshError(std::to_string(mesh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
-                      "name every volume that is meshed 'disc' or 'pin_...'");
-    HexMesh           result;
-    TaggedElements<8> hexahedra;
-    for (const GmshMesh::Group *group : volumes(mesh, where))
-      add_group(hexahedra, *group, result.volume_names, "Hexahedron 8", where);
+    if (gmsh.n_unnamed_volume_elements > 0)
+      throw MeshError(std::to_string(gmsh.n_unnamed_volume_elements) + " volume elements belong to no physical volume", where,
+                      "name every volume that is meshed: the disc 'disc', every other body as you like");
+    Mesh           result;
+    TaggedElements cells, faces;
+    for (const GmshMesh::Group *group : volumes(gmsh))
+      add_group(cells, *group, result.volume_names, where);
+    add_surfaces(faces, gmsh, additional_surfaces, result.surface_names, where);
+    result.degree                             = common_degree(cells, faces, where);
+    const std::vector<unsigned int> new_index = number_nodes(cells, gmsh, result.points, where);
 
-    std::vector<std::string> known = {PhysicalNames::disc_contact, PhysicalNames::pin_contact, PhysicalNames::pin_clamp,
-                                      PhysicalNames::pin_side,     PhysicalNames::disc_bore,   PhysicalNames::disc_rim};
-    known.insert(known.end(), additional_surfaces.begin(), additional_surfaces.end());
-    TaggedElements<4> quadrilaterals;
-    for (const GmshMesh::Group &group : mesh.groups)
-      if (group.dimension == 2)
-        {
-          if (std::find(known.begin(), known.end(), group.name) == known.end())
-            throw MeshError("There is a physical surface '" + group.name + "' that nothing uses", where,
-                            "known names of surfaces: " + boost::algorithm::join(known, ", "));
-          add_group(quadrilaterals, group, result.surface_names, "Quadrilateral 4", where);
-        }
-
-    // Nodes of the hexahedra in the order of Gmsh's
-    std::vector<unsigned int> new_index(mesh.points.size(), not_numbered);
-    for (const auto &[tag, hexahedron] : hexahedra)
-      for (const unsigned int node : hexahedron.first)
-        new_index[node] = 0;
-    for (std::size_t node = 0; node < new_index.size(); ++node)
-      if (new_index[node] != not_numbered)
-        {
-          new_index[node] = result.points.size();
-          result.points.emplace_back(mesh.points[node][0], mesh.points[node][1], mesh.points[node][2]);
-        }
-
-    for (auto &[tag, hexahedron] : hexahedra)
+    for (const auto &[tag, cell] : cells)
       {
-        auto &[nodes, volume] = hexahedron;
-        if (const auto first = hexahedra.lower_bound(tag)->second.second; first != volume)
+        if (const unsigned int first = cells.lower_bound(tag)->second.group; first != cell.group)
           throw MeshError(
-            "A hexahedron belongs to physical volumes '" + result.volume_names[first] + "' and '" + result.volume_names[volume] + "'",
+            "An element belongs to physical volumes '" + result.volume_names[first] + "' and '" + result.volume_names[cell.group] + "'",
             where, "put every volume into one physical group; in a mesh file, let each group have an elementary tag (entity) of its own");
-        for (unsigned int &node : nodes)
-          node = new_index[node];
-        result.hexahedra.push_back({nodes, volume});
+        result.cells.push_back({cell.type->shape, cell.nodes, cell.group});
         result.element_tags.push_back(tag);
       }
-    for (auto &[tag, quadrilateral] : quadrilaterals)
+    for (auto &[tag, face] : faces)
       {
-        auto &[nodes, surface] = quadrilateral;
-        for (unsigned int &node : nodes)
+        if (const Topology &parts = topology(face.type->shape); result.degree == 2)
+          face.nodes.resize(parts.corners.size() +
+                            parts.edges.size()); // the centre is that of the cell, which may be a serendipity element
+        for (unsigned int &node : face.nodes)
           if ((node = new_index[node]) == not_numbered)
-            throw MeshError("Surface '" + result.surface_names[surface] + "' has a face that is not a face of any hexahedron", where,
+            throw MeshError("Surface '" + result.surface_names[face.group] + "' has a face that is not a face of any element", where,
                             "name only outer faces of the disc and the pins");
-        result.quadrilaterals.push_back({nodes, surface});
+        result.faces.push_back({face.type->shape, face.nodes, face.group});
       }
+    if (const std::size_t n = result.degree == 2 ? add_centres(result) : 0; n > 0)
+      result.notes.push_back(
+        std::to_string(n) +
+        " nodes have been added at centres of faces and cells: serendipity elements are computed as full quadratic ones");
+    find_bodies(result);
     return result;
   }
 
-  void write_msh(const HexMesh &mesh, std::ostream &stream)
+  void write_msh(const Mesh &mesh, std::ostream &stream)
   {
     const std::size_t n_surfaces = mesh.surface_names.size(), n_volumes = mesh.volume_names.size();
-    const std::size_t n_nodes = mesh.points.size(), n_hexahedra = mesh.hexahedra.size(),
-                      n_elements = n_hexahedra + mesh.quadrilaterals.size();
+    const std::size_t n_nodes = mesh.points.size(), n_elements = mesh.cells.size() + mesh.faces.size();
     stream.precision(std::numeric_limits<double>::max_digits10);
 
     // One entity for each name, with the same number
@@ -142,7 +210,10 @@ namespace Squeal
     stream << "$PhysicalNames\n" << n_surfaces + n_volumes << '\n' << names.str() << "$EndPhysicalNames\n";
     stream << "$Entities\n0 0 " << n_surfaces << ' ' << n_volumes << '\n' << entities.str() << "$EndEntities\n";
 
-    const std::vector<unsigned int> volumes = volume_of_nodes(mesh);
+    std::vector<unsigned int> volumes(n_nodes, 0);
+    for (const Mesh::Cell &cell : mesh.cells)
+      for (const unsigned int node : cell.nodes)
+        volumes[node] = cell.volume;
     stream << "$Nodes\n" << n_volumes << ' ' << n_nodes << " 1 " << n_nodes << '\n';
     for (std::size_t v = 0; v < n_volumes; ++v)
       {
@@ -157,24 +228,31 @@ namespace Squeal
     stream << "$EndNodes\n";
 
     // Elements carry their index, so that their order is kept
-    const auto write_blocks = [&stream](const int dimension, const int type, const std::size_t n_blocks, const auto &elements,
-                                        std::size_t tag) {
-      std::vector<std::string> blocks(n_blocks);
-      std::vector<std::size_t> n_elements(n_blocks, 0);
-      for (const auto &[nodes, part] : elements)
-        {
-          blocks[part] += std::to_string(tag++);
-          for (const unsigned int node : nodes)
-            blocks[part] += ' ' + std::to_string(node + 1);
-          blocks[part] += '\n';
-          ++n_elements[part];
-        }
-      for (std::size_t block = 0; block < n_blocks; ++block)
-        stream << dimension << ' ' << block + 1 << ' ' << type << ' ' << n_elements[block] << '\n' << blocks[block];
+    struct Block
+    {
+      std::size_t n_elements = 0;
+      std::string lines;
     };
-    stream << "$Elements\n" << n_surfaces + n_volumes << ' ' << n_elements << " 1 " << n_elements << '\n';
-    write_blocks(2, 3, n_surfaces, mesh.quadrilaterals, n_hexahedra + 1);
-    write_blocks(3, 5, n_volumes, mesh.hexahedra, 1);
+    std::map<std::array<std::size_t, 3>, Block> blocks; // by dimension, entity and type
+    const auto add_element = [&](const int dimension, const std::size_t tag, const Shape shape, const Mesh::Nodes &nodes,
+                                 const std::size_t part) {
+      const auto type  = std::find_if(std::begin(element_types), std::end(element_types), [&](const ElementType &known) {
+        return known.shape == shape && known.degree == mesh.degree && known.is_complete;
+      });
+      auto &[n, lines] = blocks[{{static_cast<std::size_t>(dimension), part + 1, static_cast<std::size_t>(type->number)}}];
+      lines += std::to_string(tag);
+      for (const unsigned int node : nodes)
+        lines += ' ' + std::to_string(node + 1);
+      lines += '\n';
+      ++n;
+    };
+    for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+      add_element(3, c + 1, mesh.cells[c].shape, mesh.cells[c].nodes, mesh.cells[c].volume);
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+      add_element(2, mesh.cells.size() + f + 1, mesh.faces[f].shape, mesh.faces[f].nodes, mesh.faces[f].surface);
+    stream << "$Elements\n" << blocks.size() << ' ' << n_elements << " 1 " << n_elements << '\n';
+    for (const auto &[of, block] : blocks)
+      stream << of[0] << ' ' << of[1] << ' ' << of[2] << ' ' << block.n_elements << '\n' << block.lines;
     stream << "$EndElements\n";
   }
 } // namespace Squeal

@@ -19,7 +19,7 @@ namespace Squeal
   {
     namespace bgi = boost::geometry::index;
 
-    using Position = HexMesh::Point;
+    using Position = Mesh::Point;
     using Box      = dealii::BoundingBox<3>;
     using Sample   = std::pair<Position, unsigned int>; ///< a place with the index of a node, face or element
     using Tree     = dealii::RTree<Sample>;
@@ -32,8 +32,6 @@ namespace Squeal
 
     /// Bodies overlap: below this, chords of a curved face may lie inside another body.
     constexpr double overlap = 0.05;
-
-    constexpr unsigned int edges[12][2] = {{0, 1}, {1, 2}, {2, 3}, {3, 0}, {4, 5}, {5, 6}, {6, 7}, {7, 4}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
 
     std::string place(const Position &p)
     {
@@ -59,23 +57,24 @@ namespace Squeal
       return box;
     }
 
-    Box box_around(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
+    /// Cells have straight edges here: second-order nodes are on edges that both neighbours have.
+    Box box_around(const Mesh &mesh, const Mesh::Cell &cell)
     {
-      std::array<Position, 8> corners;
-      for (unsigned int v = 0; v < 8; ++v)
-        corners[v] = mesh.points[hexahedron.nodes[v]];
+      std::vector<Position> corners;
+      for (unsigned int v = 0; v < topology(cell.shape).corners.size(); ++v)
+        corners.push_back(mesh.corner(cell, v));
       return Box(corners);
     }
 
     /// Distance from which on a node is another node, for each node [m].
-    std::vector<double> node_tolerances(const HexMesh &mesh)
+    std::vector<double> node_tolerances(const Mesh &mesh)
     {
       std::vector<double> shortest(mesh.points.size(), std::numeric_limits<double>::infinity()), longest(mesh.points.size(), 0.);
-      for (const auto &[nodes, volume] : mesh.hexahedra)
-        for (const auto &[a, b] : edges)
+      for (const Mesh::Cell &cell : mesh.cells)
+        for (const auto &[a, b] : topology(cell.shape).edges)
           {
-            const double length = mesh.points[nodes[a]].distance(mesh.points[nodes[b]]);
-            for (const unsigned int node : {nodes[a], nodes[b]})
+            const double length = mesh.corner(cell, a).distance(mesh.corner(cell, b));
+            for (const unsigned int node : {cell.nodes[a], cell.nodes[b]})
               {
                 shortest[node] = std::min(shortest[node], length);
                 longest[node]  = std::max(longest[node], length);
@@ -90,11 +89,11 @@ namespace Squeal
       return tolerances;
     }
 
-    std::vector<Sample> nodes_of_outline(const HexMesh &mesh, const std::vector<HexFace> &outline)
+    std::vector<Sample> nodes_of_outline(const Mesh &mesh, const std::vector<CellFace> &outline)
     {
       std::vector<bool> is_outer(mesh.points.size(), false);
-      for (const HexFace &face : outline)
-        for (const unsigned int node : face.nodes)
+      for (const CellFace &face : outline)
+        for (const unsigned int node : face.corners)
           is_outer[node] = true;
       std::vector<Sample> samples;
       for (unsigned int node = 0; node < is_outer.size(); ++node)
@@ -117,69 +116,89 @@ namespace Squeal
         });
     }
 
-    void check_merged(const HexMesh                   &mesh,
+    void check_merged(const Mesh                      &mesh,
                       const std::vector<Sample>       &nodes,
                       const std::vector<double>       &tolerances,
-                      const std::vector<unsigned int> &volumes,
+                      const std::vector<unsigned int> &bodies,
                       const std::string               &where)
     {
-      std::map<unsigned int, std::set<unsigned int>> twins; // by volume, those with a lower one
+      std::map<unsigned int, std::set<unsigned int>> twins; // by body, those with a lower one
       visit_coincident(nodes, tolerances, [&](const unsigned int node, const unsigned int other) {
-        if (volumes[node] == volumes[other])
-          twins[volumes[node]].insert(other);
+        if (bodies[node] == bodies[other])
+          twins[bodies[node]].insert(other);
       });
-      for (const auto &[volume, of_volume] : twins)
-        throw MeshError(counted(of_volume.size(), "node", "nodes") + " of volume '" + mesh.volume_names[volume] + "' " +
-                          (of_volume.size() == 1 ? "coincides" : "coincide") + " with other nodes of it; the first one is at " +
-                          place(mesh.points[*of_volume.begin()]),
+      for (const auto &[body, of_body] : twins)
+        throw MeshError(counted(of_body.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " +
+                          (of_body.size() == 1 ? "coincides" : "coincide") + " with other nodes of it; the first one is at " +
+                          place(mesh.points[*of_body.begin()]),
                         where,
                         "make one node of those that coincide (Coherence Mesh in Gmsh, or merge duplicate nodes in the pre-processor), "
                         "or open the crack that they form");
     }
 
+    /// Refuses quadrilaterals whose neighbours are triangles: they share nodes and yet move apart.
+    void check_matching(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &where)
+    {
+      std::set<std::array<unsigned int, 4>> triangles;
+      for (const CellFace &face : outline)
+        if (face.n_corners == 3)
+          triangles.insert(face.key);
+      std::vector<const CellFace *> unmatched;
+      for (const CellFace &face : outline)
+        if (const auto &[a, b, c, d] = face.key; face.n_corners == 4 && triangles.count({{a, b, c, c}}) + triangles.count({{a, b, d, d}}) +
+                                                                            triangles.count({{a, c, d, d}}) +
+                                                                            triangles.count({{b, c, d, d}}) ==
+                                                                          2)
+          unmatched.push_back(&face);
+      if (!unmatched.empty())
+        throw MeshError(counted(unmatched.size(), "quadrilateral face", "quadrilateral faces") + " of body '" +
+                          mesh.body_names[unmatched[0]->body] + "' " + (unmatched.size() == 1 ? "has" : "have") +
+                          " two triangles on the other side; the first one is at " + place(face_geometry(mesh, *unmatched[0]).centre),
+                        where, "put pyramids between hexahedra or wedges and tetrahedra");
+    }
+
     // ----------------------------------------------------- sides of the contact
 
     /// Outer faces of a named surface.
-    std::vector<HexFace> named_faces(const HexMesh &mesh, const std::vector<HexFace> &outline, const std::string &name)
+    std::vector<CellFace> named_faces(const Mesh &mesh, const std::vector<CellFace> &outline, const std::string &name)
     {
-      std::vector<HexFace> result;
-      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-        if (mesh.surface_names[quadrilateral.surface] == name)
+      std::vector<CellFace> result;
+      for (const Mesh::Face &named : mesh.faces)
+        if (mesh.surface_names[named.surface] == name)
           {
-            auto key = quadrilateral.nodes;
-            std::sort(key.begin(), key.end());
+            const auto key  = face_key(named);
             const auto face = std::lower_bound(outline.begin(), outline.end(), key,
-                                               [](const HexFace &candidate, const auto &nodes) { return candidate.key < nodes; });
+                                               [](const CellFace &candidate, const auto &wanted) { return candidate.key < wanted; });
             if (face != outline.end() && face->key == key)
               result.push_back(*face);
           }
       return result;
     }
 
-    void check_sides(const HexMesh &mesh, const std::vector<HexFace> &outline, const double pairing_tolerance, const std::string &where)
+    void check_sides(const Mesh &mesh, const std::vector<CellFace> &outline, const double pairing_tolerance, const std::string &where)
     {
       std::vector<FaceGeometry> disc;
       std::vector<Sample>       centres;
-      for (const HexFace &face : named_faces(mesh, outline, PhysicalNames::disc_contact))
+      for (const CellFace &face : named_faces(mesh, outline, PhysicalNames::disc_contact))
         {
-          disc.push_back(face_geometry(mesh, face.nodes));
+          disc.push_back(face_geometry(mesh, face));
           centres.emplace_back(disc.back().centre, centres.size());
         }
-      const Tree                                   tree = dealii::pack_rtree(centres);
-      std::map<unsigned int, std::vector<HexFace>> wrong; // by pin
-      for (const HexFace &face : named_faces(mesh, outline, PhysicalNames::pin_contact))
+      const Tree                                    tree = dealii::pack_rtree(centres);
+      std::map<unsigned int, std::vector<CellFace>> wrong; // by pin
+      for (const CellFace &face : named_faces(mesh, outline, PhysicalNames::pin_contact))
         {
-          const FaceGeometry pin         = face_geometry(mesh, face.nodes);
+          const FaceGeometry pin         = face_geometry(mesh, face);
           bool               is_opposite = true;
           visit_box(tree, box_around(pin.centre, pairing_tolerance),
                     [&](const Sample &partner) { is_opposite = is_opposite && pin.area_normal * disc[partner.second].area_normal <= 0.; });
           if (!is_opposite)
-            wrong[face.volume].push_back(face);
+            wrong[face.body].push_back(face);
         }
       for (const auto &[pin, faces] : wrong)
-        throw MeshError("'" + mesh.volume_names[pin] + "' and the disc lie on the same side of " +
+        throw MeshError("'" + mesh.body_names[pin] + "' and the disc lie on the same side of " +
                           counted(faces.size(), "contact face", "contact faces") + ", the first one at " +
-                          place(face_geometry(mesh, faces.front().nodes).centre) + ": one body is drawn into the other",
+                          place(face_geometry(mesh, faces.front()).centre) + ": one body is drawn into the other",
                         where, "draw the pin on the other side of its contact face, for example with the extrusion reversed");
     }
 
@@ -187,7 +206,7 @@ namespace Squeal
 
     /// Nodes where faces of the outline meet in several fans, or more than two at an edge. There, parts of a body are joined by single
     /// nodes or edges, as on both sides of hanging nodes.
-    std::vector<bool> pinched_nodes(const HexMesh &mesh, const std::vector<HexFace> &outline)
+    std::vector<bool> pinched_nodes(const Mesh &mesh, const std::vector<CellFace> &outline)
     {
       struct Edge
       {
@@ -196,15 +215,15 @@ namespace Squeal
       std::vector<Edge> all;
       all.reserve(4 * outline.size());
       for (unsigned int f = 0; f < outline.size(); ++f)
-        for (unsigned int v = 0; v < 4; ++v)
+        for (unsigned int v = 0; v < outline[f].n_corners; ++v)
           {
-            const unsigned int next = (v + 1) % 4, a = outline[f].nodes[v], b = outline[f].nodes[next];
+            const unsigned int next = (v + 1) % outline[f].n_corners, a = outline[f].corners[v], b = outline[f].corners[next];
             all.push_back(a < b ? Edge{{{a, b}}, {{4 * f + v, 4 * f + next}}} : Edge{{{b, a}}, {{4 * f + next, 4 * f + v}}});
           }
       std::sort(all.begin(), all.end(), [](const Edge &a, const Edge &b) { return a.nodes < b.nodes; });
 
       std::vector<bool>                   result(mesh.points.size(), false);
-      boost::disjoint_sets_with_storage<> fans(all.size()); // of corners
+      boost::disjoint_sets_with_storage<> fans(4 * outline.size()); // of corners
       for (auto first = all.begin(), last = first; first != all.end(); first = last)
         {
           last = std::find_if(first, all.end(), [&](const Edge &edge) { return edge.nodes != first->nodes; });
@@ -216,9 +235,12 @@ namespace Squeal
         }
       constexpr std::size_t    none = -1;
       std::vector<std::size_t> fan(mesh.points.size(), none);
-      for (unsigned int corner = 0; corner < all.size(); ++corner)
+      for (unsigned int corner = 0; corner < 4 * outline.size(); ++corner)
         {
-          const unsigned int node = outline[corner / 4].nodes[corner % 4];
+          const CellFace &face = outline[corner / 4];
+          if (corner % 4 >= face.n_corners)
+            continue;
+          const unsigned int node = face.corners[corner % 4];
           const std::size_t  root = fans.find_set(corner);
           if (fan[node] != none && fan[node] != root)
             result[node] = true;
@@ -230,72 +252,65 @@ namespace Squeal
     /// Of nodes, or of nodes and centres of elements, by their index, which for element e is the number of nodes + e.
     struct MisplacedPoints
     {
-      std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< on or in elements of their volume
-      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their volume and that in which they are
+      std::map<unsigned int, std::set<unsigned int>>                          hanging;  ///< on or in elements of their body
+      std::map<std::pair<unsigned int, unsigned int>, std::set<unsigned int>> overlaps; ///< by their body and that in which they are
     };
 
-    Position centre(const HexMesh &mesh, const HexMesh::Hexahedron &hexahedron)
+    std::vector<Box> boxes_of_bodies(const Mesh &mesh, const std::vector<unsigned int> &bodies)
     {
-      Position sum;
-      for (const unsigned int node : hexahedron.nodes)
-        sum += mesh.points[node] / 8.;
-      return sum;
-    }
-
-    std::vector<Box> boxes_of_volumes(const HexMesh &mesh, const std::vector<unsigned int> &volumes)
-    {
-      std::vector<std::vector<Position>> points(mesh.volume_names.size());
-      for (std::size_t node = 0; node < volumes.size(); ++node)
-        points[volumes[node]].push_back(mesh.points[node]);
+      std::vector<std::vector<Position>> points(mesh.body_names.size());
+      for (std::size_t node = 0; node < bodies.size(); ++node)
+        points[bodies[node]].push_back(mesh.points[node]);
       return std::vector<Box>(points.begin(), points.end());
     }
 
-    MisplacedPoints find_misplaced(const HexMesh                   &mesh,
-                                   const std::vector<HexFace>      &outline,
+    MisplacedPoints find_misplaced(const Mesh                      &mesh,
+                                   const std::vector<CellFace>     &outline,
                                    std::vector<Sample>              points,
                                    const std::vector<double>       &tolerances,
-                                   const std::vector<unsigned int> &volumes,
+                                   const std::vector<unsigned int> &bodies,
                                    const double                     pairing_tolerance)
     {
       const unsigned int      n_nodes = mesh.points.size();
       const std::vector<bool> pinched = pinched_nodes(mesh, outline);
-      const std::vector<Box>  boxes   = boxes_of_volumes(mesh, volumes);
+      const std::vector<Box>  boxes   = boxes_of_bodies(mesh, bodies);
       std::vector<bool>       is_outer(n_nodes, false);
       for (const Sample &node : points)
         is_outer[node.second] = true;
-      for (unsigned int element = 0; element < mesh.hexahedra.size(); ++element)
-        points.emplace_back(centre(mesh, mesh.hexahedra[element]), n_nodes + element);
+      for (unsigned int element = 0; element < mesh.cells.size(); ++element)
+        points.emplace_back(centre(mesh, mesh.cells[element]), n_nodes + element);
       const Tree tree = dealii::pack_rtree(points);
 
       MisplacedPoints found;
-      for (const HexMesh::Hexahedron &hexahedron : mesh.hexahedra)
+      for (const Mesh::Cell &cell : mesh.cells)
         {
-          const auto &[nodes, volume] = hexahedron;
-          const auto any_node         = [&, &all = nodes](const std::vector<bool> &is) {
-            return std::any_of(all.begin(), all.end(), [&](const unsigned int node) { return is[node]; });
+          const unsigned int own_body = mesh.body_of(cell);
+          const auto         any_node = [&](const std::vector<bool> &is) {
+            return std::any_of(cell.nodes.begin(), cell.nodes.end(), [&](const unsigned int node) { return is[node]; });
           };
-          Box  box     = box_around(mesh, hexahedron);
+          Box  box     = box_around(mesh, cell);
           bool is_near = any_node(is_outer);
           for (unsigned int other = 0; other < boxes.size() && !is_near; ++other)
-            is_near = other != volume && boost::geometry::intersects(boxes[other], box);
+            is_near = other != own_body && boost::geometry::intersects(boxes[other], box);
           if (!is_near)
             continue;
 
-          const bool is_pinched = any_node(pinched);
-          box.extend(is_pinched ? off_curved_faces * mesh.points[nodes[0]].distance(mesh.points[nodes[6]]) : tolerances[nodes[0]]);
-          visit_box(tree, box, [&, &own = nodes, own_volume = volume](const Sample &sample) {
+          const bool   is_pinched = any_node(pinched);
+          const double diagonal   = box.get_boundary_points().first.distance(box.get_boundary_points().second);
+          box.extend(is_pinched ? off_curved_faces * diagonal : tolerances[cell.nodes[0]]);
+          visit_box(tree, box, [&](const Sample &sample) {
             const auto &[point, index] = sample;
             const bool         is_node = index < n_nodes;
-            const unsigned int body    = is_node ? volumes[index] : mesh.hexahedra[index - n_nodes].volume;
-            if (body == own_volume && (!is_node || std::count(own.begin(), own.end(), index) > 0))
+            const unsigned int body    = is_node ? bodies[index] : mesh.body_of(mesh.cells[index - n_nodes]);
+            if (body == own_body && (!is_node || std::count(cell.nodes.begin(), cell.nodes.end(), index) > 0))
               return;
-            const std::optional<Depth> depth = depth_in_cell(mesh, hexahedron, point);
+            const std::optional<Depth> depth = depth_in_cell(mesh, cell, point);
             if (!depth)
               return;
-            if (body != own_volume)
+            if (body != own_body)
               {
                 if (depth->relative > overlap && depth->length > pairing_tolerance)
-                  found.overlaps[{body, own_volume}].insert(index);
+                  found.overlaps[{body, own_body}].insert(index);
               }
             else if (depth->length >= -tolerances[index] || (is_pinched && depth->relative >= -off_curved_faces))
               found.hanging[body].insert(index);
@@ -304,25 +319,25 @@ namespace Squeal
       return found;
     }
 
-    void refuse(const MisplacedPoints &points, const HexMesh &mesh, const std::string &where)
+    void refuse(const MisplacedPoints &points, const Mesh &mesh, const std::string &where)
     {
       const unsigned int n_nodes  = mesh.points.size();
       const auto         place_of = [&](const unsigned int index) {
-        return place(index < n_nodes ? mesh.points[index] : centre(mesh, mesh.hexahedra[index - n_nodes]));
+        return place(index < n_nodes ? mesh.points[index] : centre(mesh, mesh.cells[index - n_nodes]));
       };
-      for (const auto &[volume, nodes] : points.hanging)
-        throw MeshError(counted(nodes.size(), "node", "nodes") + " of volume '" + mesh.volume_names[volume] + "' " +
+      for (const auto &[body, nodes] : points.hanging)
+        throw MeshError(counted(nodes.size(), "node", "nodes") + " of body '" + mesh.body_names[body] + "' " +
                           (nodes.size() == 1 ? "lies" : "lie") +
-                          " on edges or faces of elements of this volume, or inside them, without being their nodes; the first one is at " +
+                          " on edges or faces of elements of this body, or inside them, without being their nodes; the first one is at " +
                           place_of(*nodes.begin()),
-                        where, "mesh neighbouring parts of a volume with the same nodes on their common faces (no hanging nodes)");
+                        where, "mesh neighbouring parts of a body with the same nodes on their common faces (no hanging nodes)");
       const auto most = std::max_element(points.overlaps.begin(), points.overlaps.end(),
                                          [](const auto &a, const auto &b) { return a.second.size() < b.second.size(); });
       if (most == points.overlaps.end())
         return;
-      const auto &[volumes, indices] = *most;
-      const std::size_t n_inside     = std::distance(indices.begin(), indices.lower_bound(n_nodes));
-      throw MeshError("Volumes '" + mesh.volume_names[volumes.first] + "' and '" + mesh.volume_names[volumes.second] +
+      const auto &[bodies, indices] = *most;
+      const std::size_t n_inside    = std::distance(indices.begin(), indices.lower_bound(n_nodes));
+      throw MeshError("Bodies '" + mesh.body_names[bodies.first] + "' and '" + mesh.body_names[bodies.second] +
                         "' overlap: " + counted(n_inside, "node", "nodes") + " and " +
                         counted(indices.size() - n_inside, "element centre", "element centres") +
                         " of the former are inside the latter, the first one at " + place_of(*indices.begin()),
@@ -330,38 +345,39 @@ namespace Squeal
     }
   } // namespace
 
-  void check_topology(const HexMesh &mesh, const double pairing_tolerance, const std::string &where)
+  void check_topology(const Mesh &mesh, const double pairing_tolerance, const std::string &where)
   {
-    const std::vector<HexFace>      outline    = outer_faces(mesh);
+    const std::vector<CellFace>     outline    = outer_faces(mesh);
     const std::vector<Sample>       nodes      = nodes_of_outline(mesh, outline);
     const std::vector<double>       tolerances = node_tolerances(mesh);
-    const std::vector<unsigned int> volumes    = volume_of_nodes(mesh);
-    check_merged(mesh, nodes, tolerances, volumes, where);
+    const std::vector<unsigned int> bodies     = body_of_nodes(mesh);
+    check_merged(mesh, nodes, tolerances, bodies, where);
+    check_matching(mesh, outline, where);
     check_sides(mesh, outline, pairing_tolerance, where);
-    refuse(find_misplaced(mesh, outline, nodes, tolerances, volumes, pairing_tolerance), mesh, where);
+    refuse(find_misplaced(mesh, outline, nodes, tolerances, bodies, pairing_tolerance), mesh, where);
   }
 
-  UnnamedContact find_unnamed_contact(const HexMesh &mesh)
+  UnnamedContact find_unnamed_contact(const Mesh &mesh)
   {
     std::vector<bool> is_contact(mesh.points.size(), false);
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      if (const std::string &name = mesh.surface_names[quadrilateral.surface];
+    for (const Mesh::Face &face : mesh.faces)
+      if (const std::string &name = mesh.surface_names[face.surface];
           name == PhysicalNames::disc_contact || name == PhysicalNames::pin_contact)
-        for (const unsigned int node : quadrilateral.nodes)
+        for (const unsigned int node : face.nodes)
           is_contact[node] = true;
 
-    const std::vector<unsigned int> volumes = volume_of_nodes(mesh);
+    const std::vector<unsigned int> bodies = body_of_nodes(mesh);
     UnnamedContact                  found;
     unsigned int                    first = mesh.points.size();
     visit_coincident(nodes_of_outline(mesh, outer_faces(mesh)), node_tolerances(mesh), [&](const unsigned int a, const unsigned int b) {
-      if (volumes[a] == volumes[b] || (is_contact[a] && is_contact[b]))
+      if (bodies[a] == bodies[b] || (is_contact[a] && is_contact[b]))
         return;
       ++found.n_nodes;
       if (a < first)
         {
           first       = a;
-          found.body  = mesh.volume_names[volumes[a]];
-          found.other = mesh.volume_names[volumes[b]];
+          found.body  = mesh.body_names[bodies[a]];
+          found.other = mesh.body_names[bodies[b]];
           found.place = mesh.points[a];
         }
     });

@@ -1,5 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 #include <squeal/geometry/pin_grid.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/geometry/polygon.h>

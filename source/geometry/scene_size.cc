@@ -65,18 +65,50 @@ namespace Squeal
     return extruded(plan.faces.size(), plan.points.size(), pin_faces, pin_nodes, parameters);
   }
 
-  ProblemSize expected_size(const HexMesh &mesh, const unsigned int degree)
+  namespace
   {
-    std::set<unsigned int> contact;
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      if (mesh.surface_names[quadrilateral.surface] == PhysicalNames::disc_contact)
-        contact.insert(quadrilateral.nodes.begin(), quadrilateral.nodes.end());
+    /// Nodes that elements of degree 1 get in degree 2: at middles of edges, at centres of quadrilaterals and of hexahedra.
+    template <typename Elements>
+    std::size_t n_added_nodes(const Elements &elements)
+    {
+      using Part = std::array<unsigned int, 4>; // the nodes of an edge, the corners of a face
+      std::vector<Part> parts;
+      std::size_t       n_inside = 0;
+      for (const auto &element : elements)
+        {
+          const auto add = [&, &nodes = element.nodes](const auto &corners) {
+            Part part;
+            for (unsigned int i = 0; i < 4; ++i)
+              part[i] = nodes[corners[std::min<std::size_t>(i, corners.size() - 1)]];
+            std::sort(part.begin(), part.begin() + corners.size());
+            std::fill(part.begin() + corners.size(), part.end(), part[corners.size() - 1]);
+            parts.push_back(part);
+          };
+          for (const auto &edge : topology(element.shape).edges)
+            add(edge);
+          for (const auto &face : topology(element.shape).faces)
+            if (face.size() == 4)
+              add(face);
+          n_inside += element.shape == Shape::hexahedron;
+        }
+      std::sort(parts.begin(), parts.end());
+      return std::unique(parts.begin(), parts.end()) - parts.begin() + n_inside;
+    }
+  } // namespace
 
-    // Of a large grid, each vertex has three edges, three faces and one cell of its own
-    constexpr double nodes_per_vertex = 8., nodes_per_surface_vertex = 4.;
-    const bool       is_quadratic = degree > 1;
-    return {double(mesh.hexahedra.size()), 3. * mesh.points.size() * (is_quadratic ? nodes_per_vertex : 1.),
-            contact.size() * (is_quadratic ? nodes_per_surface_vertex : 1.)};
+  ProblemSize expected_size(const Mesh &mesh, const unsigned int degree)
+  {
+    std::set<unsigned int>  contact;
+    std::vector<Mesh::Face> contact_faces;
+    for (const Mesh::Face &face : mesh.faces)
+      if (mesh.surface_names[face.surface] == PhysicalNames::pin_contact)
+        {
+          contact.insert(face.nodes.begin(), face.nodes.end());
+          contact_faces.push_back(face);
+        }
+    const bool adds_nodes = degree > mesh.degree;
+    return {double(mesh.cells.size()), 3. * (mesh.points.size() + (adds_nodes ? n_added_nodes(mesh.cells) : 0)),
+            double(contact.size() + (adds_nodes ? n_added_nodes(contact_faces) : 0))};
   }
 
   void check_memory(const ProblemSize &size,
@@ -88,7 +120,7 @@ namespace Squeal
     const double needed = size.memory(degree, n_modes), available = available_memory(communicator);
     if (!(needed > available))
       return;
-    throw MeshError(text("The scene has about ", size.cells, " hexahedra and ", size.dofs, " dofs, which need about ", needed / 1e9,
+    throw MeshError(text("The scene has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9,
                          " GB of memory; ", available / 1e9, " GB are available"),
                     where,
                     "raise Geometry/Element size, lower Geometry/Disc layers, Geometry/Pin layers or Geometry/Nodes per pin face, or lower "
@@ -99,50 +131,56 @@ namespace Squeal
   {
     /// Share of the disc's faces that a rotation about an axis moves within themselves, n·(a × (x − c)) ≈ 0: of the lateral ones, which
     /// tell where the axis is, or of the others, which tell how it is inclined, whichever is less.
-    double round_share(const HexMesh &mesh, const std::vector<HexFace> &faces, const HexMesh::Point &c, const dealii::Tensor<1, 3> &a)
+    double round_share(const Mesh &mesh, const std::vector<CellFace> &faces, const Mesh::Point &c, const dealii::Tensor<1, 3> &a)
     {
       constexpr double largest_lateral_cosine = 0.5, fitting_motion = 5e-3;
       double           all[2] = {0., 0.}, fitting[2] = {0., 0.};
-      for (const HexFace &face : faces)
+      for (const CellFace &face : faces)
         {
-          const auto [centre, normal]           = face_geometry(mesh, face.nodes);
+          const auto [centre, normal]           = face_geometry(mesh, face);
           const dealii::Tensor<1, 3> motion     = cross_product_3d(a, centre - c);
           const double               area       = normal.norm();
           const bool                 is_lateral = std::abs(normal * a) < largest_lateral_cosine * area;
           all[is_lateral] += area;
-          if (std::abs(normal * motion) < fitting_motion * area * motion.norm())
+          double least = std::numeric_limits<double>::infinity(), most = -least; // at the corners
+          for (unsigned int v = 0; v < face.n_corners; ++v)
+            {
+              const double value = normal * cross_product_3d(a, mesh.points[face.corners[v]] - c);
+              least              = std::min(least, value);
+              most               = std::max(most, value);
+            }
+          // A chord is parallel to its circle in the middle, where a triangle need not have its centre
+          if (std::abs(least + most) / 2. < fitting_motion * area * motion.norm())
             fitting[is_lateral] += area;
         }
       return std::min(all[0] > 0. ? fitting[0] / all[0] : 0., all[1] > 0. ? fitting[1] / all[1] : 0.);
     }
   } // namespace
 
-  bool is_round_about_z(const HexMesh &mesh, const std::string &where)
+  bool is_round_about_z(const Mesh &mesh, const std::string &where)
   {
     constexpr double clearly_rounder = 0.1, least_round = 0.5;          // shares of the surface
     constexpr double negligible_angle = 5e-3, negligible_offset = 5e-3; // [rad], [outer radius]
 
-    // Moments of each face, exact for a parallelogram: two thirds of those of its centre, one third of the mean of its corners
-    std::vector<HexFace> faces = outer_faces(mesh);
-    faces.erase(std::remove_if(faces.begin(), faces.end(),
-                               [&](const HexFace &face) { return mesh.volume_names[face.volume] != PhysicalNames::disc; }),
-                faces.end());
+    // Moments of each face, exact for a triangle or parallelogram: a twelfth of those of each corner, the rest of those of its centre
+    std::vector<CellFace> faces = outer_faces(mesh);
+    faces.erase(std::remove_if(faces.begin(), faces.end(), [](const CellFace &face) { return face.body != 0; }), faces.end());
     double          area = 0., radius = 0.;
     Eigen::Vector3d centre  = Eigen::Vector3d::Zero();
     Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    const auto      add     = [&](const HexMesh::Point &p, const double weight) {
+    const auto      add     = [&](const Mesh::Point &p, const double weight) {
       const Eigen::Vector3d x = Eigen::Vector3d::Map(p.begin_raw());
       centre += weight * x;
       moments += weight * x * x.transpose();
       area += weight;
       radius = std::max(radius, std::hypot(p[0], p[1]));
     };
-    for (const HexFace &face : faces)
+    for (const CellFace &face : faces)
       {
-        const auto [middle, normal] = face_geometry(mesh, face.nodes);
-        add(middle, 2. / 3. * normal.norm());
-        for (const unsigned int node : face.nodes)
-          add(mesh.points[node], normal.norm() / 12.);
+        const auto [middle, normal] = face_geometry(mesh, face);
+        add(middle, (1. - face.n_corners / 12.) * normal.norm());
+        for (unsigned int v = 0; v < face.n_corners; ++v)
+          add(mesh.points[face.corners[v]], normal.norm() / 12.);
       }
     centre /= area;
 
@@ -151,9 +189,9 @@ namespace Squeal
     const Eigen::Vector3d                                s    = axes.eigenvalues(); // ascending
     Eigen::Vector3d                                      axis = axes.eigenvectors().col(s[1] - s[0] < s[2] - s[1] ? 2 : 0);
     axis *= axis[2] < 0. ? -1. : 1.;
-    const double about_z = round_share(mesh, faces, HexMesh::Point(), dealii::Tensor<1, 3>({0., 0., 1.}));
+    const double about_z = round_share(mesh, faces, Mesh::Point(), dealii::Tensor<1, 3>({0., 0., 1.}));
     const double about_axis =
-      round_share(mesh, faces, HexMesh::Point(centre[0], centre[1], centre[2]), dealii::Tensor<1, 3>({axis[0], axis[1], axis[2]}));
+      round_share(mesh, faces, Mesh::Point(centre[0], centre[1], centre[2]), dealii::Tensor<1, 3>({axis[0], axis[1], axis[2]}));
     const double angle = std::atan2(std::hypot(axis[0], axis[1]), axis[2]), offset = std::hypot(centre[0], centre[1]);
     if ((angle > negligible_angle || offset > negligible_offset * radius) && about_axis > about_z + clearly_rounder)
       {
@@ -169,16 +207,15 @@ namespace Squeal
     return about_z >= least_round;
   }
 
-  void check_wave_resolution(const HexMesh            &mesh,
+  void check_wave_resolution(const Mesh               &mesh,
                              const MaterialParameters &materials,
                              const unsigned int        degree,
                              const double              largest_circular_frequency)
   {
     std::vector<double> longest_edges(mesh.volume_names.size(), 0.);
-    for (const HexFace &face : all_faces(mesh))
-      for (unsigned int i = 0; i < 4; ++i)
-        longest_edges[face.volume] =
-          std::max(longest_edges[face.volume], mesh.points[face.nodes[i]].distance(mesh.points[face.nodes[(i + 1) % 4]]));
+    for (const Mesh::Cell &cell : mesh.cells)
+      for (const auto &[a, b] : topology(cell.shape).edges)
+        longest_edges[cell.volume] = std::max(longest_edges[cell.volume], mesh.corner(cell, a).distance(mesh.corner(cell, b)));
     for (unsigned int volume = 0; volume < mesh.volume_names.size(); ++volume)
       {
         const std::string &name      = mesh.volume_names[volume];
@@ -190,8 +227,12 @@ namespace Squeal
         throw ParameterError(text("shear waves of ", frequency, " Hz are ", wave, " m long in ", name, ", whose elements measure up to ",
                                   edge, " m: the mesh does not resolve the modes of the band"),
                              "parameter Band/Maximum frequency",
-                             text("lower it below ", wave * degree / edge * frequency, " Hz, choose smaller elements, or correct ",
-                                  name == PhysicalNames::disc ? "Disc" : "Pin", " material/Young modulus and Density"));
+                             text("lower it below ", wave * degree / edge * frequency,
+                                  " Hz, choose smaller elements, or correct the modulus and "
+                                  "density in ",
+                                  materials.has_own(name) ? "Materials/Volumes" :
+                                  is_of_disc(name)        ? "Disc material" :
+                                                            "Pin material"));
       }
   }
 } // namespace Squeal

@@ -5,6 +5,8 @@
 #include <squeal/linear_algebra/row_map.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
+#include <deal.II/base/mpi.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -12,112 +12,108 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of a cell, and its place among the rows of this process; -1 for those of others.
+    /// A free dof of an element, and its place among the rows of this process; -1 for those of others.
     struct FreeDof
     {
-      unsigned int in_cell;
+      unsigned int in_element;
       int          number, row;
     };
 
-    /// Free dofs of a cell: nothing is integrated over clamped ones.
-    std::vector<FreeDof> free_dofs(const Model &model, const Cell &cell)
+    /// An element that contributes to rows of this process.
+    struct Contribution
     {
-      std::vector<types::global_dof_index> dofs(cell->get_fe().n_dofs_per_cell());
-      cell->get_dof_indices(dofs);
-      std::vector<FreeDof> result;
-      for (unsigned int i = 0; i < dofs.size(); ++i)
-        if (const int number = model.free_dof(dofs[i]); number >= 0)
-          result.push_back({i, number, model.free_map().place(number)});
-      return result;
-    }
-    /// A cell that contributes to rows of this process.
-    struct IntegratedCell
-    {
-      Cell                 cell;
-      std::vector<FreeDof> dofs;
+      const NodalElement  *element;
+      std::vector<FreeDof> dofs; ///< nothing is integrated over clamped ones
     };
 
-    /// A process knows all cells that have one of its rows, and integrates them: at the borders more than one does, and nothing is sent.
-    std::vector<IntegratedCell> integrated_cells(const Model &model, const CellPredicate &contributes)
+    /// A process has all elements that have one of its rows, and integrates them: at the borders more than one does, and nothing is sent.
+    std::vector<Contribution> contributions(const Model &model, const std::vector<const NodalElement *> &elements)
     {
-      std::vector<IntegratedCell> result;
-      for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (!cell->is_artificial() && contributes(cell))
-          {
-            std::vector<FreeDof> dofs = free_dofs(model, cell);
-            if (std::any_of(dofs.begin(), dofs.end(), [](const FreeDof &dof) { return dof.row >= 0; }))
-              result.push_back({cell, std::move(dofs)});
-          }
+      std::vector<Contribution> result;
+      for (const NodalElement *element : elements)
+        {
+          std::vector<FreeDof> dofs;
+          for (unsigned int i = 0; i < element->nodes.size(); ++i)
+            for (unsigned int c = 0; c < 3; ++c)
+              if (const int number = model.nodes()[element->nodes[i]].dofs[c]; number >= 0)
+                dofs.push_back({3 * i + c, number, model.free_map().place(number)});
+          if (std::any_of(dofs.begin(), dofs.end(), [](const FreeDof &dof) { return dof.row >= 0; }))
+            result.push_back({element, std::move(dofs)});
+        }
       return result;
     }
 
-    void make_pattern(const std::vector<IntegratedCell> &cells, const RowMap &map, SparsityPattern &pattern)
+    void make_pattern(const std::vector<Contribution> &contributions, const RowMap &map, SparsityPattern &pattern)
     {
       DynamicSparsityPattern               rows(map.n_local(), map.n());
       std::vector<types::global_dof_index> columns;
-      for (const auto &[cell, dofs] : cells)
+      for (const auto &[element, dofs] : contributions)
         {
           columns.clear();
           for (const FreeDof &dof : dofs)
             columns.push_back(dof.number);
+          std::sort(columns.begin(), columns.end());
           for (const FreeDof &dof : dofs)
             if (dof.row >= 0)
-              rows.add_entries(dof.row, columns.begin(), columns.end());
+              rows.add_entries(dof.row, columns.begin(), columns.end(), true);
         }
       pattern.copy_from(rows);
     }
 
-    /// Cells that one thread integrates with the same integrals, and those whose matrices are kept until they are added.
-    constexpr int cells_of_task = 256, cells_together = 8 * cells_of_task;
+    /// Elements that one thread integrates, and those whose matrices are kept until they are added.
+    constexpr int elements_of_task = 256, elements_together = 8 * elements_of_task;
 
-    /// The sums over all cells. Of some cells at a time, threads first integrate, each other cells, then add, each to another matrix:
-    /// always in the order of the cells.
-    void integrate_and_add(const std::vector<IntegratedCell>         &cells,
-                           const MakeIntegrals                       &make_integrals,
-                           const unsigned int                         n_dofs_of_cell,
+    /// The sums over all elements. Of some at a time, threads first integrate, each other ones, then add, each to another matrix: always in the
+    /// order of the elements.
+    void integrate_and_add(const Model                               &model,
+                           const std::vector<Contribution>           &contributions,
+                           const std::vector<ElementIntegral>        &integrals,
                            std::vector<dealii::SparseMatrix<double>> &matrices)
     {
-      const int                                    n_cells    = static_cast<int>(cells.size());
-      const int                                    n_together = std::min(n_cells, cells_together);
+      const int                                    n_elements = static_cast<int>(contributions.size());
+      const int                                    n_together = std::min(n_elements, elements_together);
       std::vector<std::vector<FullMatrix<double>>> found(matrices.size(), std::vector<FullMatrix<double>>(n_together));
-      std::vector<std::vector<CellIntegral>>       integrals((n_together + cells_of_task - 1) / cells_of_task);
-      for (int first = 0; first < n_cells; first += n_together)
+      std::vector<std::unique_ptr<ElementValues>>  values((n_together + elements_of_task - 1) / elements_of_task);
+      for (int first = 0; first < n_elements; first += n_together)
         {
-          const int n_here = std::min(n_together, n_cells - first);
-          run_tasks((n_here + cells_of_task - 1) / cells_of_task, [&](const int task) {
-            if (integrals[task].empty())
-              integrals[task] = make_integrals();
-            for (int c = task * cells_of_task; c < std::min(n_here, (task + 1) * cells_of_task); ++c)
-              for (std::size_t k = 0; k < matrices.size(); ++k)
-                {
-                  if (found[k][c].empty())
-                    found[k][c].reinit(n_dofs_of_cell, n_dofs_of_cell, true);
-                  integrals[task][k](cells[first + c].cell, found[k][c]);
-                }
+          const int n_here = std::min(n_together, n_elements - first);
+          run_tasks((n_here + elements_of_task - 1) / elements_of_task, [&](const int task) {
+            if (!values[task])
+              values[task] = std::make_unique<ElementValues>(model);
+            for (int e = task * elements_of_task; e < std::min(n_here, (task + 1) * elements_of_task); ++e)
+              {
+                const NodalElement &element = *contributions[first + e].element;
+                values[task]->reinit(element);
+                for (std::size_t k = 0; k < matrices.size(); ++k)
+                  {
+                    found[k][e].reinit(3 * element.nodes.size(), 3 * element.nodes.size());
+                    integrals[k](*values[task], found[k][e]);
+                  }
+              }
           });
           run_tasks(static_cast<int>(matrices.size()), [&](const int k) {
-            for (int c = 0; c < n_here; ++c)
-              for (const FreeDof &i : cells[first + c].dofs)
+            for (int e = 0; e < n_here; ++e)
+              for (const FreeDof &i : contributions[first + e].dofs)
                 if (i.row >= 0)
-                  for (const FreeDof &j : cells[first + c].dofs)
-                    matrices[k].add(i.row, j.number, found[k][c](i.in_cell, j.in_cell));
+                  for (const FreeDof &j : contributions[first + e].dofs)
+                    matrices[k].add(i.row, j.number, found[k][e](i.in_element, j.in_element));
           });
         }
     }
   } // namespace
 
-  std::vector<std::shared_ptr<const SparseMatrix>> assemble_cells(const Model         &model,
-                                                                  const CellPredicate &contributes,
-                                                                  const MakeIntegrals &make_integrals)
+  std::vector<std::shared_ptr<const SparseMatrix>> assemble(const Model                             &model,
+                                                            const std::vector<const NodalElement *> &elements,
+                                                            const std::vector<ElementIntegral>      &integrals)
   {
-    const RowMap                     &map   = model.free_map();
-    const std::vector<IntegratedCell> cells = integrated_cells(model, contributes);
-    SparsityPattern                   pattern;
-    make_pattern(cells, map, pattern);
-    std::vector<dealii::SparseMatrix<double>> matrices(make_integrals().size());
+    const RowMap                   &map         = model.free_map();
+    const std::vector<Contribution> contributed = contributions(model, elements);
+    SparsityPattern                 pattern;
+    make_pattern(contributed, map, pattern);
+    std::vector<dealii::SparseMatrix<double>> matrices(integrals.size());
     for (dealii::SparseMatrix<double> &matrix : matrices)
       matrix.reinit(pattern);
-    integrate_and_add(cells, make_integrals, model.dof_handler().get_fe().n_dofs_per_cell(), matrices);
+    integrate_and_add(model, contributed, integrals, matrices);
 
     std::vector<std::shared_ptr<const SparseMatrix>> result(matrices.size());
     const auto                                       convert = [&](const int k) {

@@ -11,19 +11,44 @@ namespace Squeal
   {
     constexpr unsigned int n_modes = 9;
 
-    /// Jacobian of the trilinear map of a cell at its centre.
-    Tensor<2, 3> centre_jacobian(const FEValues<3> &values)
+    /// A displacement with one component.
+    struct Displacement
     {
-      const auto  &cell = values.get_cell();
+      unsigned int component;
+      Tensor<1, 3> gradient;
+    };
+
+    /// det J₀ J₀⁻ᵀ of the trilinear map of a hexahedron at its centre.
+    Tensor<2, 3> centre_gradients(const ElementValues &values)
+    {
+      const auto  &corners = topology(Shape::hexahedron).corners;
       Tensor<2, 3> J;
-      for (const unsigned int v : cell->vertex_indices())
+      for (unsigned int v = 0; v < corners.size(); ++v)
         for (unsigned int a = 0; a < 3; ++a)
           {
-            const double derivative = (v >> a & 1 ? 1. : -1.) / 4.; // vertices are numbered lexicographically
+            const double derivative = (corners[v][a] > 0.5 ? 1. : -1.) / 4.;
             for (unsigned int i = 0; i < 3; ++i)
-              J[i][a] += derivative * cell->vertex(v)[i];
+              J[i][a] += derivative * values.node(v)[i];
           }
-      return J;
+      return determinant(J) * transpose(invert(J));
+    }
+
+    void add_incompatible_modes(const ElementValues       &values,
+                                const unsigned int         q,
+                                const Tensor<2, 3>        &centre_gradients,
+                                std::vector<Displacement> &displacements)
+    {
+      // The reference cell is [0, 1]³: ξ = 2 x̂ − 1
+      const Point<3> &x     = values.reference_point(q);
+      const double    det_J = determinant(values.jacobian(q));
+      for (unsigned int a = 0; a < 3; ++a)
+        {
+          Tensor<1, 3> reference_gradient;
+          reference_gradient[a]       = -4. * (2. * x[a] - 1.);
+          const Tensor<1, 3> gradient = centre_gradients * reference_gradient / det_J;
+          for (unsigned int b = 0; b < 3; ++b)
+            displacements.push_back({b, gradient});
+        }
     }
 
     /// Eliminates the last unknowns: the Schur complement of a positive definite matrix.
@@ -46,52 +71,23 @@ namespace Squeal
     }
   } // namespace
 
-  CellStiffness::CellStiffness(const Element element, const double poisson_ratio)
-    : element(element)
-    , shear_modulus(1. / (2. * (1. + poisson_ratio)))
-    , lame(2. * shear_modulus * poisson_ratio / (1. - 2. * poisson_ratio))
-  {}
-
-  UpdateFlags CellStiffness::update_flags(const Element element)
+  void add_stiffness(const ElementValues &values, const Element element, const double poisson_ratio, FullMatrix<double> &stiffness)
   {
-    return update_gradients | update_JxW_values | (element == Element::incompatible_modes ? update_jacobians : update_default);
-  }
-
-  void CellStiffness::add_incompatible_modes(const FEValues<3> &values, const unsigned int quadrature_point)
-  {
-    // deal.II's cell is [0, 1]³: ξ = 2 x̂ − 1
-    const Point<3> &x     = values.get_quadrature().point(quadrature_point);
-    const double    det_J = values.jacobian(quadrature_point).determinant();
-    for (unsigned int a = 0; a < 3; ++a)
-      {
-        Tensor<1, 3> reference_gradient;
-        reference_gradient[a]       = -4. * (2. * x[a] - 1.);
-        const Tensor<1, 3> gradient = centre_gradients * reference_gradient / det_J;
-        for (unsigned int b = 0; b < 3; ++b)
-          displacements.push_back({b, gradient});
-      }
-  }
-
-  void CellStiffness::integrate(const FEValues<3> &values, FullMatrix<double> &stiffness)
-  {
-    const auto         &fe        = values.get_fe();
-    const bool          has_modes = element == Element::incompatible_modes;
-    const unsigned int  n         = fe.n_dofs_per_cell() + (has_modes ? n_modes : 0);
-    FullMatrix<double> &K         = has_modes ? with_modes : stiffness;
-    if (has_modes)
-      {
-        const Tensor<2, 3> J0 = centre_jacobian(values);
-        centre_gradients      = determinant(J0) * transpose(invert(J0));
-        with_modes.reinit(n, n);
-      }
-    K = 0.;
-    for (const unsigned int q : values.quadrature_point_indices())
+    const double              G = 1. / (2. * (1. + poisson_ratio)), lame = 2. * G * poisson_ratio / (1. - 2. * poisson_ratio);
+    const bool                has_modes = element == Element::incompatible_modes && values.element().shape == Shape::hexahedron;
+    const unsigned int        n         = stiffness.m() + (has_modes ? n_modes : 0);
+    const Tensor<2, 3>        at_centre = has_modes ? centre_gradients(values) : Tensor<2, 3>();
+    FullMatrix<double>        with_modes(has_modes ? n : 0);
+    FullMatrix<double>       &K = has_modes ? with_modes : stiffness;
+    std::vector<Displacement> displacements;
+    for (unsigned int q = 0; q < values.n_points(); ++q)
       {
         displacements.clear();
-        for (const unsigned int i : values.dof_indices())
-          displacements.push_back({fe.system_to_component_index(i).first, values.shape_grad(i, q)});
+        for (unsigned int i = 0; i < values.n_nodes(); ++i)
+          for (unsigned int c = 0; c < 3; ++c)
+            displacements.push_back({c, values.gradient(i, q)});
         if (has_modes)
-          add_incompatible_modes(values, q);
+          add_incompatible_modes(values, q, at_centre, displacements);
         for (unsigned int i = 0; i < n; ++i)
           for (unsigned int j = 0; j <= i; ++j)
             {
@@ -99,9 +95,9 @@ namespace Squeal
               // 2 ε:ε = δ_ab ∇N_i·∇N_j + ∂_b N_i ∂_a N_j and div div = ∂_a N_i ∂_b N_j
               const auto &[a, grad_i] = displacements[i];
               const auto &[b, grad_j] = displacements[j];
-              double k                = shear_modulus * grad_i[b] * grad_j[a] + lame * grad_i[a] * grad_j[b];
+              double k                = G * grad_i[b] * grad_j[a] + lame * grad_i[a] * grad_j[b];
               if (a == b)
-                k += shear_modulus * (grad_i * grad_j);
+                k += G * (grad_i * grad_j);
               K(i, j) += k * values.JxW(q);
             }
       }

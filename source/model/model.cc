@@ -1,28 +1,21 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/model/curved_boundaries.h>
+#include <squeal/geometry/second_order.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/model/model.h>
 
-#include <deal.II/base/index_set.h>
 #include <deal.II/base/mpi.h>
-#include <deal.II/distributed/fully_distributed_tria.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
-#include <deal.II/fe/mapping_q.h>
-#include <deal.II/grid/grid_tools.h>
-#include <deal.II/grid/manifold_lib.h>
-#include <deal.II/grid/tria_description.h>
-#include <deal.II/lac/la_parallel_vector.h>
+#include <deal.II/base/utilities.h>
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparsity_pattern.h>
+#include <deal.II/lac/sparsity_tools.h>
 
 #include <boost/algorithm/string/join.hpp>
-#include <boost/serialization/set.hpp>
 #include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <sstream>
+#include <set>
 
 namespace Squeal
 {
@@ -30,83 +23,42 @@ namespace Squeal
 
   namespace
   {
-    using Description = TriangulationDescription::Description<3, 3>;
-
-    /// The hexahedra of all bodies with what deal.II needs to know of them.
-    struct CellLists
+    /// What a process has of the model.
+    struct Part
     {
-      std::vector<Point<3>>    vertices;
-      std::vector<CellData<3>> cells; ///< with their material ids
-      SubCellData              faces; ///< named surfaces, by boundary id
+      std::vector<Node> nodes;
+      std::vector<Cell> cells;
+      std::vector<Face> faces;
+      int               n_own_dofs = 0; ///< free ones
+
+      template <class Archive>
+      void serialize(Archive &archive, const unsigned int /*version*/)
+      {
+        archive &nodes &n_own_dofs;
+        serialize_elements(archive, cells, [&archive](Cell &cell) { archive &cell.volume; });
+        serialize_elements(archive, faces, [&archive](Face &face) { archive &face.surfaces; });
+      }
+
+    private:
+      template <class Archive, class Elements, class Rest>
+      static void serialize_elements(Archive &archive, Elements &elements, const Rest &rest)
+      {
+        std::size_t n = elements.size();
+        archive    &n;
+        elements.resize(n);
+        for (auto &element : elements)
+          {
+            std::size_t n_nodes = element.nodes.size();
+            archive &element.shape &element.component &element.number &element.is_own &n_nodes;
+            element.nodes.resize(n_nodes);
+            for (unsigned int &node : element.nodes)
+              archive &node;
+            rest(element);
+          }
+      }
     };
 
-    /// Gmsh numbers the vertices of a quadrilateral around it, deal.II lexicographically.
-    constexpr std::array<unsigned int, 8> gmsh_vertex = {{0, 1, 3, 2, 4, 5, 7, 6}};
-
-    CellLists cell_lists(const HexMesh &mesh)
-    {
-      CellLists lists;
-      lists.vertices = mesh.points;
-      for (const auto &hexahedron : mesh.hexahedra)
-        {
-          CellData<3> cell;
-          for (unsigned int v = 0; v < 8; ++v)
-            cell.vertices[v] = hexahedron.nodes[gmsh_vertex[v]];
-          cell.material_id = hexahedron.volume;
-          lists.cells.push_back(cell);
-        }
-      return lists;
-    }
-
-    /// Adds the named faces, each once, with a boundary id for its combination of names; returns the ids of every surface.
-    std::vector<std::set<unsigned int>> add_faces(const HexMesh &mesh, CellLists &lists)
-    {
-      std::map<std::array<unsigned int, 4>, std::pair<const HexMesh::Quadrilateral *, std::set<unsigned int>>> faces; // with all names
-      for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-        {
-          auto key = quadrilateral.nodes;
-          std::sort(key.begin(), key.end());
-          auto &[face, names] = faces[key];
-          face                = &quadrilateral;
-          names.insert(quadrilateral.surface);
-        }
-      std::map<std::set<unsigned int>, types::boundary_id> combinations;
-      std::vector<std::set<unsigned int>>                  ids(mesh.surface_names.size());
-      for (const auto &[key, entry] : faces)
-        {
-          const auto &[quadrilateral, names] = entry;
-          CellData<2> face;
-          for (unsigned int v = 0; v < 4; ++v)
-            face.vertices[v] = quadrilateral->nodes[gmsh_vertex[v]];
-          face.boundary_id = combinations.emplace(names, combinations.size() + 1).first->second; // 0: faces without a name
-          lists.faces.boundary_quads.push_back(face);
-          for (const unsigned int name : names)
-            ids[name].insert(face.boundary_id);
-        }
-      return ids;
-    }
-
-    /// Does what may fail on one process; then all throw.
-    template <typename Function>
-    void together(const MPI_Comm communicator, const Function &action)
-    {
-      std::string problem;
-      try
-        {
-          action();
-        }
-      catch (const ExceptionBase &exception)
-        {
-          std::ostringstream text;
-          exception.print_info(text);
-          problem = text.str().empty() ? "no reason is given" : text.str();
-        }
-      for (const std::string &text : Utilities::MPI::all_gather(communicator, problem))
-        if (!text.empty())
-          throw MeshError("deal.II refuses the mesh: " + text, "mesh", "check the orientation and connectivity of the hexahedra");
-    }
-
-    void send(const int process, const Description &part, const MPI_Comm communicator)
+    void send(const int process, const Part &part, const MPI_Comm communicator)
     {
       const std::vector<char> buffer = Utilities::pack(part, false);
       const unsigned long     size   = buffer.size();
@@ -115,181 +67,199 @@ namespace Squeal
       MPI_Send(buffer.data(), static_cast<int>(size), MPI_CHAR, process, 0, communicator);
     }
 
-    Description receive(const MPI_Comm communicator)
+    Part receive(const MPI_Comm communicator)
     {
       unsigned long size;
       MPI_Recv(&size, 1, MPI_UNSIGNED_LONG, 0, 0, communicator, MPI_STATUS_IGNORE);
       std::vector<char> buffer(size);
       MPI_Recv(buffer.data(), static_cast<int>(size), MPI_CHAR, 0, 0, communicator, MPI_STATUS_IGNORE);
-      auto part = Utilities::unpack<Description>(buffer, false);
-      part.comm = communicator;
-      return part;
+      return Utilities::unpack<Part>(buffer, false);
     }
 
-    /// A number, up to 2^53, for each dof of the cells that this process has, from the processes that own them.
-    using DofNumbers = LinearAlgebra::distributed::Vector<double>;
+    /// The whole mesh with its nodes and dofs numbered, on process 0, and the parts of it for the processes.
+    class Division
+    {
+    public:
+      Division(const Mesh &mesh, const unsigned int n_processes)
+        : mesh(mesh)
+        , process_of_cell(mesh.cells.size(), 0)
+      {
+        find_faces();
+        if (n_processes > 1)
+          distribute_cells(n_processes);
+        number_nodes();
+        number_dofs(n_processes);
+      }
+
+      Part part(const unsigned int process) const
+      {
+        Part              result;
+        std::vector<int>  place(mesh.points.size(), -1);
+        std::vector<bool> has_cell(mesh.cells.size());
+        const auto        places = [&](const Mesh::Nodes &nodes) {
+          Mesh::Nodes found;
+          for (const unsigned int node : nodes)
+            {
+              if (place[node] < 0)
+                {
+                  place[node] = static_cast<int>(result.nodes.size());
+                  result.nodes.push_back(nodes_of_mesh[node]);
+                  result.nodes.back().is_own = process_of_node[node] == process;
+                }
+              found.push_back(place[node]);
+            }
+          return found;
+        };
+        for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+          {
+            const Mesh::Cell &cell   = mesh.cells[c];
+            const bool        is_own = process_of_cell[c] == process;
+            has_cell[c]              = is_own || std::any_of(cell.nodes.begin(), cell.nodes.end(),
+                                                             [&](const unsigned int node) { return process_of_node[node] == process; });
+            if (has_cell[c])
+              result.cells.push_back(
+                {{cell.shape, places(cell.nodes), mesh.body_of(cell), static_cast<std::int64_t>(c), is_own}, cell.volume});
+          }
+        for (std::size_t f = 0; f < faces.size(); ++f)
+          if (const CellFace &face = faces[f].first; has_cell[face.cell])
+            {
+              const Mesh::Cell &cell = mesh.cells[face.cell];
+              Mesh::Nodes       nodes;
+              for (const unsigned int i : nodes_of_face(cell.shape, mesh.degree, face.number))
+                nodes.push_back(cell.nodes[i]);
+              result.faces.push_back({{shape_of_face(face.n_corners), places(nodes), face.body, static_cast<std::int64_t>(f),
+                                       process_of_cell[face.cell] == process},
+                                      faces[f].second});
+            }
+        result.n_own_dofs = n_dofs_of_process[process];
+        return result;
+      }
+
+    private:
+      const Mesh                                             &mesh;
+      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces; ///< outer ones with their surfaces
+      std::vector<unsigned int>                               process_of_cell, process_of_node;
+      std::vector<Node>                                       nodes_of_mesh;
+      std::vector<int>                                        n_dofs_of_process;
+
+      void find_faces()
+      {
+        std::map<std::array<unsigned int, 4>, std::set<unsigned int>> names;
+        for (const Mesh::Face &face : mesh.faces)
+          names[face_key(face)].insert(face.surface);
+        for (const CellFace &face : outer_faces(mesh))
+          {
+            const auto it = names.find(face.key);
+            faces.emplace_back(face,
+                               it == names.end() ? std::vector<unsigned>() : std::vector<unsigned>(it->second.begin(), it->second.end()));
+          }
+        std::sort(faces.begin(), faces.end(), [](const auto &a, const auto &b) {
+          return std::make_pair(a.first.cell, a.first.number) < std::make_pair(b.first.cell, b.first.number);
+        });
+      }
+
+      /// By METIS, cells that share a face being neighbours.
+      void distribute_cells(const unsigned int n_processes)
+      {
+        DynamicSparsityPattern      neighbours(mesh.cells.size());
+        const std::vector<CellFace> all = all_faces(mesh);
+        for (std::size_t i = 1; i < all.size(); ++i)
+          if (all[i - 1].key == all[i].key)
+            {
+              neighbours.add(all[i - 1].cell, all[i].cell);
+              neighbours.add(all[i].cell, all[i - 1].cell);
+            }
+        SparsityPattern pattern;
+        pattern.copy_from(neighbours);
+        SparsityTools::partition(pattern, n_processes, process_of_cell);
+      }
+
+      /// In the order of the cells; a node belongs to the first process that has a cell with it.
+      void number_nodes()
+      {
+        constexpr unsigned int nobody = -1;
+        process_of_node.assign(mesh.points.size(), nobody);
+        nodes_of_mesh.resize(mesh.points.size());
+        std::int64_t number = 0;
+        for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+          for (const unsigned int n : mesh.cells[c].nodes)
+            {
+              if (process_of_node[n] == nobody)
+                nodes_of_mesh[n] = {{{mesh.points[n][0], mesh.points[n][1], mesh.points[n][2]}},
+                                    {{0, 0, 0}},
+                                    mesh.body_of(mesh.cells[c]),
+                                    number++,
+                                    false};
+              process_of_node[n] = std::min(process_of_node[n], process_of_cell[c]);
+            }
+      }
+
+      void number_dofs(const unsigned int n_processes)
+      {
+        const auto clamp = std::find(mesh.surface_names.begin(), mesh.surface_names.end(), PhysicalNames::pin_clamp);
+        for (const Mesh::Face &face : mesh.faces)
+          if (face.surface == static_cast<std::size_t>(clamp - mesh.surface_names.begin()))
+            for (const unsigned int node : face.nodes)
+              nodes_of_mesh[node].dofs = {{-1, -1, -1}};
+
+        std::vector<unsigned int> order(mesh.points.size());
+        std::iota(order.begin(), order.end(), 0);
+        std::sort(order.begin(), order.end(), [this](const unsigned int a, const unsigned int b) {
+          return std::make_pair(process_of_node[a], nodes_of_mesh[a].number) < std::make_pair(process_of_node[b], nodes_of_mesh[b].number);
+        });
+        int next = 0;
+        n_dofs_of_process.assign(n_processes, 0);
+        for (const unsigned int node : order)
+          for (int &dof : nodes_of_mesh[node].dofs)
+            if (dof >= 0)
+              {
+                dof = next++;
+                ++n_dofs_of_process[process_of_node[node]];
+              }
+      }
+    };
   } // namespace
 
-  struct Model::Discretisation
-  {
-    Discretisation(const unsigned int degree, const MPI_Comm communicator)
-      : triangulation(communicator)
-      , fe(FE_Q<3>(degree), 3)
-      , mapping(degree)
-      , dofs(triangulation)
-    {}
-
-    parallel::fullydistributed::Triangulation<3> triangulation;
-    FESystem<3>                                  fe;
-    MappingQ<3>                                  mapping;
-    DoFHandler<3>                                dofs;
-    IndexSet                                     relevant; ///< dofs of the cells that this process has
-  };
-
-  Model::Model(const HexMesh &mesh, const Element element, MPI_Comm communicator)
-    : components(mesh.volume_names)
+  Model::Model(const Mesh &mesh, const Element element, MPI_Comm communicator)
+    : components(mesh.body_names)
+    , volumes(mesh.volume_names)
     , surfaces(mesh.surface_names)
+    , component_of_volume(mesh.body_of_volume)
     , element_type(element)
     , processes(communicator)
-    , discretisation(std::make_unique<Discretisation>(degree_of(element), communicator))
+    , n_all_dofs(0)
   {
-    create_triangulation(mesh);
-    discretisation->dofs.distribute_dofs(discretisation->fe);
-    DoFTools::extract_locally_relevant_dofs(discretisation->dofs, discretisation->relevant);
-    number_free_dofs();
-    find_nodes();
-  }
-
-  Model::~Model() = default;
-
-  const DoFHandler<3> &Model::dof_handler() const
-  {
-    return discretisation->dofs;
-  }
-
-  const Mapping<3> &Model::mapping() const
-  {
-    return discretisation->mapping;
-  }
-
-  unsigned int Model::n_dofs() const
-  {
-    return discretisation->dofs.n_dofs();
-  }
-
-  void Model::create_triangulation(const HexMesh &mesh)
-  {
-    const unsigned int n_processes = Utilities::MPI::n_mpi_processes(communicator());
-    const bool         is_root     = Utilities::MPI::this_mpi_process(communicator()) == 0;
-
-    // Process 0 alone has all cells, and of the parts of other processes one at a time
-    std::vector<Cylinder> cylinders;
-    Triangulation<3>      all;
-    together(communicator(), [&] {
-      if (!is_root)
-        return;
-      CellLists lists = cell_lists(mesh);
-      ids_of_surfaces = add_faces(mesh, lists);
-      GridTools::delete_unused_vertices(lists.vertices, lists.cells, lists.faces);
-      GridTools::invert_all_negative_measure_cells(lists.vertices, lists.cells);
-      GridTools::consistently_order_cells(lists.cells);
-      all.create_triangulation(lists.vertices, lists.cells, lists.faces);
-      if (element_type == Element::quadratic)
-        cylinders = follow_cylinders(*this, all);
-      GridTools::partition_triangulation(n_processes, all);
-    });
-    ids_of_surfaces = Utilities::MPI::broadcast(communicator(), ids_of_surfaces);
-    const auto part = [&](const unsigned int process) {
-      return TriangulationDescription::Utilities::create_description_from_triangulation(all, communicator(),
-                                                                                        TriangulationDescription::default_setting, process);
-    };
-    Description own;
-    if (is_root)
+    if (mesh.degree > degree())
+      throw MeshError("the mesh is of second order", "parameter Discretization/Element",
+                      "set Discretization/Element = quadratic, or mesh with elements of first order");
+    Part own;
+    if (this_process(communicator) == 0)
       {
-        for (unsigned int process = 1; process < n_processes; ++process)
-          send(process, part(process), communicator());
-        own = part(0);
-        all.clear();
+        // Process 0 alone has all cells, and of the parts of other processes one at a time
+        const unsigned int n        = n_processes(communicator);
+        const Mesh         with_all = degree() == 2 ? second_order(mesh) : mesh;
+        const Division     division(with_all, n);
+        n_all_dofs = 3 * with_all.points.size();
+        for (unsigned int process = 1; process < n; ++process)
+          send(process, division.part(process), communicator);
+        own = division.part(0);
       }
     else
-      own = receive(communicator());
-
-    auto &triangulation = discretisation->triangulation;
-    together(communicator(), [&] { triangulation.create_triangulation(own); });
-    for (const Cylinder &cylinder : Utilities::MPI::broadcast(communicator(), cylinders))
-      triangulation.set_manifold(cylinder.id,
-                                 CylindricalManifold<3>(Tensor<1, 3>({0., 0., 1.}), Point<3>(cylinder.axis[0], cylinder.axis[1], 0.)));
+      own = receive(communicator);
+    agree(communicator, &n_all_dofs, 1);
+    node_table = std::move(own.nodes);
+    cell_table = std::move(own.cells);
+    face_table = std::move(own.faces);
+    map        = RowMap(own.n_own_dofs, communicator);
   }
 
-  void Model::number_free_dofs()
+  std::vector<unsigned int> Model::volumes_of(const unsigned int component) const
   {
-    // Clamped dofs: all three directions on the clamped surface
-    const DoFHandler<3> &dofs = discretisation->dofs;
-
-    const IndexSet &own = dofs.locally_owned_dofs();
-    IndexSet        clamped(dofs.n_dofs());
-    // deal.II takes no ids for all boundaries
-    if (has_surface(PhysicalNames::pin_clamp) && !surface_ids(PhysicalNames::pin_clamp).empty())
-      clamped = DoFTools::extract_boundary_dofs(dofs, ComponentMask(), surface_ids(PhysicalNames::pin_clamp));
-
-    // Numbers of the others: deal.II's order, so that ownership stays contiguous
-    int n_own = 0;
-    for (const auto dof : own)
-      n_own += !clamped.is_element(dof);
-    map               = RowMap(n_own, communicator());
-    int        number = n_own > 0 ? map.number(0) : 0;
-    DofNumbers numbers(own, discretisation->relevant, communicator());
-    for (const auto dof : own)
-      numbers(dof) = clamped.is_element(dof) ? -1 : number++;
-    numbers.update_ghost_values();
-    for (const auto dof : discretisation->relevant)
-      free_numbers.push_back(static_cast<int>(numbers(dof)));
-  }
-
-  void Model::find_nodes()
-  {
-    const auto &[triangulation, fe, mapping, dofs, relevant] = *discretisation;
-
-    constexpr unsigned int none = -1;
-    const IndexSet        &own  = dofs.locally_owned_dofs();
-    const unsigned int     n    = fe.base_element(0).n_dofs_per_cell();
-    dof_nodes.assign(relevant.n_elements(), none);
-
-    // Nodes: the dofs of the three directions at each support point
-    std::map<types::global_dof_index, Point<3>> support;
-    DoFTools::map_dofs_to_support_points(mapping, dofs, support);
-    DofNumbers                           numbers(own, relevant, communicator());
-    std::vector<types::global_dof_index> cell_dofs(fe.n_dofs_per_cell()), first_dofs;
-    for (const auto &cell : dofs.active_cell_iterators())
-      {
-        if (cell->is_artificial())
-          continue;
-        cell->get_dof_indices(cell_dofs);
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const auto first = cell_dofs[fe.component_to_system_index(0, i)];
-            if (dof_nodes[relevant.index_within_set(first)] != none)
-              continue;
-            Node node;
-            node.component = cell->material_id();
-            node.is_own    = own.is_element(first);
-            for (unsigned int c = 0; c < 3; ++c)
-              {
-                const auto place = relevant.index_within_set(cell_dofs[fe.component_to_system_index(c, i)]);
-                node.dofs[c]     = free_numbers[place];
-                node.position[c] = support.at(first)[c];
-                dof_nodes[place] = node_table.size();
-              }
-            // The process that owns a node has all its cells, the first of which gives the number
-            if (node.is_own)
-              numbers(first) = static_cast<double>(cell->id().get_coarse_cell_id()) * n + i;
-            node_table.push_back(node);
-            first_dofs.push_back(first);
-          }
-      }
-    numbers.update_ghost_values();
-    for (std::size_t i = 0; i < node_table.size(); ++i)
-      node_table[i].number = static_cast<std::int64_t>(numbers(first_dofs[i]));
+    std::vector<unsigned int> result;
+    for (unsigned int volume = 0; volume < volumes.size(); ++volume)
+      if (component_of_volume[volume] == component)
+        result.push_back(volume);
+    return result;
   }
 
   std::vector<Node> Model::gathered_nodes() const
@@ -302,28 +272,21 @@ namespace Squeal
     return all;
   }
 
-  unsigned int Model::node_of_dof(const std::size_t dof) const
+  std::vector<const Face *> Model::faces_of(const std::string &surface) const
   {
-    return dof_nodes[discretisation->relevant.index_within_set(dof)];
-  }
-
-  const std::set<unsigned int> &Model::surface_ids(const std::string &name) const
-  {
-    const auto it = std::find(surfaces.begin(), surfaces.end(), name);
+    const auto it = std::find(surfaces.begin(), surfaces.end(), surface);
     if (it == surfaces.end())
-      throw MeshError("the mesh has no surface named `" + name + "`", "mesh",
+      throw MeshError("the mesh has no surface named `" + surface + "`", "mesh",
                       "name such a surface in the geometry, or use one of: " + boost::algorithm::join(surfaces, ", "));
-    return ids_of_surfaces[it - surfaces.begin()];
+    std::vector<const Face *> result;
+    for (const Face &face : face_table)
+      if (std::count(face.surfaces.begin(), face.surfaces.end(), it - surfaces.begin()) > 0)
+        result.push_back(&face);
+    return result;
   }
 
   bool Model::has_surface(const std::string &name) const
   {
     return std::find(surfaces.begin(), surfaces.end(), name) != surfaces.end();
   }
-
-  int Model::free_dof(const std::size_t dof) const
-  {
-    return free_numbers[discretisation->relevant.index_within_set(dof)];
-  }
-
 } // namespace Squeal

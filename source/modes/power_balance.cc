@@ -28,14 +28,18 @@ namespace Squeal
       return result;
     }
 
-    /// Displacements of nodes, 3 × as many, on every process.
-    Eigen::Matrix3Xcd displacements(const std::vector<const Node *> &nodes, const MultiVector &re, const MultiVector &im)
+    /// Displacements of one side of the contact nodes, 3 × n_c, on every process.
+    Eigen::Matrix3Xcd displacements(const ContactInterface &interface,
+                                    const WeightedNodes ContactNode::*const side,
+                                    const MultiVector                      &re,
+                                    const MultiVector                      &im)
     {
-      Eigen::Matrix3Xcd result = Eigen::Matrix3Xcd::Zero(3, nodes.size());
-      for (std::size_t n = 0; n < nodes.size(); ++n)
-        for (int d = 0; d < 3; ++d)
-          if (const int i = re.map().place(nodes[n]->dofs[d]); i >= 0)
-            result(d, n) = {re(i, 0), im(i, 0)};
+      Eigen::Matrix3Xcd result = Eigen::Matrix3Xcd::Zero(3, interface.size());
+      for (std::size_t n = 0; n < interface.size(); ++n)
+        for (const auto &[node, weight] : interface[n].*side)
+          for (int d = 0; d < 3; ++d)
+            if (const int i = re.map().place(node.dofs[d]); i >= 0)
+              result(d, n) += weight * Complex(re(i, 0), im(i, 0));
       sum_over_processes(re.communicator(), reinterpret_cast<double *>(result.data()), 2 * result.size());
       return result;
     }
@@ -83,16 +87,11 @@ namespace Squeal
                              const MultiVector          &real_part,
                              const MultiVector          &imaginary_part)
   {
-    std::vector<const Node *> disc_nodes, pin_nodes;
-    for (const ContactNode &pair : interface)
-      {
-        disc_nodes.push_back(&pair.disc_node);
-        pin_nodes.push_back(&pair.pin_node);
-      }
     const MultiVector       re = *coupled.kernel * real_part, im = *coupled.kernel * imaginary_part;
-    const Eigen::Matrix3Xcd of_disc = displacements(disc_nodes, re, im), of_pin = displacements(pin_nodes, re, im);
-    const auto              reactions = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
-    const double            speed     = std::norm(lambda); // |λ|²
+    const Eigen::Matrix3Xcd of_disc = displacements(interface, &ContactNode::on_disc, re, im),
+                            of_pin  = displacements(interface, &ContactNode::on_pin, re, im);
+    const auto   reactions          = normal_reactions(coupled, {lambda}, real_part, imaginary_part);
+    const double speed              = std::norm(lambda); // |λ|²
     const double energy  = (speed * total(forms(model, bodies.mass, re, im)) + total(forms(model, bodies.stiffness, re, im))) / 4.;
     const double to_rate = 1. / (2. * lambda.imag() * energy); // from a power
 
@@ -103,8 +102,8 @@ namespace Squeal
     result.modal_damping = -0.5 * speed * modal_damping(coupled, real_part, imaginary_part) * to_rate;
     for (std::size_t node = 0; node < interface.size(); ++node)
       {
-        const Eigen::Vector3d &t = interface[node].sliding, &b = interface[node].radial;
-        const Complex          along_t_of_disc = t.dot(of_disc.col(node)), along_t_of_pin = t.dot(of_pin.col(node)),
+        const Eigen::Vector3d t = interface[node].friction * interface[node].sliding, &b = interface[node].radial;
+        const Complex         along_t_of_disc = t.dot(of_disc.col(node)), along_t_of_pin = t.dot(of_pin.col(node)),
                       along_b = b.dot(of_disc.col(node) - of_pin.col(node));
         const auto friction   = [&](const Complex &displacement) {
           return 0.5 * friction_coefficient * (std::conj(lambda * displacement) * reactions(node, 0)).real() * to_rate;

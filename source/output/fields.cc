@@ -128,7 +128,10 @@ namespace Squeal
     for (unsigned int c = 0; c < interface.size(); ++c)
       pair_of_node[interface[c].pin_node.number] = c;
     for (const Node &node : contact_faces.mesh.nodes)
-      pairs.push_back(pair_of_node.at(node.number));
+      {
+        const auto pair = pair_of_node.find(node.number);
+        pairs.push_back(pair == pair_of_node.end() ? -1 : static_cast<int>(pair->second));
+      }
   }
 
   const FieldWriter::Stage &FieldWriter::bodies(const std::optional<Component> &component)
@@ -243,8 +246,8 @@ namespace Squeal
     for (const auto &[field, values] : fields)
       {
         on_vertices.push_back({field, 1, {}});
-        for (const unsigned int pair : pairs)
-          on_vertices.back().values.push_back(static_cast<float>((*values)[pair]));
+        for (const int pair : pairs)
+          on_vertices.back().values.push_back(pair < 0 ? 0.f : static_cast<float>((*values)[pair]));
       }
     if (!interface.empty())
       write(contact_faces, name + "_contact", title, on_vertices);

@@ -16,7 +16,7 @@ namespace Squeal
 
     /// A cell as text; @p shown says how numbers are shown.
     template <typename Shown>
-    std::string text_of(const Cell &cell, const Shown &shown)
+    std::string text_of(const Entry &cell, const Shown &shown)
     {
       if (const auto *word = std::get_if<std::string>(&cell))
         return *word;
@@ -30,7 +30,7 @@ namespace Squeal
       return text[0] == '-' && text.find_first_not_of("-0.") == std::string::npos ? text.substr(1) : text;
     }
 
-    std::string csv_text(const Cell &cell)
+    std::string csv_text(const Entry &cell)
     {
       const std::string text = text_of(cell, [](const double number) {
         char       digits[significant_digits + 8]; // sign, point, exponent
@@ -50,7 +50,7 @@ namespace Squeal
     return quoted.str();
   }
 
-  Cell Table::checked(const Cell &cell) const
+  Entry Table::checked(const Entry &cell) const
   {
     if (const auto *number = std::get_if<double>(&cell); number != nullptr && !std::isfinite(*number))
       throw Error("a result is not a finite number", "table column `" + heads.back().name + "`",
@@ -82,13 +82,13 @@ namespace Squeal
           return text.str();
         };
         std::vector<std::string> column = {heads[c].name};
-        for (const Cell &cell : cells[c])
+        for (const Entry &cell : cells[c])
           column.push_back(text_of(cell, format));
         std::size_t width = 0;
         for (const std::string &text : column)
           width = std::max(width, text.size());
         const bool is_text =
-          std::any_of(cells[c].begin(), cells[c].end(), [](const Cell &cell) { return std::holds_alternative<std::string>(cell); });
+          std::any_of(cells[c].begin(), cells[c].end(), [](const Entry &cell) { return std::holds_alternative<std::string>(cell); });
         for (std::string &text : column)
           text.insert(is_text ? text.size() : 0, width - text.size(), ' ');
         texts.push_back(std::move(column));

@@ -1,12 +1,14 @@
 #include <squeal/base/tasks.h>
 #include <squeal/output/vtu_file.h>
 
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_tools.h>
 #include <zlib.h>
 
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <map>
 #include <sstream>
+#include <tuple>
 #include <type_traits>
 
 namespace Squeal
@@ -15,9 +17,6 @@ namespace Squeal
   {
     /// Of 1 to 9: fields differ in every file, a mesh is compressed once for all.
     constexpr int level_of_fields = 1, level_of_meshes = 9;
-
-    /// Types of cells in files of VTK.
-    constexpr std::uint8_t quadrilateral = 9, hexahedron = 12;
 
     template <typename Number>
     constexpr const char *type_name()
@@ -90,16 +89,19 @@ namespace Squeal
     : n_points(mesh.nodes.size())
     , n_cells(mesh.components.size())
   {
-    std::vector<float>        points;
-    std::vector<std::int32_t> ends;
+    std::vector<float> points;
     for (const Node &node : mesh.nodes)
       points.insert(points.end(), node.position.begin(), node.position.end());
-    for (std::size_t cell = 1; cell <= n_cells; ++cell)
-      ends.push_back(static_cast<std::int32_t>(cell * mesh.corners));
-    const std::vector<std::uint8_t> types(n_cells, mesh.corners == 4 ? quadrilateral : hexahedron);
-    arrays = {array("CellData", "component", mesh.components, 1, level_of_meshes), array("Points", "points", points, 3, level_of_meshes),
-              array("Cells", "connectivity", mesh.cells, 1, level_of_meshes), array("Cells", "offsets", ends, 1, level_of_meshes),
-              array("Cells", "types", types, 1, level_of_meshes)};
+    const auto add = [&](const char *place, const std::string &name, const auto &values, const unsigned int n_columns = 1) {
+      arrays.push_back(array(place, name, values, n_columns, level_of_meshes));
+    };
+    add("CellData", "component", mesh.components);
+    if (!mesh.volumes.empty())
+      add("CellData", "volume", mesh.volumes);
+    add("Points", "points", points, 3);
+    add("Cells", "connectivity", mesh.corners);
+    add("Cells", "offsets", mesh.ends);
+    add("Cells", "types", mesh.types);
   }
 
   void VtuPiece::add(const std::vector<VertexField> &fields)
@@ -163,115 +165,141 @@ namespace Squeal
     });
   }
 
-  using namespace dealii;
-
   namespace
   {
-    using ActiveCell = DoFHandler<3>::active_cell_iterator;
-    using Places     = std::vector<unsigned int>; // of nodes among those of the model
-
-    /// Corners of a square in the order of VTK.
-    constexpr unsigned int square[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-
-    /// Appends the p³ hexahedra of a cell.
-    void add_hexahedra(const Places &nodes, const unsigned int degree, Places &corners)
+    /// A linear cell on nodes of an element.
+    struct Part
     {
-      const unsigned int n = degree + 1;
-      for (unsigned int z = 0; z < degree; ++z)
-        for (unsigned int y = 0; y < degree; ++y)
-          for (unsigned int x = 0; x < degree; ++x)
-            for (unsigned int up = 0; up < 2; ++up)
-              for (const auto &[right, back] : square)
-                corners.push_back(nodes[x + right + n * (y + back + n * (z + up))]);
-    }
+      Shape                     shape;
+      std::vector<unsigned int> nodes;
+    };
 
-    /// Appends the p² quadrilaterals of a face of a cell, numbered like those of deal.II.
-    void add_quadrilaterals(const Places &nodes, const unsigned int degree, const unsigned int face, Places &corners)
+    /// Of an element of degree 2: one half as large at each corner, and what these leave.
+    std::vector<Part> halves(const Shape shape)
     {
-      const unsigned int n       = degree + 1;
-      const unsigned int step[3] = {1, n, n * n};
-      const unsigned int normal = face / 2, is_far = face % 2;
-      const unsigned int origin = is_far * degree * step[normal];
-      const unsigned int along = step[(normal + 2 - is_far) % 3], across = step[(normal + 1 + is_far) % 3];
-      for (unsigned int j = 0; j < degree; ++j)
-        for (unsigned int i = 0; i < degree; ++i)
-          for (const auto &[right, back] : square)
-            corners.push_back(nodes[origin + (i + right) * along + (j + back) * across]);
-    }
-
-    /// Cells of this process, sorted by angle about z, radius and height.
-    std::multimap<std::tuple<long, long, double>, ActiveCell> in_columns(const Model &model)
-    {
-      constexpr double                                          together = 1e-6; // [rad], [m]
-      std::multimap<std::tuple<long, long, double>, ActiveCell> cells;
-      for (const auto &cell : model.dof_handler().active_cell_iterators())
-        if (cell->is_locally_owned())
-          {
-            const Point<3> x = cell->center();
-            cells.emplace(
-              std::make_tuple(std::lround(std::atan2(x[1], x[0]) / together), std::lround(std::hypot(x[0], x[1]) / together), x[2]), cell);
-          }
-      return cells;
-    }
-
-    /// Numbers vertices in the order of the cells. @p add(cell, nodes, corners) appends the corners of what a file has of a cell, from its
-    /// (p + 1)³ nodes, x fastest.
-    template <typename Add>
-    FieldMesh mesh_of(const Model &model, const unsigned int n_corners, const Add &add)
-    {
-      const auto                           order = FETools::lexicographic_to_hierarchic_numbering<3>(model.degree());
-      std::vector<types::global_dof_index> dofs(model.dof_handler().get_fe().n_dofs_per_cell());
-      std::vector<std::int32_t>            numbers(model.nodes().size(), -1);
-      FieldMesh                            mesh{n_corners, {}, {}, {}};
-      for (const auto &[place, cell] : in_columns(model))
+      const auto       &corners = topology(shape).corners;
+      const auto        nodes   = reference_nodes(shape, 2);
+      std::vector<Part> result;
+      for (const auto &corner : corners)
         {
-          Places nodes, corners;
-          cell->get_dof_indices(dofs);
-          for (const unsigned int i : order)
-            nodes.push_back(model.node_of_dof(dofs[cell->get_fe().component_to_system_index(0, i)]));
-          add(cell, nodes, corners);
-          for (const unsigned int node : corners)
+          result.push_back({shape, {}});
+          for (const auto &other : corners)
+            for (unsigned int i = 0; i < nodes.size(); ++i)
+              if (nodes[i].distance(corner + 0.5 * (other - corner)) < 1e-6)
+                result.back().nodes.push_back(i);
+        }
+      std::vector<Part> middle;
+      if (shape == Shape::triangle)
+        middle = {{shape, {3, 4, 5}}};
+      if (shape == Shape::tetrahedron) // an octahedron about one diagonal
+        middle = {{shape, {4, 5, 6, 8}}, {shape, {4, 6, 7, 8}}, {shape, {4, 7, 9, 8}}, {shape, {4, 9, 5, 8}}};
+      if (shape == Shape::wedge)
+        middle = {{shape, {6, 9, 7, 15, 17, 16}}, {shape, {15, 17, 16, 12, 14, 13}}};
+      if (shape == Shape::pyramid)
+        middle = {{shape, {7, 12, 11, 9, 13}},
+                  {Shape::tetrahedron, {5, 13, 7, 9}},
+                  {Shape::tetrahedron, {8, 13, 9, 11}},
+                  {Shape::tetrahedron, {10, 13, 11, 12}},
+                  {Shape::tetrahedron, {6, 13, 12, 7}}};
+      result.insert(result.end(), middle.begin(), middle.end());
+      return result;
+    }
+
+    /// Linear cells of an element, corners in the order of VTK: that of Gmsh, but the first triangle of a wedge looks outwards.
+    std::vector<Part> parts_of(const Shape shape, const unsigned int degree)
+    {
+      std::vector<Part> result = degree == 2 ? halves(shape) : std::vector<Part>{{shape, {}}};
+      if (degree == 1)
+        for (unsigned int i = 0; i < topology(shape).corners.size(); ++i)
+          result.front().nodes.push_back(i);
+      for (Part &part : result)
+        if (part.shape == Shape::wedge)
+          {
+            std::swap(part.nodes[1], part.nodes[2]);
+            std::swap(part.nodes[4], part.nodes[5]);
+          }
+      return result;
+    }
+
+    /// Numbers of VTK, in the order of the shapes.
+    constexpr std::array<std::uint8_t, 6> vtk_types = {{5, 9, 10, 14, 13, 12}};
+
+    /// Elements of this process, sorted by angle about z, radius and height of the mean of their corners.
+    template <typename Element>
+    std::multimap<std::tuple<long, long, double>, const Element *> in_columns(const Model                        &model,
+                                                                              const std::vector<const Element *> &elements)
+    {
+      constexpr double                                               together = 1e-6; // [rad], [m]
+      std::multimap<std::tuple<long, long, double>, const Element *> result;
+      for (const Element *element : elements)
+        if (element->is_own)
+          {
+            const std::size_t     n = topology(element->shape).corners.size();
+            std::array<double, 3> x = {};
+            for (std::size_t i = 0; i < n; ++i)
+              for (unsigned int d = 0; d < 3; ++d)
+                x[d] += model.nodes()[element->nodes[i]].position[d] / n;
+            result.emplace(
+              std::make_tuple(std::lround(std::atan2(x[1], x[0]) / together), std::lround(std::hypot(x[0], x[1]) / together), x[2]),
+              element);
+          }
+      return result;
+    }
+
+    /// Of those among cells or faces that are of this process; numbers vertices in their order.
+    template <typename Element>
+    FieldMesh mesh_of(const Model &model, const std::vector<const Element *> &elements)
+    {
+      std::array<std::vector<Part>, vtk_types.size()> parts;
+      for (unsigned int shape = 0; shape < parts.size(); ++shape)
+        parts[shape] = parts_of(static_cast<Shape>(shape), model.degree());
+      std::vector<std::int32_t> numbers(model.nodes().size(), -1);
+      FieldMesh                 mesh;
+      for (const auto &[place, element] : in_columns(model, elements))
+        {
+          for (const Part &part : parts[static_cast<unsigned int>(element->shape)])
             {
-              if (numbers[node] < 0)
+              for (const unsigned int i : part.nodes)
                 {
-                  numbers[node] = static_cast<std::int32_t>(mesh.nodes.size());
-                  mesh.nodes.push_back(model.nodes()[node]);
+                  const unsigned int node = element->nodes[i];
+                  if (numbers[node] < 0)
+                    {
+                      numbers[node] = static_cast<std::int32_t>(mesh.nodes.size());
+                      mesh.nodes.push_back(model.nodes()[node]);
+                    }
+                  mesh.corners.push_back(numbers[node]);
                 }
-              mesh.cells.push_back(numbers[node]);
+              mesh.types.push_back(vtk_types[static_cast<unsigned int>(part.shape)]);
+              mesh.ends.push_back(static_cast<std::int32_t>(mesh.corners.size()));
             }
-          mesh.components.resize(mesh.cells.size() / n_corners, static_cast<std::int32_t>(cell->material_id()));
+          mesh.components.resize(mesh.ends.size(), static_cast<std::int32_t>(element->component));
+          if constexpr (std::is_same_v<Element, Cell>)
+            if (model.volume_names().size() != model.component_names().size())
+              mesh.volumes.resize(mesh.ends.size(), static_cast<std::int32_t>(element->volume));
         }
       return mesh;
-    }
-
-    /// Of faces at the boundary whose id is @p wanted.
-    template <typename Wanted>
-    FieldMesh face_mesh(const Model &model, const Wanted &wanted)
-    {
-      return mesh_of(model, 4, [&](const ActiveCell &cell, const Places &nodes, Places &corners) {
-        for (const unsigned int face : cell->face_indices())
-          if (cell->face(face)->at_boundary() && wanted(cell->face(face)->boundary_id()))
-            add_quadrilaterals(nodes, model.degree(), face, corners);
-      });
     }
   } // namespace
 
   FieldMesh body_mesh(const Model &model, const std::optional<Component> &component)
   {
-    return mesh_of(model, 8, [&](const ActiveCell &cell, const Places &nodes, Places &corners) {
-      if (!component || (cell->material_id() == 0) == (*component == Component::disc))
-        add_hexahedra(nodes, model.degree(), corners);
-    });
+    std::vector<const Cell *> cells;
+    for (const Cell &cell : model.cells())
+      if (!component || (cell.component == 0) == (*component == Component::disc))
+        cells.push_back(&cell);
+    return mesh_of(model, cells);
   }
 
   FieldMesh surface_mesh(const Model &model)
   {
-    return face_mesh(model, [](types::boundary_id) { return true; });
+    std::vector<const Face *> faces;
+    for (const Face &face : model.faces())
+      faces.push_back(&face);
+    return mesh_of(model, faces);
   }
 
   FieldMesh contact_face_mesh(const Model &model)
   {
-    const auto &ids = model.surface_ids(PhysicalNames::pin_contact);
-    return face_mesh(model, [&](const types::boundary_id id) { return ids.count(id) > 0; });
+    return mesh_of(model, model.faces_of(PhysicalNames::pin_contact));
   }
 } // namespace Squeal

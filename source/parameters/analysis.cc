@@ -72,8 +72,9 @@ namespace Squeal
     declarations.add("Animation periods", animation_periods, "none", "Periods that an animation shows.", {1, 1000});
     declarations.add("Animation growth", animation_growth,
                      "Shows the mode with its growth e^(R t): by a factor of e in 1 / (2 pi divergence rate) periods, 16 of them at 1 %.");
-    declarations.add("Write matrices", write_matrices,
-                     "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, T_c of the closed contact nodes in "
-                     "Matrix Market form and the node coordinates.");
+    declarations.add(
+      "Write matrices", write_matrices,
+      "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in "
+      "Matrix Market form and the node coordinates.");
   }
 } // namespace Squeal

@@ -23,11 +23,14 @@ namespace Squeal
                                      "surface",
                                      {3}};
 
-    const ListFormat pin_list = {"Pin material/Single pins",
-                                 "not the material of a pin",
-                                 "pin: Young modulus, Poisson ratio, density; pin: ... [Pa, -, kg/m^3]",
-                                 "pin",
-                                 {3}};
+    const ListFormat mass_list = {"Mounts/Added masses", "not a mass on a surface", "surface: mass; surface: ... [kg/m^2]", "surface", {1}};
+
+    const ListFormat volume_list = {"Materials/Volumes",
+                                    "not the material of a volume",
+                                    "volume: Young modulus, Poisson ratio, density, alpha, beta; volume: ... [Pa, -, kg/m^3, 1/s, s], "
+                                    "or without alpha and beta",
+                                    "volume",
+                                    {3, 5}};
 
     void declare_material(Declarations &declarations, const std::string &section, Material &material)
     {
@@ -75,11 +78,15 @@ namespace Squeal
     declare_material(declarations, "Disc material", disc);
     declare_material(declarations, "Pin material", pin);
 
-    declare_list(
-      declarations, "Single pins", single_pins,
-      "Pins of another material, as a list `pin: Young modulus, Poisson ratio, density; ...`; their Rayleigh damping is that of all "
-      "pins. Units: Pa, none, kg/m^3.",
-      pin_list, {&PinMaterial::young_modulus, &PinMaterial::poisson_ratio, &PinMaterial::density}, &PinMaterial::pin);
+    declarations.enter("Materials");
+    declare_list(declarations, "Volumes", volumes,
+                 "Volumes of other materials, such as a single pin, or the backplate of a pad, as a list `volume: Young modulus, Poisson "
+                 "ratio, density, Rayleigh alpha, Rayleigh beta; ...`; without the last two they are not damped. Units: Pa, none, kg/m^3, "
+                 "1/s, s.",
+                 volume_list,
+                 {&VolumeMaterial::young_modulus, &VolumeMaterial::poisson_ratio, &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha,
+                  &VolumeMaterial::rayleigh_beta},
+                 &VolumeMaterial::volume);
 
     declarations.enter("Mounts");
     declare_list(declarations, "Elastic mounts", mounts,
@@ -90,6 +97,10 @@ namespace Squeal
                  "Viscous dampers between surfaces and the ground as a list `surface: radial, tangential, axial; ...`: named surface "
                  "and its damping coefficient per area in the directions of the disc's axis. They hold nothing at rest. Units: N s/m^3.",
                  dashpot_list, {&Mount::radial, &Mount::tangential, &Mount::axial}, &Mount::surface);
+    declare_list(declarations, "Added masses", masses,
+                 "Masses that move with surfaces, such as those of shims, clips or a piston, as a list `surface: mass; ...`: named surface "
+                 "and mass per area. Units: kg/m^2.",
+                 mass_list, {&SurfaceMass::mass}, &SurfaceMass::surface);
   }
 
   void MaterialParameters::check() const
@@ -106,26 +117,47 @@ namespace Squeal
     };
     check_mounts(mounts, "Elastic mounts", "stiffness", "N/m^3");
     check_mounts(dashpots, "Dashpots", "damping coefficient", "N s/m^3");
+    for (const SurfaceMass &mass : masses)
+      check_mounts({{mass.surface, mass.mass, 0., 0.}}, "Added masses", "mass", "kg/m^2");
   }
 
-  Material MaterialParameters::of(const std::string &body) const
+  bool is_of_disc(const std::string &volume)
   {
-    Material result = body == "disc" ? disc : pin;
-    for (const PinMaterial &single : single_pins)
-      if (single.pin == body)
-        {
-          result.young_modulus = single.young_modulus;
-          result.poisson_ratio = single.poisson_ratio;
-          result.density       = single.density;
-        }
+    return volume == "disc" || volume.rfind("disc_", 0) == 0;
+  }
+
+  Material MaterialParameters::of(const std::string &volume) const
+  {
+    for (const VolumeMaterial &own : volumes)
+      if (own.volume == volume)
+        return own;
+    return is_of_disc(volume) ? disc : pin;
+  }
+
+  bool MaterialParameters::has_own(const std::string &volume) const
+  {
+    return std::any_of(volumes.begin(), volumes.end(), [&](const VolumeMaterial &own) { return own.volume == volume; });
+  }
+
+  bool MaterialParameters::is_damped() const
+  {
+    const auto materials = all();
+    return std::any_of(materials.begin(), materials.end(), [](const auto &entry) { return entry.second.is_damped(); });
+  }
+
+  std::vector<Material *> MaterialParameters::each()
+  {
+    std::vector<Material *> result = {&disc, &pin};
+    for (VolumeMaterial &own : volumes)
+      result.push_back(&own);
     return result;
   }
 
   std::vector<std::pair<std::string, Material>> MaterialParameters::all() const
   {
     std::vector<std::pair<std::string, Material>> result = {{"Disc material", disc}, {"Pin material", pin}};
-    for (const PinMaterial &single : single_pins)
-      result.emplace_back("Pin material/Single pins, " + single.pin, of(single.pin));
+    for (const VolumeMaterial &own : volumes)
+      result.emplace_back("Materials/Volumes, " + own.volume, own);
     return result;
   }
 
@@ -135,16 +167,23 @@ namespace Squeal
     for (std::vector<Mount> *list : {&mounts, &dashpots})
       for (Mount &mount : *list)
         values.insert(values.end(), {&mount.radial, &mount.tangential, &mount.axial});
+    for (SurfaceMass &mass : masses)
+      values.push_back(&mass.mass);
     return values;
   }
 
   std::vector<std::string> MaterialParameters::mounted_surfaces() const
   {
     std::vector<std::string> names;
+    const auto               add = [&names](const std::string &surface) {
+      if (std::find(names.begin(), names.end(), surface) == names.end())
+        names.push_back(surface);
+    };
     for (const std::vector<Mount> *list : {&mounts, &dashpots})
       for (const Mount &mount : *list)
-        if (std::find(names.begin(), names.end(), mount.surface) == names.end())
-          names.push_back(mount.surface);
+        add(mount.surface);
+    for (const SurfaceMass &mass : masses)
+      add(mass.surface);
     return names;
   }
 

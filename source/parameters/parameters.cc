@@ -176,6 +176,7 @@ namespace Squeal
     geometry.declare(declarations);
     materials.declare(declarations);
     discretization.declare(declarations);
+    contact.declare(declarations);
     operation.declare(declarations);
     sliding.declare(declarations);
     damping.declare(declarations);

@@ -9,7 +9,7 @@ namespace Squeal
 {
   namespace
   {
-    using Point = HexMesh::Point;
+    using Point = Mesh::Point;
 
     /// Largest difference of the mesh from the parameters, over the outer radius: polygons of true area are somewhat larger than circles.
     constexpr double resemblance = 0.02;
@@ -30,7 +30,7 @@ namespace Squeal
     };
 
     /// The pins with the places that the parameters give them; empty if they are others.
-    std::vector<PinPlace> places(const HexMesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
+    std::vector<PinPlace> places(const Mesh &mesh, const std::vector<unsigned int> &component, const GeometryParameters &parameters)
     {
       std::vector<PinPlace> pins;
       for (const auto &[layout, prefix, side] :
@@ -38,11 +38,11 @@ namespace Squeal
         for (std::size_t i = 0; i < layout->radii.size(); ++i)
           {
             const std::string name  = prefix + std::to_string(i + 1);
-            const auto        found = std::find(mesh.volume_names.begin(), mesh.volume_names.end(), name);
-            if (found == mesh.volume_names.end())
+            const auto        found = std::find(mesh.body_names.begin(), mesh.body_names.end(), name);
+            if (found == mesh.body_names.end())
               return {};
             const double r = layout->radii[i], angle = layout->angles[i] * M_PI / 180.;
-            PinPlace     pin{static_cast<unsigned int>(found - mesh.volume_names.begin()),
+            PinPlace     pin{static_cast<unsigned int>(found - mesh.body_names.begin()),
                          name,
                          side,
                          r * std::cos(angle),
@@ -56,7 +56,7 @@ namespace Squeal
                 pin.radius = std::max(pin.radius, std::hypot(mesh.points[n][0] - pin.x, mesh.points[n][1] - pin.y));
             pins.push_back(pin);
           }
-      if (pins.size() + 1 != mesh.volume_names.size())
+      if (pins.size() + 1 != mesh.body_names.size())
         return {};
       return pins;
     }
@@ -68,7 +68,7 @@ namespace Squeal
       double innermost_pin = inner, outermost_pin = 0., end = 0.;
     };
 
-    Extent extent_of(const HexMesh &mesh, const std::vector<unsigned int> &component)
+    Extent extent_of(const Mesh &mesh, const std::vector<unsigned int> &component)
     {
       Extent found;
       for (std::size_t n = 0; n < mesh.points.size(); ++n)
@@ -86,7 +86,7 @@ namespace Squeal
     }
 
     /// The pins with what is free around them; empty where the mesh is not that of the parameters.
-    std::vector<PinPlace> pins_of(const HexMesh                   &mesh,
+    std::vector<PinPlace> pins_of(const Mesh                      &mesh,
                                   const std::vector<unsigned int> &component,
                                   const Extent                    &extent,
                                   const GeometryParameters        &parameters)
@@ -120,9 +120,9 @@ namespace Squeal
     }
   } // namespace
 
-  std::vector<MeshMotion> mesh_motions(const HexMesh &mesh, const GeometryParameters &parameters)
+  std::vector<MeshMotion> mesh_motions(const Mesh &mesh, const GeometryParameters &parameters)
   {
-    const std::vector<unsigned int> component = volume_of_nodes(mesh);
+    const std::vector<unsigned int> component = body_of_nodes(mesh);
     const double                    t = parameters.disc_thickness, h = parameters.pin_height, d = parameters.pin_diameter;
     const Extent                    extent = extent_of(mesh, component);
     const std::vector<PinPlace>     pins   = pins_of(mesh, component, extent, parameters);
@@ -195,7 +195,7 @@ namespace Squeal
     return result;
   }
 
-  HexMesh moved(HexMesh mesh, const MeshMotion &motion, const double change)
+  Mesh moved(Mesh mesh, const MeshMotion &motion, const double change)
   {
     for (std::size_t n = 0; n < mesh.points.size(); ++n)
       for (int i = 0; i < 3; ++i)

@@ -98,6 +98,8 @@ namespace Squeal
           const ContactNode &node   = sliding.interface[c];
           const Travel      &travel = plates.travels[node.pin];
           const double       a      = travel.closing(node);
+          if (!node.is_rigid())
+            problem.normal_flexibility(c, c) += 1. / (node.stiffness * node.area);
           problem.initial_gap.push_back(a * ((moves ? 0. : displacement) - gaps[c]));
           if (moves)
             {
@@ -179,6 +181,8 @@ namespace Squeal
           const Travel      &path = plates.travels[node.pin];
           loads[plates.of_pin[node.pin]] += path.force(node, mu) * reactions[c];
           gap[c] += path.closing(node) * (state.approach[node.pin] - gaps[c]);
+          if (!node.is_rigid())
+            gap[c] += reactions[c] / (node.stiffness * node.area);
           arm = std::max(arm, node.axis_distance());
         }
       const double load = loads.maxCoeff();
@@ -327,7 +331,8 @@ namespace Squeal
   {
     const auto centres    = face_centres(model, interface);
     const auto directions = travels(model, interface);
-    const auto c_b = radial_dissipation(interface, state.reactions, operation), c_t = sliding_dissipation(state.reactions, operation);
+    const auto c_b        = radial_dissipation(interface, state.reactions, operation),
+               c_t        = sliding_dissipation(interface, state.reactions, operation);
     std::vector<PinContact> result;
     for (unsigned int pin = 1; pin < model.component_names().size(); ++pin)
       {

@@ -46,7 +46,7 @@ namespace
   }
 
   /// Disc and three pins; in quadratic elements half as many.
-  HexMesh mesh_of(const Case &c)
+  Mesh mesh_of(const Case &c)
   {
     const int n = c.element == Element::trilinear ? 2 : 1;
     return sloped(extrude(polar_plan(0.1505, 0.3155, 1 + n, 9 * n,

@@ -285,3 +285,42 @@ TEST_P(Contact, ComplexModesSatisfyTheUnreducedEquation)
       EXPECT_GT(n_touching, k / 2);
     }
 }
+
+TEST_P(Contact, SpringsYieldByTheReactions)
+{
+  constexpr double mu          = 0.4;
+  const Scene      s           = scene(GetParam());
+  const auto       system_with = [&](const double k) {
+    ContactInterface interface = s.interface;
+    for (ContactNode &node : interface)
+      node.stiffness = k;
+    return couple(s.system, contact_operators(s.model, interface), s.damping);
+  };
+
+  // K + P_nᵀ k D P_n + μ P_tᵀ k D P_n
+  constexpr double    k      = 3e11;
+  const CoupledSystem spring = system_with(k);
+  const DenseMatrix   P_n = to_dense(*s.contact.normal), P_t = to_dense(*s.contact.tangential);
+  Eigen::VectorXd     D(s.interface.size());
+  for (std::size_t c = 0; c < s.interface.size(); ++c)
+    D[c] = k * s.interface[c].area;
+  const DenseMatrix expected = to_dense(*s.system.stiffness) + (P_n + mu * P_t).transpose() * D.asDiagonal() * P_n;
+  EXPECT_LT(max_norm(to_dense(*with_friction(spring, mu).stiffness) - expected), 1e-14 * max_norm(expected));
+
+  // The constraint is its limit, with errors in proportion to 1 / k
+  const auto lowest = [&](const CoupledSystem &system) {
+    const auto matrices = with_friction(undamped(system), mu);
+    return dense_quadratic_modes(to_dense(*matrices.mass), nullptr, to_dense(*matrices.stiffness), 6e4).values;
+  };
+  const auto rigid = lowest(s.coupled);
+  const auto error = [&](const double stiffness) {
+    const auto yielding = lowest(system_with(stiffness));
+    double     result   = 0.;
+    for (std::size_t j = 0; j < std::min<std::size_t>(4, rigid.size()); ++j)
+      result = std::max(result, std::abs(yielding[j] - rigid[j]) / std::abs(rigid[j]));
+    return result;
+  };
+  const double soft = error(1e14), stiff = error(1e15);
+  EXPECT_LT(stiff, 1e-3);
+  EXPECT_NEAR(soft / stiff, 10., 0.5);
+}

@@ -9,7 +9,7 @@ using namespace Squeal::Testing;
 namespace
 {
   /// Two pins above, one below, of different sizes.
-  HexMesh unequal_pins()
+  Mesh unequal_pins()
   {
     return extrude(
       polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::top, -3, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 2}}),
@@ -18,9 +18,9 @@ namespace
 
   struct Pressed
   {
-    explicit Pressed(const HexMesh &mesh, const double friction = 0.4, const Rotation rotation = Rotation::positive)
+    explicit Pressed(const Mesh &mesh, const double friction = 0.4, const Rotation rotation = Rotation::positive)
       : model(mesh, Element::trilinear, MPI_COMM_WORLD)
-      , interface(pair_contact_nodes(model, rotation, 1e-6))
+      , interface(contact_nodes(model, ContactParameters().pairs, rotation, 1e-6).interface)
     {
       operation.friction_coefficient = friction;
       operation.load_per_side        = 500.;
@@ -100,12 +100,13 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
   // The upper pins and the lower one as one body: faces of unequal areas, and of equal ones
   for (const bool is_equal : {false, true})
     {
-      HexMesh mesh =
-        is_equal ? extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 1}}), layers(1, 2)) :
-                   unequal_pins();
-      for (auto &hexahedron : mesh.hexahedra)
+      Mesh mesh = is_equal ?
+                    extrude(polar_plan(0.15, 0.3, 3, 12, {{Plan::Side::top, 1, 1, 1, 1}, {Plan::Side::bottom, 1, 1, 1, 1}}), layers(1, 2)) :
+                    unequal_pins();
+      for (auto &hexahedron : mesh.cells)
         hexahedron.volume = std::min(hexahedron.volume, 1u);
       mesh.volume_names = {mesh.volume_names[0], "pin_caliper"};
+      find_bodies(mesh);
       const Pressed s(mesh);
       EXPECT_FALSE(have_travels(s.model, s.interface));
       expect_refusal([&] { s.shares(); }, {"pin_caliper", "of its " + std::to_string(s.interface.size()) + " contact nodes"});
@@ -116,7 +117,7 @@ TEST(Travel, ABodyThatRubsBothFacesIsRefusedByName)
 TEST(Travel, FrictionThatCarriesTheLoadIsRefused)
 {
   // Faces that rise along the sliding direction: with enough friction they hold the pin without any load
-  const HexMesh mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
+  const Mesh    mesh = mapped(unequal_pins(), [](const Point3 &p) { return Point3{{p[0], p[1], p[2] + 0.1 * std::atan2(p[1], p[0])}}; });
   const Pressed weak(mesh, 0.4), strong(mesh, 5.), reversed(mesh, 5., Rotation::negative);
   EXPECT_NO_THROW(weak.shares());
   for (const Pressed *s : {&strong, &reversed}) // one side or the other

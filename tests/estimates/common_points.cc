@@ -11,14 +11,14 @@ namespace
   const MaterialParameters materials = mounted();
 
   /// Annuli with a pin on either side of the same sectors; the outlines of meshes of other widths are other polygons.
-  HexMesh mesh(const int refinement, const int n_layers)
+  Mesh mesh(const int refinement, const int n_layers)
   {
     const std::vector<PolarPin> pins = {{Plan::Side::top, -refinement, 2 * refinement, refinement, refinement},
                                         {Plan::Side::bottom, -refinement, 2 * refinement, refinement, refinement}};
     return extrude(polar_plan(0.1505, 0.3155, 3 * refinement, 24 * refinement, pins), layers(n_layers, n_layers + 1));
   }
 
-  Model trilinear(const HexMesh &mesh)
+  Model trilinear(const Mesh &mesh)
   {
     return Model(mesh, Element::trilinear, MPI_COMM_WORLD);
   }
@@ -26,11 +26,11 @@ namespace
   /// A mesh of three bodies and their points.
   struct Points
   {
-    explicit Points(const int n_per_direction = 2)
-      : points(common_points(model, materials, n_per_direction))
+    explicit Points(const int degree = 1)
+      : points(common_points(model, materials, degree))
     {}
 
-    HexMesh      coarse = mesh(1, 2);
+    Mesh         coarse = mesh(1, 2);
     Model        model  = trilinear(coarse);
     CommonPoints points;
   };
@@ -44,13 +44,13 @@ TEST(CommonPoints, HaveTheMassOfEveryBody)
     {
       const std::vector<double> &masses = p.points.bodies[body].masses;
       const double               mass   = std::accumulate(masses.begin(), masses.end(), 0.);
-      EXPECT_EQ(p.points.bodies[body].name, p.coarse.volume_names[body]);
+      EXPECT_EQ(p.points.bodies[body].name, p.coarse.body_names[body]);
       EXPECT_NEAR(mass, (body == 0 ? materials.disc : materials.pin).density * volume(p.coarse, body), 1e-12 * mass);
     }
-  EXPECT_EQ(p.points.n(), 8 * static_cast<int>(p.coarse.hexahedra.size()));
+  EXPECT_EQ(p.points.n(), 8 * static_cast<int>(p.coarse.cells.size()));
 
-  HexMesh other         = p.coarse;
-  other.volume_names[1] = "pin_elsewhere";
+  Mesh other          = p.coarse;
+  other.body_names[1] = "pin_elsewhere";
   EXPECT_THROW(displacements_at(p.points, trilinear(other)), MeshError);
 }
 
@@ -73,11 +73,12 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
           expected.push_back(body == 1 ? std::sqrt(p.points.bodies[body].masses[q]) * value : 0.);
       }
   // The same outline, cells that do not match, names in another order
-  HexMesh fine = extrude(
-    polar_plan(0.1505, 0.3155, 3, 24, {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 1, 1}}, "bore", "rim"), layers(3, 5));
-  for (HexMesh::Hexahedron &cell : fine.hexahedra)
+  Mesh fine = extrude(polar_plan(0.1505, 0.3155, 3, 24, {{Plan::Side::top, -1, 2, 1, 1}, {Plan::Side::bottom, -1, 2, 1, 1}}, "bore", "rim"),
+                      layers(3, 5));
+  for (Mesh::Cell &cell : fine.cells)
     cell.volume = cell.volume == 0 ? 0 : 3 - cell.volume;
   std::swap(fine.volume_names[1], fine.volume_names[2]);
+  std::swap(fine.body_names[1], fine.body_names[2]);
   for (const Element element : {Element::trilinear, Element::incompatible_modes, Element::quadratic})
     {
       const Model       model(fine, element, MPI_COMM_WORLD);
@@ -89,12 +90,12 @@ TEST(CommonPoints, EvaluateMultilinearFieldsExactlyInTheirOwnBodyOnly)
 TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 {
   // Another width of the disc and another thickness of everything
-  const Points p(1);
+  const Points p(0);
   const auto   carry = [](const double r, const double theta, const double z) {
     const double carried = 0.1 + 2. * (r - 0.1505);
     return dealii::Point<3>(carried * std::cos(theta), carried * std::sin(theta), 1.5 * z);
   };
-  const HexMesh          two     = mapped(p.coarse, [&](const Point3 &x) {
+  const Mesh             two     = mapped(p.coarse, [&](const Point3 &x) {
     const auto y = carry(std::hypot(x[0], x[1]), std::atan2(x[1], x[0]), x[2]);
     return Point3{{y[0], y[1], y[2]}};
   });
@@ -119,7 +120,7 @@ TEST(BodyFrames, CarryPointsToTheSamePlacesOfADisc)
 TEST(CylindricalDirections, FollowATurnedScene)
 {
   // The same displacement, turned with the scene, has the same components
-  const Points p(1);
+  const Points p(0);
   const Model  to     = trilinear(mapped(p.coarse, [](const Point3 &x) { return Point3{{-x[1], x[0], x[2]}}; }));
   CommonPoints turned = p.points;
   for (CommonPoints::Body &body : turned.bodies)

@@ -18,7 +18,7 @@ namespace
   }
 
   /// Distance from each node of one surface to the nearest of another, the largest.
-  double largest_gap(const HexMesh &mesh, const std::set<unsigned int> &from, const std::set<unsigned int> &to)
+  double largest_gap(const Mesh &mesh, const std::set<unsigned int> &from, const std::set<unsigned int> &to)
   {
     double largest = 0.;
     for (const unsigned int a : from)
@@ -32,7 +32,7 @@ namespace
     return largest;
   }
 
-  void expect_contact_pairs(const HexMesh &mesh, const unsigned int n_pairs)
+  void expect_contact_pairs(const Mesh &mesh, const unsigned int n_pairs)
   {
     const std::set<unsigned int> disc = nodes_on(mesh, "disc_contact"), pins = nodes_on(mesh, "pin_contact");
     EXPECT_EQ(disc.size(), n_pairs);
@@ -44,7 +44,7 @@ namespace
   }
 
   /// With all digits of points and all names.
-  std::string text_of(const HexMesh &mesh)
+  std::string text_of(const Mesh &mesh)
   {
     std::ostringstream stream;
     write_msh(mesh, stream);
@@ -54,7 +54,7 @@ namespace
 
 TEST(GenerateMesh, DefaultSceneHasTheStatedSize)
 {
-  const HexMesh mesh = generate_mesh({}, {"disc_bore"});
+  const Mesh mesh = generate_mesh({}, {"disc_bore"});
   expect_contact_pairs(mesh, 228);
   EXPECT_GE(3 * mesh.points.size(), 31000u);
   EXPECT_LE(3 * mesh.points.size(), 36000u);
@@ -71,7 +71,7 @@ TEST(GenerateMesh, PinFacesHaveTheirNodesAndGoodElements)
     {
       GeometryParameters parameters = one_pin();
       parameters.nodes_per_pin_face = 3 * k * (k + 1) + 1;
-      const HexMesh mesh            = generate_mesh(parameters);
+      const Mesh mesh               = generate_mesh(parameters);
       expect_contact_pairs(mesh, parameters.nodes_per_pin_face);
       EXPECT_EQ(nodes_on(mesh, "pin_clamp").size(), parameters.nodes_per_pin_face);
       EXPECT_EQ(nodes_on(mesh, "pin_side").size(), 6 * k * (parameters.pin_layers + 1));
@@ -92,8 +92,8 @@ TEST(GenerateMesh, BodiesAndSurfacesAreAtTheirPlaces)
       GeometryParameters parameters = one_pin();
       if (side < 0.)
         std::swap(parameters.top, parameters.bottom);
-      const HexMesh mesh = generate_mesh(parameters);
-      const double  t    = parameters.disc_thickness;
+      const Mesh   mesh = generate_mesh(parameters);
+      const double t    = parameters.disc_thickness;
       expect_contact_pairs(mesh, 19);
       EXPECT_EQ(mesh.volume_names[1], side > 0. ? "pin_top_1" : "pin_bottom_1");
       for (const unsigned int node : nodes_on(mesh, "pin_contact"))
@@ -117,7 +117,7 @@ TEST(GenerateMesh, PinsThatAreNotOppositeAreAtTheirPlaces)
   const auto expect = [](const GeometryParameters &parameters, const double quality) {
     SCOPED_TRACE(testing::PrintToString(parameters.top.angles) + testing::PrintToString(parameters.bottom.angles) + ", " +
                  std::to_string(parameters.nodes_per_pin_face) + " nodes, " + std::to_string(parameters.element_size) + " m");
-    const HexMesh mesh = generate_mesh(parameters);
+    const Mesh mesh = generate_mesh(parameters);
     expect_contact_pairs(mesh, 12 * parameters.nodes_per_pin_face);
     EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, quality);
 
@@ -158,7 +158,7 @@ TEST(GenerateMesh, OppositePinsStayWhereThePlanHasThem)
       GeometryParameters parameters;
       parameters.nodes_per_pin_face            = nodes;
       parameters.element_size                  = 0.02;
-      const HexMesh                       mesh = generate_mesh(parameters);
+      const Mesh                          mesh = generate_mesh(parameters);
       std::set<std::pair<double, double>> above, below;
       for (const unsigned int node : nodes_on(mesh, "disc_contact"))
         (mesh.points[node][2] > 0. ? above : below).emplace(mesh.points[node][0], mesh.points[node][1]);
@@ -186,19 +186,19 @@ TEST(GenerateMesh, CloseAndThinPinsAreMeshed)
   // Thin ones: elements grow between them
   GeometryParameters thin;
   thin.pin_diameter = 0.001;
-  EXPECT_LT(generate_mesh(thin).hexahedra.size(), 30000u);
+  EXPECT_LT(generate_mesh(thin).cells.size(), 30000u);
 }
 
 TEST(GenerateMesh, ScaledParametersGiveTheScaledMesh)
 {
-  const HexMesh mesh = generate_mesh(one_pin());
+  const Mesh mesh = generate_mesh(one_pin());
   for (const int exponent : {-6, -3, 3, 6})
     {
       GeometryParameters p = one_pin();
       for (double *length : {&p.disc_inner_radius, &p.disc_outer_radius, &p.disc_thickness, &p.pin_diameter, &p.pin_height, &p.element_size,
                              &p.pairing_tolerance, &p.top.radii[0]})
         *length = std::stod(std::to_string(*length) + "e" + std::to_string(exponent)); // the nearest number
-      const HexMesh other = generate_mesh(p);
+      const Mesh other = generate_mesh(p);
       ASSERT_EQ(other.points.size(), mesh.points.size());
       for (std::size_t i = 0; i < mesh.points.size(); ++i)
         for (unsigned int d = 0; d < 3; ++d)
@@ -208,7 +208,7 @@ TEST(GenerateMesh, ScaledParametersGiveTheScaledMesh)
 
 TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
 {
-  HexMesh           mesh    = generate_mesh(one_pin());
+  Mesh              mesh    = generate_mesh(one_pin());
   const auto        of      = checksum(mesh);
   const std::string written = text_of(mesh);
   EXPECT_EQ(text_of(generate_mesh(one_pin())), written);
@@ -225,7 +225,7 @@ TEST(GenerateMesh, SameParametersGiveTheSameMeshAlsoFromItsFile)
 TEST(GenerateMesh, PadPlanIsExtruded)
 {
   const GeometryParameters parameters = of_file("disc_pad.geo");
-  const HexMesh            mesh       = generate_mesh(parameters);
+  const Mesh               mesh       = generate_mesh(parameters);
   EXPECT_EQ(mesh.volume_names, (std::vector<std::string>{"disc", "pin_top_1", "pin_bottom_1"}));
   expect_contact_pairs(mesh, nodes_on(mesh, "pin_clamp").size());
   const double pad_area = 50. / 360. * M_PI * (0.285 * 0.285 - 0.175 * 0.175);
@@ -235,8 +235,8 @@ TEST(GenerateMesh, PadPlanIsExtruded)
 TEST(GenerateMesh, SolidsAreTakenAsTheyAreWithFacesOfSeveralNamesAndGroupsOfOneName)
 {
   const File file("blocks.geo", blocks(volumes + surfaces + "Physical Surface(\"ground\") = {5}; Physical Surface(\"wall\") = {1, 5};\n"));
-  const HexMesh mesh = generate_mesh(of_file(file.string()), {"ground", "wall"});
-  EXPECT_EQ(mesh.hexahedra.size(), 16u);
+  const Mesh mesh = generate_mesh(of_file(file.string()), {"ground", "wall"});
+  EXPECT_EQ(mesh.cells.size(), 16u);
   EXPECT_EQ(mesh.points.size(), 54u);
   EXPECT_NEAR(volume(mesh, "disc"), 0.5, 1e-12);
   EXPECT_NEAR(volume(mesh, "pin_"), 0.25, 1e-12);

@@ -10,7 +10,7 @@ using namespace Scenes;
 
 namespace
 {
-  using Point  = HexMesh::Point;
+  using Point  = Mesh::Point;
   using Values = std::vector<double>;
   using Choice = std::function<bool(const Point &)>;
 
@@ -33,16 +33,18 @@ namespace
   const Choice any         = [](const Point &) { return true; };
   const Choice none        = [](const Point &) { return false; };
 
-  HexMesh mesh_of(const std::vector<std::string> &volumes)
+  Mesh mesh_of(const std::vector<std::string> &volumes)
   {
-    HexMesh mesh;
-    mesh.volume_names  = volumes;
+    Mesh mesh;
+    mesh.volume_names = mesh.body_names = volumes;
+    for (unsigned int volume = 0; volume < volumes.size(); ++volume)
+      mesh.body_of_volume.push_back(volume);
     mesh.surface_names = {"disc_contact", "pin_contact"};
     return mesh;
   }
 
   /// Adds a grid of cells. Where it is shared, it shares nodes at the same place with itself and with what its volume has already.
-  void add_grid(HexMesh           &mesh,
+  void add_grid(Mesh              &mesh,
                 const unsigned int volume,
                 const Values      &a,
                 const Values      &b,
@@ -54,9 +56,9 @@ namespace
       return std::array<long, 3>{{std::lround(1e8 * p[0]), std::lround(1e8 * p[1]), std::lround(1e8 * p[2])}};
     };
     std::map<std::array<long, 3>, unsigned int> known;
-    for (const auto &[cell, body] : mesh.hexahedra)
-      if (body == volume)
-        for (const unsigned int node : cell)
+    for (const Mesh::Cell &cell : mesh.cells)
+      if (cell.volume == volume)
+        for (const unsigned int node : cell.nodes)
           known[key(mesh.points[node])] = node;
     std::vector<unsigned int> nodes;
     for (const double x : a)
@@ -75,20 +77,19 @@ namespace
       for (unsigned int j = 0; j + 1 < b.size(); ++j)
         for (unsigned int k = 0; k + 1 < c.size(); ++k)
           {
-            HexMesh::Hexahedron cell{{}, volume};
-            unsigned int        v = 0;
+            Mesh::Cell cell{Shape::hexahedron, {}, volume};
             for (const unsigned int corner : {0u, nyz, nyz + nz, nz, 1u, nyz + 1, nyz + nz + 1, nz + 1})
-              cell.nodes[v++] = nodes[i * nyz + j * nz + k + corner];
-            mesh.hexahedra.push_back(cell);
+              cell.nodes.push_back(nodes[i * nyz + j * nz + k + corner]);
+            mesh.cells.push_back(cell);
           }
   }
 
   /// Names faces whose nodes all are wanted: those of the disc disc_contact, others pin_contact.
-  void name_contact(HexMesh &mesh, const Choice &is_wanted)
+  void name_contact(Mesh &mesh, const Choice &is_wanted)
   {
-    for (const HexFace &face : all_faces(mesh))
-      if (std::all_of(face.nodes.begin(), face.nodes.end(), [&](const unsigned int node) { return is_wanted(mesh.points[node]); }))
-        mesh.quadrilaterals.push_back({face.nodes, face.volume == 0 ? 0u : 1u});
+    for (const CellFace &face : all_faces(mesh))
+      if (std::all_of(face.corners.begin(), face.corners.end(), [&](const unsigned int node) { return is_wanted(mesh.points[node]); }))
+        mesh.faces.push_back({Shape::quadrilateral, Mesh::Nodes(face.corners.begin(), face.corners.end()), face.body == 0 ? 0u : 1u});
   }
 
   const Values radii = {0.15, 0.2, 0.25, 0.3};
@@ -103,9 +104,9 @@ namespace
   }
 
   /// A ring with a pad of three sectors above, from z = 0.02 on.
-  HexMesh disc_with_pad(const Values &pad_z = {0.02, 0.03, 0.04}, const Values &ring = angles(24, 0, 24), const int n_sectors = 3)
+  Mesh disc_with_pad(const Values &pad_z = {0.02, 0.03, 0.04}, const Values &ring = angles(24, 0, 24), const int n_sectors = 3)
   {
-    HexMesh mesh = mesh_of({"disc", "pin_top"});
+    Mesh mesh = mesh_of({"disc", "pin_top"});
     add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02}, cylindrical, any);
     add_grid(mesh, 1, {0.2, 0.25, 0.3}, angles(24, 0, 3), pad_z);
     name_contact(mesh, under_pad(n_sectors));
@@ -119,7 +120,7 @@ namespace
   }
 
   /// As in a file with so many significant digits.
-  HexMesh rounded(const HexMesh &mesh, const int digits)
+  Mesh rounded(const Mesh &mesh, const int digits)
   {
     return moved(mesh, [digits](const Point &p) {
       Point result;
@@ -133,19 +134,19 @@ namespace
     });
   }
 
-  std::string refusal(const HexMesh &mesh)
+  std::string refusal(const Mesh &mesh)
   {
     check_mesh(mesh);
     return message<MeshError>([&] { check_topology(mesh, 1e-6, "the.msh"); });
   }
 
-  void expect_passes(const HexMesh &mesh)
+  void expect_passes(const Mesh &mesh)
   {
     EXPECT_NO_THROW(check_topology(mesh, 1e-6, "the.msh"));
   }
 
   /// Refused in every size, position and precision of coordinates.
-  void expect_refused(const HexMesh &mesh, const std::vector<std::string> &mentions)
+  void expect_refused(const Mesh &mesh, const std::vector<std::string> &mentions)
   {
     expect_mentions(refusal(mesh), mentions);
     expect_mentions(refusal(moved(mesh, rotated)), mentions);
@@ -156,8 +157,8 @@ namespace
 
 TEST(MeshTopology, ConformingMeshesPass)
 {
-  const HexMesh mesh = disc_with_pad();
-  ASSERT_EQ(mesh.quadrilaterals.size(), 12u);
+  const Mesh mesh = disc_with_pad();
+  ASSERT_EQ(mesh.faces.size(), 12u);
   EXPECT_EQ(find_unnamed_contact(mesh).n_nodes, 0u);
   expect_passes(mesh);
   expect_passes(moved(mesh, rotated));
@@ -166,13 +167,13 @@ TEST(MeshTopology, ConformingMeshesPass)
   expect_passes(disc_with_pad({0.02, 0.03}, angles(48, 0, 48))); // a finer disc
 
   // Elements that meet at an edge
-  HexMesh corner = mesh_of({"disc"});
+  Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian, any);
   add_grid(corner, 0, {1., 2.}, {1., 2.}, {0., 1.}, cartesian, any);
   expect_passes(corner);
 
   // A shoe on the rim whose elements are twice as long: chords of curved faces cross
-  HexMesh shoe = mesh_of({"disc", "pin_rim"});
+  Mesh shoe = mesh_of({"disc", "pin_rim"});
   add_grid(shoe, 0, radii, angles(96, 0, 96), {0., 0.02}, cylindrical, any);
   add_grid(shoe, 1, {0.3, 0.33}, angles(48, 1, 7), {0., 0.02});
   expect_passes(shoe);
@@ -181,8 +182,8 @@ TEST(MeshTopology, ConformingMeshesPass)
 TEST(MeshTopology, SeamIsFound)
 {
   const auto with_gap = [](const double gap, const double radius) {
-    HexMesh mesh = mesh_of({"disc", "pin_top"});
-    Values  ring = angles(24, 0, 24);
+    Mesh   mesh = mesh_of({"disc", "pin_top"});
+    Values ring = angles(24, 0, 24);
     ring.back() -= gap / radius;
     add_grid(mesh, 0, radii, ring, {0., 0.01, 0.02});
     return mesh;
@@ -190,11 +191,11 @@ TEST(MeshTopology, SeamIsFound)
   // The ring ends where it begins, and nearly so
   for (const double gap : {0., 1e-9, 6e-6})
     {
-      expect_refused(with_gap(gap, 0.3), {"12 nodes of volume 'disc' coincide", "the.msh", "merge"});
+      expect_refused(with_gap(gap, 0.3), {"12 nodes of body 'disc' coincide", "the.msh", "merge"});
       expect_mentions(refusal(with_gap(gap, 0.3)), {"(0.15, "});
     }
   // A slot of 1 % of the shortest edge
-  const HexMesh slot = with_gap(1e-2 * 0.01, 0.15);
+  const Mesh slot = with_gap(1e-2 * 0.01, 0.15);
   expect_passes(slot);
   expect_passes(rounded(slot, 6));
 }
@@ -202,53 +203,69 @@ TEST(MeshTopology, SeamIsFound)
 TEST(MeshTopology, CrackInsideIsFound)
 {
   // Two halves that share only the nodes around six inner ones
-  HexMesh mesh = mesh_of({"disc"});
+  Mesh mesh = mesh_of({"disc"});
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {0., 1.}, cartesian);
   add_grid(mesh, 0, interval(0., 4., 4), interval(0., 3., 3), {1., 2.}, cartesian,
            [](const Point &p) { return p[0] < 0.5 || p[0] > 3.5 || p[1] < 0.5 || p[1] > 2.5; });
-  expect_refused(mesh, {"6 nodes of volume 'disc' coincide"});
+  expect_refused(mesh, {"6 nodes of body 'disc' coincide"});
   expect_mentions(refusal(mesh), {"(1, 1, 1)"});
 }
 
 TEST(MeshTopology, HangingNodesAreFound)
 {
   // A layer twice as fine along two directions: on interior faces, 2 x 2 elements to one
-  HexMesh layers = mesh_of({"disc"});
+  Mesh layers = mesh_of({"disc"});
   add_grid(layers, 0, interval(0., 2., 2), interval(0., 2., 2), {0., 1.}, cartesian, any);
   add_grid(layers, 0, interval(0., 2., 4), interval(0., 2., 4), {1., 2.}, cartesian, any);
-  expect_refused(layers, {"16 nodes of volume 'disc'", "hanging"});
+  expect_refused(layers, {"16 nodes of body 'disc'", "hanging"});
 
   // In a corner only
-  HexMesh corner = mesh_of({"disc"});
+  Mesh corner = mesh_of({"disc"});
   add_grid(corner, 0, interval(0., 3., 3), interval(0., 3., 3), {0., 1.}, cartesian, any);
   add_grid(corner, 0, interval(0., 3., 3), {0., 1., 2.}, {1., 2.}, cartesian, any);
   add_grid(corner, 0, interval(0., 2., 2), {2., 3.}, {1., 2.}, cartesian, any);
   add_grid(corner, 0, {2., 2.5, 3.}, {2., 3.}, {1., 2.}, cartesian, any);
-  expect_refused(corner, {"3 nodes of volume 'disc'", "hanging"});
+  expect_refused(corner, {"3 nodes of body 'disc'", "hanging"});
   expect_mentions(refusal(corner), {"(2.5, 2, 1)"});
 
   // Between rings: nodes of the finer one are on the circle, faces of the coarser one are chords
   for (const int n_inside : {16, 32})
     {
-      HexMesh rings = mesh_of({"disc"});
+      Mesh rings = mesh_of({"disc"});
       add_grid(rings, 0, {0.1, 0.2}, angles(n_inside, 0, n_inside), {0., 0.05}, cylindrical, any);
       add_grid(rings, 0, {0.2, 0.3}, angles(48 - n_inside, 0, 48 - n_inside), {0., 0.05}, cylindrical, any);
-      expect_refused(rings, {"32 nodes of volume 'disc'", "hanging"});
+      expect_refused(rings, {"32 nodes of body 'disc'", "hanging"});
     }
+}
+
+TEST(MeshTopology, TrianglesUponQuadrilateralsAreFound)
+{
+  // A cube with a pyramid upon it, and with two tetrahedra in its place
+  Mesh mesh = mesh_of({"disc"});
+  add_grid(mesh, 0, {0., 1.}, {0., 1.}, {0., 1.}, cartesian);
+  mesh.points.emplace_back(0.4, 0.6, 2.);
+  const auto top     = mesh.cells[0].nodes;
+  Mesh       pyramid = mesh;
+  pyramid.cells.push_back({Shape::pyramid, {top[4], top[5], top[6], top[7], 8}, 0});
+  expect_passes(pyramid);
+  mesh.cells.push_back({Shape::tetrahedron, {top[4], top[5], top[6], 8}, 0});
+  mesh.cells.push_back({Shape::tetrahedron, {top[4], top[6], top[7], 8}, 0});
+  expect_refused(mesh, {"1 quadrilateral face of body 'disc'", "two triangles", "pyramids"});
 }
 
 TEST(MeshTopology, BodyOnTheWrongSideIsFound)
 {
-  const HexMesh mesh = disc_with_pad({0., 0.015, 0.02});
-  ASSERT_EQ(mesh.quadrilaterals.size(), 12u);
+  const Mesh mesh = disc_with_pad({0., 0.015, 0.02});
+  ASSERT_EQ(mesh.faces.size(), 12u);
   expect_refused(mesh, {"'pin_top'", "same side", "6 contact faces"});
 }
 
 TEST(MeshTopology, OverlapIsFound)
 {
   const auto with_second_pin = [](const Values &a, const Values &b, const Values &c, const Place &place) {
-    HexMesh mesh      = disc_with_pad();
-    mesh.volume_names = {"disc", "pin_1", "pin_2"};
+    Mesh mesh         = disc_with_pad();
+    mesh.volume_names = mesh.body_names = {"disc", "pin_1", "pin_2"};
+    mesh.body_of_volume                 = {0, 1, 2};
     add_grid(mesh, 2, a, b, c, place);
     return mesh;
   };

@@ -69,8 +69,8 @@ TEST(Outlines, MeshesHaveTheVolumeOfDiscAndPins)
 {
   GeometryParameters parameters = one_pin();
   parameters.outlines           = Outlines::true_area;
-  const HexMesh mesh            = generate_mesh(parameters);
-  const double  r               = parameters.pin_diameter / 2.;
+  const Mesh   mesh             = generate_mesh(parameters);
+  const double r                = parameters.pin_diameter / 2.;
   EXPECT_NEAR(volume(mesh, "pin_") / (M_PI * r * r * parameters.pin_height), 1., 1e-12);
   const double annulus = M_PI * (std::pow(parameters.disc_outer_radius, 2) - std::pow(parameters.disc_inner_radius, 2));
   EXPECT_NEAR(volume(mesh, "disc") / (annulus * parameters.disc_thickness), 1., 1e-12);

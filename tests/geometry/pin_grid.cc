@@ -75,14 +75,14 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
   parameters.pin_layers  = 3;
   parameters.pin_grading = 2.;
   parameters.bottom      = {{0.1970, 0.2585}, {-10., 12.}}; // displaced from pins above
-  const HexMesh mesh     = generate_mesh(parameters);
+  const Mesh mesh        = generate_mesh(parameters);
   EXPECT_GT(check_mesh(mesh).worst_scaled_jacobian, 0.1);
   const double z_face = parameters.disc_thickness / 2.;
   for (const double side : {1., -1.})
     {
       // Heights above the face: 4 : 2 : 1 of 7
       std::set<double> heights;
-      for (const HexMesh::Point &p : mesh.points)
+      for (const Mesh::Point &p : mesh.points)
         if (side * p[2] >= z_face)
           heights.insert(std::round(1e9 * (side * p[2] - z_face) / parameters.pin_height) / 1e9);
       ASSERT_EQ(heights.size(), 4u);
@@ -96,7 +96,7 @@ TEST(PinGrid, PinsOfASceneHaveRingsAndThinnerLayersAtTheirHeldEnd)
       const double      angle = parameters.bottom.angles[pin] * M_PI / 180., radius = parameters.pin_diameter / 2.;
       const Plan::Point axis(parameters.bottom.radii[pin] * std::cos(angle), parameters.bottom.radii[pin] * std::sin(angle));
       unsigned int      n_found = 0;
-      for (const HexMesh::Point &p : mesh.points)
+      for (const Mesh::Point &p : mesh.points)
         if (p[2] < -z_face - parameters.pin_height / 2.)
           for (const double end : graded_intervals(2, 2.))
             n_found += std::abs(std::hypot(p[0] - axis[0], p[1] - axis[1]) / radius - 0.8 - 0.2 * end) < 1e-9;

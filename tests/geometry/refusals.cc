@@ -42,20 +42,15 @@ TEST(Refusals, SolidsThatDoNotFit)
   expect_refused({{blocks(volumes + surfaces + "Physical Surface(\"disc_boer\") = {1};"), {"'disc_boer'", "known names", "disc_bore"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {6};"), {"'pin_contact'"}},
                   {blocks(volumes), {"'disc_contact'"}},
-                  {blocks("Physical Volume(\"disk\") = {1}; Physical Volume(\"pin_1\") = {2};" + surfaces), {"'disk'", "disc, pin_"}},
-                  {blocks("Physical Volume(\"disc\") = {1, 2};" + surfaces), {"'pin_...'"}},
+                  {blocks("Physical Volume(\"disk\") = {1}; Physical Volume(\"pin_1\") = {2};" + surfaces),
+                   {"no physical volume 'disc'", "disk, pin_1"}},
+                  {blocks("Physical Volume(\"disc\") = {1, 2};" + surfaces), {"no physical volume of a pin"}},
                   {blocks("Physical Volume(\"disc\") = {1};" + surfaces), {"8 volume elements"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {11}; Physical Surface(\"pin_contact\") = {6};"),
-                   {"'pin_contact' has a face on volume 'disc'"}},
+                   {"'pin_contact' has a face on 'disc'"}},
                   {blocks(volumes + "Physical Surface(\"disc_contact\") = {6}; Physical Surface(\"pin_contact\") = {6};", "Coherence;\n"),
                    {"share nodes"}},
-                  {R"(
-        SetFactory("OpenCASCADE");
-        Box(1) = {0, 0, 0, 1, 1, 0.5};
-        Box(2) = {0, 0, 0.5, 1, 1, 0.25};
-        Mesh.MeshSizeMin = 1;
-      )" + volumes + surfaces,
-                   {"elements of type 'Tetrahedron 4'", "Hexahedron 8"}}});
+                  {blocks(volumes + surfaces, "Mesh.ElementOrder = 3;\n"), {"elements of type 'Hexahedron 64'", "second order"}}});
   expect_mentions(refusal(of_file(File("blocks.geo", blocks(volumes + surfaces)).string()), {"mount"}), {"'mount'", "disc_contact"});
 }
 
@@ -98,33 +93,47 @@ TEST(Refusals, PlansThatDoNotFit)
 
 TEST(Refusals, BadElementsAreFound)
 {
-  HexMesh mesh;
-  mesh.volume_names = {"disc"};
-  mesh.points       = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
-  mesh.hexahedra    = {{{{0, 1, 2, 3, 4, 5, 6, 7}}, 0}};
+  Mesh mesh;
+  mesh.volume_names = mesh.body_names = {"disc"};
+  mesh.body_of_volume                 = {0};
+  mesh.points                         = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
+  mesh.cells                          = {{Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}, 0}};
   EXPECT_DOUBLE_EQ(check_mesh(mesh).worst_scaled_jacobian, 1.);
 
-  HexMesh inverted            = mesh;
-  inverted.hexahedra[0].nodes = {{4, 5, 6, 7, 0, 1, 2, 3}};
+  Mesh inverted           = mesh;
+  inverted.cells[0].nodes = {4, 5, 6, 7, 0, 1, 2, 3};
   expect_mentions(message<MeshError>([&] { check_mesh(inverted); }), {"inverted", "element 0", "'disc'", "-1"});
 
-  HexMesh right_handed = inverted;
+  Mesh right_handed = inverted;
   EXPECT_EQ(make_right_handed(right_handed), 1u);
-  EXPECT_EQ(right_handed.hexahedra[0].nodes, mesh.hexahedra[0].nodes);
+  EXPECT_EQ(right_handed.cells[0].nodes, mesh.cells[0].nodes);
   EXPECT_EQ(make_right_handed(right_handed), 0u);
 
   // Two elements one upon the other, the upper one folded into the lower one
-  HexMesh folded = mesh;
+  Mesh folded = mesh;
   folded.points.insert(folded.points.end(), {{0, 0, 0.5}, {1, 0, 0.5}, {1, 1, 0.5}, {0, 1, 0.5}});
-  folded.hexahedra.push_back({{{4, 5, 6, 7, 8, 9, 10, 11}}, 0});
+  folded.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 8, 9, 10, 11}, 0});
   expect_mentions(message<MeshError>([&] { make_right_handed(folded); }), {"inverted", "element 1", "'disc'"});
 
-  HexMesh flat        = mesh;
+  // Elements that occur twice, and a third one at a face
+  Mesh twice = mesh;
+  check_unique(twice, "twice.msh");
+  twice.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 0, 1, 2, 3}, 0});
+  expect_mentions(message<MeshError>([&] { check_unique(twice, "twice.msh"); }),
+                  {"1 of 2 elements have the same nodes", "'disc'", "twice.msh"});
+  Mesh overlapping = folded;
+  check_unique(overlapping, "overlapping.msh");
+  overlapping.points.insert(overlapping.points.end(), {{0, 0, 2}, {1, 0, 2}, {1, 1, 2}, {0, 1, 2}});
+  overlapping.cells.push_back({Shape::hexahedron, {4, 5, 6, 7, 12, 13, 14, 15}, 0});
+  expect_mentions(message<MeshError>([&] { check_unique(overlapping, "overlapping.msh"); }),
+                  {"More than two elements share a face", "3 elements"});
+
+  Mesh flat           = mesh;
   flat.points[2]      = {0.5, 0.5, 0.};
   flat.points[6]      = {0.5, 0.5, 1.};
-  HexMesh collapsed   = mesh;
+  Mesh collapsed      = mesh;
   collapsed.points[2] = collapsed.points[1];
-  for (const HexMesh &degenerate : {flat, collapsed})
+  for (const Mesh &degenerate : {flat, collapsed})
     expect_mentions(message<MeshError>([&] { check_mesh(degenerate); }), {"degenerate"});
-  EXPECT_THROW(check_mesh(HexMesh()), MeshError);
+  EXPECT_THROW(check_mesh(Mesh()), MeshError);
 }

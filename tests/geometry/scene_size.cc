@@ -5,13 +5,13 @@
 
 using namespace Scenes;
 
-using Point = HexMesh::Point;
+using Point = Mesh::Point;
 
 TEST(DiscAxes, OnesThatAreNotTheZAxisAreRefusedByName)
 {
-  const HexMesh mesh  = generate_mesh(one_pin());
-  const auto    check = [&](const Place &motion) { return is_round_about_z(moved(mesh, motion), "here"); };
-  const double  c = std::cos(0.02), s = std::sin(0.02);
+  const Mesh   mesh  = generate_mesh(one_pin());
+  const auto   check = [&](const Place &motion) { return is_round_about_z(moved(mesh, motion), "here"); };
+  const double c = std::cos(0.02), s = std::sin(0.02);
   for (const auto &[map, text] : std::vector<std::pair<Place, std::string>>{{[](const Point &p) {
                                                                                return Point{p[0] + 0.003, p[1] - 0.002, p[2] + 0.7};
                                                                              },
@@ -46,7 +46,7 @@ TEST(ProblemSizes, AreKnownBeforeTheMesh)
     {
       GeometryParameters parameters;
       parameters.element_size    = size;
-      const HexMesh     mesh     = generate_mesh(parameters);
+      const Mesh        mesh     = generate_mesh(parameters);
       const ProblemSize expected = expected_size(parameters), found = expected_size(mesh, 1);
       EXPECT_NEAR(expected.cells / found.cells, 1., 0.4);
       EXPECT_NEAR(expected.dofs / found.dofs, 1., 0.4);
@@ -59,16 +59,15 @@ TEST(ProblemSizes, WhatDoesNotFitIsRefusedBeforehand)
 {
   GeometryParameters parameters;
   parameters.disc_layers = 1000000;
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }),
-                  {"hexahedra", "dofs", "GB are available", "Geometry/Disc layers"});
+  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"cells", "dofs", "GB are available", "Geometry/Disc layers"});
   parameters.file = "disc_pad.geo";
-  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"hexahedra", "dofs", "GB are available"});
+  expect_mentions(message<MeshError>([&] { generate_mesh(parameters); }), {"cells", "dofs", "GB are available"});
   EXPECT_NO_THROW(check_memory({1e4, 3e4, 200.}, 1, 100., "here"));
 }
 
 TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
 {
-  const HexMesh      mesh = generate_mesh(one_pin());
+  const Mesh         mesh = generate_mesh(one_pin());
   MaterialParameters soft_pins;
   soft_pins.pin.young_modulus *= 1e-3;
   // The frequency from which on elements are too long is in the message

@@ -31,11 +31,11 @@ namespace Scenes
     return parameters;
   }
 
-  using Place = std::function<HexMesh::Point(const HexMesh::Point &)>;
+  using Place = std::function<Mesh::Point(const Mesh::Point &)>;
 
-  inline HexMesh moved(HexMesh mesh, const Place &motion)
+  inline Mesh moved(Mesh mesh, const Place &motion)
   {
-    for (HexMesh::Point &point : mesh.points)
+    for (Mesh::Point &point : mesh.points)
       point = motion(point);
     return mesh;
   }
@@ -63,7 +63,7 @@ namespace Scenes
   const std::string surfaces = "Physical Surface(\"disc_contact\") = {6}; Physical Surface(\"pin_contact\") = {11}; "
                                "Physical Surface(\"pin_clamp\") = {12};\n";
 
-  inline unsigned int surface(const HexMesh &mesh, const std::string &name)
+  inline unsigned int surface(const Mesh &mesh, const std::string &name)
   {
     for (unsigned int s = 0; s < mesh.surface_names.size(); ++s)
       if (mesh.surface_names[s] == name)
@@ -72,47 +72,47 @@ namespace Scenes
     return -1;
   }
 
-  inline std::set<unsigned int> nodes_on(const HexMesh &mesh, const std::string &name)
+  inline std::set<unsigned int> nodes_on(const Mesh &mesh, const std::string &name)
   {
     const unsigned int     s = surface(mesh, name);
     std::set<unsigned int> nodes;
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      if (quadrilateral.surface == s)
-        nodes.insert(quadrilateral.nodes.begin(), quadrilateral.nodes.end());
+    for (const Mesh::Face &face : mesh.faces)
+      if (face.surface == s)
+        nodes.insert(face.nodes.begin(), face.nodes.end());
     return nodes;
   }
 
   /// Area of a surface whose faces are plane [m²].
-  inline double area(const HexMesh &mesh, const std::string &name)
+  inline double area(const Mesh &mesh, const std::string &name)
   {
     const unsigned int s   = surface(mesh, name);
     double             sum = 0.;
-    for (const HexMesh::Quadrilateral &quadrilateral : mesh.quadrilaterals)
-      if (quadrilateral.surface == s)
-        sum += face_geometry(mesh, quadrilateral.nodes).area_normal.norm();
+    for (const Mesh::Face &face : mesh.faces)
+      if (face.surface == s)
+        sum += face_geometry(mesh, face).area_normal.norm();
     return sum;
   }
 
-  /// Volume of all cells of the volumes whose name begins so, of each by Gauss' theorem over its faces, which are plane [m³].
-  inline double volume(const HexMesh &mesh, const std::string &prefix)
+  /// Volume of all cells of the bodies whose name begins so, of each by Gauss' theorem over its faces, which are plane [m³].
+  inline double volume(const Mesh &mesh, const std::string &prefix)
   {
     double sum = 0.;
-    for (const HexFace &face : all_faces(mesh))
-      if (mesh.volume_names[face.volume].rfind(prefix, 0) == 0)
+    for (const CellFace &face : all_faces(mesh))
+      if (mesh.body_names[face.body].rfind(prefix, 0) == 0)
         {
-          const auto [centre, normal] = face_geometry(mesh, face.nodes);
+          const auto [centre, normal] = face_geometry(mesh, face);
           sum += centre * normal / 3.;
         }
     return sum;
   }
 
   /// Nodes of the contact faces on one side of the disc that lie on the outline of the pin at this place.
-  inline unsigned int n_on_outline(const HexMesh &mesh, const double side, const double radius, const double angle, const double pin_radius)
+  inline unsigned int n_on_outline(const Mesh &mesh, const double side, const double radius, const double angle, const double pin_radius)
   {
     const double x = radius * std::cos(angle * M_PI / 180.), y = radius * std::sin(angle * M_PI / 180.);
     unsigned int n = 0;
     for (const unsigned int node : nodes_on(mesh, "pin_contact"))
-      if (const HexMesh::Point &p = mesh.points[node]; side * p[2] > 0.)
+      if (const Mesh::Point &p = mesh.points[node]; side * p[2] > 0.)
         n += std::abs(std::hypot(p[0] - x, p[1] - y) - pin_radius) < 1e-9;
     return n;
   }

@@ -1,12 +1,5 @@
 #include <squeal/model/cell_stiffness.h>
 
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/dofs/dof_handler.h>
-#include <deal.II/fe/fe_q.h>
-#include <deal.II/fe/fe_system.h>
-#include <deal.II/grid/grid_generator.h>
-#include <deal.II/grid/tria.h>
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,22 +25,22 @@ namespace
   /// Of a box about the origin whose nodes are displaced by @p field.
   Energy energy(const Element element, const double poisson_ratio, const Field &field)
   {
-    Triangulation<3> grid;
-    GridGenerator::hyper_rectangle(grid, Point<3>(-a / 2., -b / 2., -h / 2.), Point<3>(a / 2., b / 2., h / 2.));
-    const FESystem<3> fe(FE_Q<3>(degree_of(element)), 3);
-    DoFHandler<3>     dofs(grid);
-    dofs.distribute_dofs(fe);
-    FEValues<3> values(fe, QGauss<3>(degree_of(element) + 1), CellStiffness::update_flags(element));
-    values.reinit(dofs.begin_active());
-    FullMatrix<double> K(fe.n_dofs_per_cell());
-    CellStiffness(element, poisson_ratio).integrate(values, K);
+    Mesh mesh;
+    for (const Point<3> &p : reference_nodes(Shape::hexahedron, 1))
+      mesh.points.emplace_back(a * (p[0] - 0.5), b * (p[1] - 0.5), h * (p[2] - 0.5));
+    mesh.cells        = {{Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}, 0}};
+    mesh.volume_names = {"disc"};
+    find_bodies(mesh);
+    const Model   model(mesh, element, MPI_COMM_SELF);
+    ElementValues values(model);
+    values.reinit(model.cells().front());
+    FullMatrix<double> K(3 * values.n_nodes());
+    add_stiffness(values, element, poisson_ratio, K);
 
     std::vector<double> u;
-    for (unsigned int i = 0; i < fe.n_dofs_per_cell(); ++i)
-      {
-        const Point<3> p = fe.unit_support_point(i);
-        u.push_back(field(Point<3>(a * (p[0] - 0.5), b * (p[1] - 0.5), h * (p[2] - 0.5)))[fe.system_to_component_index(i).first]);
-      }
+    for (unsigned int i = 0; i < values.n_nodes(); ++i)
+      for (unsigned int c = 0; c < 3; ++c)
+        u.push_back(field(values.node(i))[c]);
     Energy result{0., 0.};
     for (unsigned int i = 0; i < u.size(); ++i)
       for (unsigned int j = 0; j < u.size(); ++j)

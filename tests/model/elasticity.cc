@@ -3,8 +3,7 @@
 
 #include <squeal/bases/component_modes.h>
 #include <squeal/linear_algebra/factorization.h>
-
-#include <deal.II/dofs/dof_handler.h>
+#include <squeal/model/element_values.h>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +15,7 @@ namespace
   const std::vector<PolarPin> two_pins = {{Plan::Side::top, 1, 2, 1, 1}, {Plan::Side::bottom, 5, 2, 0, 1}};
 
   /// Annulus and two pins, smoothly distorted in all directions so that faces are warped; boundaries keep polygons.
-  HexMesh distorted_mesh()
+  Mesh distorted_mesh()
   {
     return mapped(extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
       return Point3{{p[0] + 0.01 * std::sin(40. * p[1] + 60. * p[2]), p[1] + 0.01 * std::sin(30. * p[2] + 35. * p[0]),
@@ -27,7 +26,7 @@ namespace
   class Elasticity : public ::testing::TestWithParam<Element>
   {
   protected:
-    const HexMesh      mesh = distorted_mesh();
+    const Mesh         mesh = distorted_mesh();
     const Model        model{mesh, GetParam(), MPI_COMM_WORLD};
     MaterialParameters materials = mounted({});
   };
@@ -68,19 +67,11 @@ TEST_P(Elasticity, ConstantStrainOnADistortedMesh)
   const double energy = volume(mesh, 0) * (G * squares + 0.5 * lame * trace * trace);
   EXPECT_NEAR(0.5 * gram(u, f)(0, 0) / energy, 1., 1e-12);
 
-  // No force inside: the boundary's support points are those on boundary faces
-  std::vector<bool>                            on_boundary(model.nodes().size(), false);
-  const auto                                  &fe = model.dof_handler().get_fe();
-  std::vector<dealii::types::global_dof_index> dofs(fe.n_dofs_per_cell());
-  for (const auto &cell : model.dof_handler().active_cell_iterators())
-    for (const unsigned int face : cell->face_indices())
-      if (cell->at_boundary(face))
-        {
-          cell->get_dof_indices(dofs);
-          for (unsigned int i = 0; i < dofs.size(); ++i)
-            if (fe.has_support_on_face(i, face))
-              on_boundary[model.node_of_dof(dofs[i])] = true;
-        }
+  // No force inside
+  std::vector<bool> on_boundary(model.nodes().size(), false);
+  for (const Face &face : model.faces())
+    for (const unsigned int node : face.nodes)
+      on_boundary[node] = true;
   unsigned int n_inside = 0;
   double       largest  = 0.;
   for (unsigned int i = 0; i < on_boundary.size(); ++i)
@@ -126,7 +117,7 @@ TEST_P(Elasticity, EveryBodyHasTermsAndParametersOfItsOwn)
   ParameterValues values                  = bodies.values;
   values.at("Young's modulus, pin_top_1") = {3e9};
   values.at("density, pin_top_1")         = {2000.};
-  materials.single_pins                   = {{"pin_top_1", 3e9, materials.pin.poisson_ratio, 2000.}};
+  materials.volumes                       = {{{3e9, materials.pin.poisson_ratio, 2000.}, "pin_top_1"}};
   const SecondOrderSystem changed = sparse_matrices(bodies.terms, values), expected = assemble(model, materials);
   EXPECT_EQ(max_norm(*add(1., *changed.stiffness, -1., *expected.stiffness)), 0.);
   EXPECT_EQ(max_norm(*add(1., *changed.mass, -1., *expected.mass)), 0.);
@@ -167,8 +158,8 @@ TEST_P(Elasticity, RayleighDampingIsThatOfEachMaterial)
 
 TEST_P(Elasticity, MountsResistInTheirDirections)
 {
-  const HexMesh mesh = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));
-  const Model   model(mesh, GetParam(), MPI_COMM_WORLD);
+  const Mesh  mesh = extrude(polar_plan(0.15, 0.3, 3, 12, two_pins, "inner", "outer"), layers(2, 2));
+  const Model model(mesh, GetParam(), MPI_COMM_WORLD);
 
   // Area of the polygonal bore and ∫r² dA, exactly
   double       area = 0., r2_area = 0.;
@@ -206,14 +197,14 @@ TEST_P(Elasticity, MountsResistInTheirDirections)
 namespace
 {
   /// Frequency [rad/s] of the mode of the clamped-free pin, contact at its lower face, that is most like @p shape.
-  double pin_frequency(const HexMesh                               &mesh,
+  double pin_frequency(const Mesh                                  &mesh,
                        const MaterialParameters                    &materials,
                        const Element                                element,
                        const std::function<Point3(const Point3 &)> &shape,
                        const double                                 limit)
   {
     const Model model(mesh, element, MPI_COMM_WORLD);
-    const auto  interface = pair_contact_nodes(model, Rotation::positive, 1e-6);
+    const auto  interface = contact_nodes(model, ContactParameters().pairs, Rotation::positive, 1e-6).interface;
     const auto  system    = assemble(model, materials);
     const auto  modes     = component_modes(model, interface, interface, system, Component::pins, ContactBoundary::free, limit * limit, {});
     const MultiVector u   = displacements(model, 1, shape);
@@ -295,4 +286,44 @@ TEST(Assembly, CurvedElementsHaveTheVolumeOfTheAnnulus)
       // Polygons of 24 sides would miss 1.1 %.
       EXPECT_NEAR(product(e, *system.mass, e) / (materials.disc.density * volume), 1., 1e-4) << unit;
     }
+}
+
+TEST_P(Elasticity, VolumesOfABodyHaveTermsOfTheirOwn)
+{
+  // The upper half of a pin is another volume: with the same material nothing changes, its own one is a parameter
+  Mesh halves = mesh;
+  halves.volume_names.push_back("pin_top_1_backplate");
+  halves.body_of_volume.push_back(1);
+  for (Mesh::Cell &cell : halves.cells)
+    if (cell.volume == 1 && centre(halves, cell)[2] > 0.5 * (GeometryParameters().disc_thickness + GeometryParameters().pin_height))
+      cell.volume = 3;
+  const Model other(halves, GetParam(), MPI_COMM_WORLD);
+  ASSERT_EQ(other.volumes_of(1), (std::vector<unsigned int>{1, 3}));
+  const auto whole = assemble(model, materials), parts = assemble(other, materials);
+  EXPECT_LT(max_norm(*add(1., *parts.stiffness, -1., *whole.stiffness)), 1e-14 * max_norm(*whole.stiffness));
+  EXPECT_LT(max_norm(*add(1., *parts.mass, -1., *whole.mass)), 1e-14 * max_norm(*whole.mass));
+
+  materials.volumes      = {{{210e9, 0.3, 7850.}, "pin_top_1_backplate"}};
+  const BodyTerms bodies = body_terms(other, materials);
+  EXPECT_EQ(bodies.values.at("Young's modulus, pin_top_1_backplate"), std::vector<double>{210e9});
+  EXPECT_EQ(bodies.values.at("density, pin_top_1"), std::vector<double>{materials.pin.density});
+}
+
+TEST_P(Elasticity, MassesOnSurfacesMoveWithThem)
+{
+  const MultiVector e      = displacements(model, 1, [](const Point3 &) { return Point3{{0.6, 0., 0.8}}; });
+  const auto        before = assemble(model, materials);
+  materials.masses         = {{PhysicalNames::pin_contact, 50.}};
+  double        area       = 0.;
+  ElementValues values(model);
+  for (const Face *face : model.faces_of(PhysicalNames::pin_contact))
+    if (face->component == 1 && face->is_own)
+      {
+        values.reinit(*face);
+        for (unsigned int q = 0; q < values.n_points(); ++q)
+          area += values.JxW(q);
+      }
+  area             = dealii::Utilities::MPI::sum(area, MPI_COMM_WORLD);
+  const auto after = assemble(model, materials);
+  EXPECT_NEAR((product(e, *after.mass, e) - product(e, *before.mass, e)) / (50. * area), 1., 1e-9);
 }

@@ -98,15 +98,15 @@ namespace
 TEST(Rotation, IsThatOfLinearFields)
 {
   // vᵀ G u = ∫ (F x)·(H J x) − (F J x)·(H x) with u = H x, v = F x, J x = e_z × x, from ∫ x xᵀ; N likewise
-  const HexMesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
+  const Mesh mesh = mapped(extrude(polar_plan(0.15, 0.3, 3, 12, pins, "inner", "outer"), layers(2, 2)), [](const Point3 &p) {
     return Point3{{p[0] + 0.01 * std::sin(40. * p[1]), p[1] + 0.01 * std::sin(35. * p[0]), p[2] + 0.004 * std::sin(45. * p[0])}};
   });
   for (const Element element : {Element::trilinear, Element::quadratic})
     {
       const Model     model(mesh, element, MPI_COMM_WORLD);
       const BodyTerms bodies = rotating(model, mounted({}), 3.);
-      const auto     &M = *term_named(bodies, "mass, disc").matrix, &G = *term_named(bodies, "gyroscopic forces of the disc").matrix,
-                 &N = *term_named(bodies, "convective stiffness of the disc").matrix;
+      const auto     &M = *term_named(bodies, "mass, disc").matrix, &G = *term_named(bodies, "gyroscopic forces, disc").matrix,
+                 &N = *term_named(bodies, "convective stiffness, disc").matrix;
 
       const auto linear = [&model](const Matrix3 &H) {
         return displacements(model, 0, [&H](const Point3 &p) {

@@ -103,8 +103,8 @@ TEST(ComplexModes, MirrorImageTurnsTheOtherWay)
 {
   for (const RadialDissipation dissipation : {RadialDissipation::none, RadialDissipation::consistent})
     {
-      const HexMesh mesh    = mesh_of(skewed_pins);
-      const auto    turning = [&](const HexMesh &scene, const Rotation rotation) {
+      const Mesh mesh    = mesh_of(skewed_pins);
+      const auto turning = [&](const Mesh &scene, const Rotation rotation) {
         return krylov(Scene(scene, mounted(), operating(dissipation, rotation)).coupled, mu);
       };
       const auto modes = turning(mesh, Rotation::positive);

@@ -1,15 +1,15 @@
 #include "files.h"
 #include "scenes.h"
 
+#include <squeal/model/element_values.h>
 #include <squeal/output/fields.h>
-
-#include <deal.II/base/tensor.h>
-#include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cstring>
+#include <map>
 #include <set>
 
 using namespace Squeal;
@@ -18,38 +18,65 @@ namespace fs = std::filesystem;
 
 namespace
 {
-  using Corner = dealii::Tensor<1, 3>;
+  using Vector3 = dealii::Tensor<1, 3>;
 
   /// Corners of a cell.
-  std::vector<Corner> corners(const FieldMesh &mesh, const unsigned int cell)
+  std::vector<Vector3> corners(const FieldMesh &mesh, const unsigned int cell)
   {
-    std::vector<Corner> result;
-    for (unsigned int v = 0; v < mesh.corners; ++v)
+    std::vector<Vector3> result;
+    for (int corner = cell == 0 ? 0 : mesh.ends[cell - 1]; corner < mesh.ends[cell]; ++corner)
       {
-        const auto &x = mesh.nodes[mesh.cells[cell * mesh.corners + v]].position;
-        result.push_back(Corner({x[0], x[1], x[2]}));
+        const auto &x = mesh.nodes[mesh.corners[corner]].position;
+        result.push_back(Vector3({x[0], x[1], x[2]}));
       }
     return result;
   }
 
-  double triple(const Corner &a, const Corner &b, const Corner &c)
+  /// Triangles about the first corner of a polygon, as normals of twice their lengths.
+  std::vector<Vector3> fan(const std::vector<Vector3> &x)
   {
-    return dealii::cross_product_3d(a, b) * c;
-  }
-
-  /// Of a hexahedron in the order of VTK, by six tetrahedra about one diagonal; negative where it is inside out.
-  double volume(const std::vector<Corner> &x)
-  {
-    constexpr int tetrahedra[6][2] = {{1, 2}, {2, 3}, {3, 7}, {7, 4}, {4, 5}, {5, 1}};
-    double        result           = 0.;
-    for (const auto &[a, b] : tetrahedra)
-      result += triple(x[a] - x[0], x[b] - x[0], x[6] - x[0]) / 6.;
+    std::vector<Vector3> result;
+    for (std::size_t i = 2; i < x.size(); ++i)
+      result.push_back(dealii::cross_product_3d(x[i - 1] - x[0], x[i] - x[0]));
     return result;
   }
 
-  double area(const std::vector<Corner> &x)
+  /// Of the cone from the origin to a polygon whose normal points away from it.
+  double cone(const std::vector<Vector3> &x)
   {
-    return 0.5 * dealii::cross_product_3d(x[2] - x[0], x[3] - x[1]).norm();
+    double result = 0.;
+    for (const Vector3 &normal : fan(x))
+      result += normal * x[0] / 6.;
+    return result;
+  }
+
+  /// Of a cell in the order of VTK; negative where it is inside out.
+  double volume(const FieldMesh &mesh, const unsigned int cell)
+  {
+    const std::map<int, Shape> shapes = {{10, Shape::tetrahedron}, {12, Shape::hexahedron}, {13, Shape::wedge}, {14, Shape::pyramid}};
+    std::vector<Vector3>       x      = corners(mesh, cell);
+    if (mesh.types[cell] == 13) // its first triangle looks outwards
+      {
+        std::swap(x[1], x[2]);
+        std::swap(x[4], x[5]);
+      }
+    double result = 0.;
+    for (const auto &face : topology(shapes.at(mesh.types[cell])).faces)
+      {
+        std::vector<Vector3> around;
+        for (const unsigned int corner : face)
+          around.push_back(x[corner] - x[0]);
+        result += cone(around);
+      }
+    return result;
+  }
+
+  double area(const std::vector<Vector3> &x)
+  {
+    Vector3 sum;
+    for (const Vector3 &normal : fan(x))
+      sum += 0.5 * normal;
+    return sum.norm();
   }
 
   /// Area or volume with two chords for each edge that is a parabola: they leave a quarter of what a single chord does.
@@ -58,15 +85,12 @@ namespace
     return with_parabolas + (with_chords - with_parabolas) / 4.;
   }
 
-  /// Volume of what quadrilaterals enclose whose normals point outwards.
+  /// Volume of what faces enclose whose normals point outwards.
   double enclosed(const FieldMesh &mesh)
   {
     double result = 0.;
-    for (unsigned int cell = 0; cell < mesh.components.size(); ++cell)
-      {
-        const auto x = corners(mesh, cell);
-        result += (triple(x[1], x[2], x[0]) + triple(x[2], x[3], x[0])) / 6.;
-      }
+    for (unsigned int cell = 0; cell < mesh.ends.size(); ++cell)
+      result += cone(corners(mesh, cell));
     return result;
   }
 
@@ -82,6 +106,18 @@ namespace
     for (const Node &node : nodes)
       numbers.insert(node.number);
     return numbers;
+  }
+
+  /// The folder of results once @p action(folder) has written into it.
+  template <typename Action>
+  fs::path results(const TemporaryFolder &place, const Action &action)
+  {
+    const fs::path path = place.path / "results";
+    ResultFolder   folder(path.string(), true);
+    action(folder);
+    folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
+    folder.commit();
+    return path;
   }
 
   /// A disc of 24 cells with one pin.
@@ -102,25 +138,23 @@ namespace
     template <typename Action>
     fs::path written(const TemporaryFolder &place, const Action &action) const
     {
-      const fs::path path = place.path / "results";
-      ResultFolder   folder(path.string(), true);
-      FieldWriter    writer(model, interface, {}, folder);
-      action(writer);
-      folder.write(ResultFolder::run_record, [](std::ostream &stream) { stream << "{}"; });
-      folder.commit();
-      return path;
+      return results(place, [&](const ResultFolder &folder) {
+        FieldWriter writer(model, interface, {}, folder);
+        action(writer);
+      });
     }
   };
 
-  /// The values of a field of a file of one piece, which a single block holds.
-  std::vector<float> values_of(const std::string &text, const std::string &name)
+  /// The values of an array of a file of one piece, which a single block holds.
+  template <typename Number = float>
+  std::vector<Number> values_of(const std::string &text, const std::string &name)
   {
     const auto    place = text.find("offset=", text.find("Name=\"" + name + "\""));
     const auto    data  = text.find("\n_") + 2 + std::stoul(text.substr(place + 8));
     std::uint64_t head[4];
     std::memcpy(head, text.data() + data, sizeof(head));
-    std::vector<float> result(head[1] / sizeof(float));
-    uLongf             size = head[1];
+    std::vector<Number> result(head[1] / sizeof(Number));
+    uLongf              size = head[1];
     EXPECT_EQ(uncompress(reinterpret_cast<Bytef *>(result.data()), &size,
                          reinterpret_cast<const Bytef *>(text.data()) + data + sizeof(head), head[3]),
               Z_OK);
@@ -150,26 +184,33 @@ TEST(FieldMeshes, CellsFillTheBodiesAndShareVertices)
       const DiscWithPin  s(element);
       const unsigned int p = s.model.degree();
       const FieldMesh all = body_mesh(s.model, {}), disc = body_mesh(s.model, Component::disc), pins = body_mesh(s.model, Component::pins);
-      EXPECT_EQ(on_all(all.components.size()), s.model.dof_handler().get_triangulation().n_global_active_cells() * p * p * p);
+      EXPECT_EQ(on_all(all.components.size()), s.mesh.cells.size() * p * p * p);
       EXPECT_EQ(on_all(disc.components.size()), 24 * p * p * p);
       EXPECT_EQ(disc.components.size() + pins.components.size(), all.components.size());
       EXPECT_EQ(disc.nodes.size() + pins.nodes.size(), all.nodes.size());
       EXPECT_EQ(numbers_of(all.nodes).size(), all.nodes.size()) << "vertices are shared";
 
-      double sum = 0.;
+      double sum = 0., straight = 0., parabolic = 0.;
       for (unsigned int cell = 0; cell < all.components.size(); ++cell)
         {
-          const double v = volume(corners(all, cell));
+          const double v = volume(all, cell);
           EXPECT_GT(v, 0.);
           sum += v;
           for (unsigned int vertex = 0; vertex < 8; ++vertex)
-            EXPECT_EQ(all.nodes[all.cells[8 * cell + vertex]].component, static_cast<unsigned int>(all.components[cell]));
+            EXPECT_EQ(all.nodes[all.corners[8 * cell + vertex]].component, static_cast<unsigned int>(all.components[cell]));
         }
       sum = on_all(sum);
-      EXPECT_NEAR(sum,
-                  of_half_edges(dealii::GridTools::volume(s.model.dof_handler().get_triangulation()),
-                                dealii::GridTools::volume(s.model.dof_handler().get_triangulation(), s.model.mapping())),
-                  1e-12 * sum);
+      for (unsigned int body = 0; body < s.mesh.body_names.size(); ++body)
+        straight += Testing::volume(s.mesh, body);
+      ElementValues values(s.model);
+      for (const Cell &cell : s.model.cells())
+        if (cell.is_own)
+          {
+            values.reinit(cell);
+            for (unsigned int q = 0; q < values.n_points(); ++q)
+              parabolic += values.JxW(q);
+          }
+      EXPECT_NEAR(sum, of_half_edges(straight, on_all(parabolic)), 1e-12 * sum);
       EXPECT_NEAR(on_all(enclosed(surface_mesh(s.model))), sum, 1e-12 * sum) << to_string(element);
     }
 }
@@ -187,11 +228,70 @@ TEST(FieldMeshes, ContactFacesHaveTheAreaOfThePairs)
       for (const ContactNode &pair : s.interface)
         of_pairs += pair.area;
       EXPECT_EQ(mesh.components.size() % (p * p), 0u);
-      for (const auto &cell : s.model.dof_handler().get_triangulation().active_cell_iterators())
-        for (const auto &face : cell->face_iterators())
-          if (face->at_boundary() && s.model.surface_ids(PhysicalNames::pin_contact).count(face->boundary_id()) > 0)
-            of_straight_faces += face->measure();
-      EXPECT_NEAR(on_all(of_cells), of_half_edges(on_all(of_straight_faces), of_pairs), 1e-12 * of_pairs) << to_string(element);
+      for (const Mesh::Face &face : s.mesh.faces)
+        if (s.mesh.surface_names[face.surface] == PhysicalNames::pin_contact)
+          {
+            std::vector<Vector3> x;
+            for (std::size_t i = 0; i < topology(face.shape).corners.size(); ++i)
+              x.push_back(s.mesh.points[face.nodes[i]]);
+            of_straight_faces += area(x);
+          }
+      EXPECT_NEAR(on_all(of_cells), of_half_edges(of_straight_faces, of_pairs), 1e-12 * of_pairs) << to_string(element);
+    }
+}
+
+TEST(Fields, OfMixedCellsAreThoseOfLinearParts)
+{
+  // A cube, on it a pyramid and beside it a wedge, between these a tetrahedron of another volume
+  Mesh mesh;
+  mesh.points         = {{0., 0., 0.}, {1., 0., 0.}, {1., 1., 0.}, {0., 1., 0.},  {0., 0., 1.},  {1., 0., 1.},
+                         {1., 1., 1.}, {0., 1., 1.}, {.5, .5, 2.}, {2., .5, 1.5}, {1.5, .5, 0.}, {1.5, .5, 1.}};
+  mesh.cells          = {{Shape::hexahedron, {0, 1, 2, 3, 4, 5, 6, 7}, 0},
+                         {Shape::pyramid, {4, 5, 6, 7, 8}, 0},
+                         {Shape::wedge, {1, 10, 2, 5, 11, 6}, 0},
+                         {Shape::tetrahedron, {5, 6, 8, 9}, 1}};
+  mesh.volume_names   = {"disc", "ring"};
+  mesh.body_names     = {"disc"};
+  mesh.body_of_volume = {0, 0};
+
+  const TemporaryFolder place;
+  for (const Element element : {Element::trilinear, Element::quadratic})
+    {
+      const Model     model(mesh, element, MPI_COMM_WORLD);
+      const FieldMesh bodies = body_mesh(model, {}), surface = surface_mesh(model);
+      const fs::path  folder = results(place, [&](const ResultFolder &into) {
+        VtuPiece(bodies).write(into, "mixed.vtu", {}, MPI_COMM_WORLD);
+        VtuPiece(surface).write(into, "surface.vtu", {}, MPI_COMM_WORLD);
+      });
+      // Each type, and how many there are
+      const auto check_file = [&](const char *name, const FieldMesh &written, const std::map<int, unsigned int> &expected) {
+        const std::string text  = content(folder / name);
+        const auto        types = values_of<std::uint8_t>(text, "types");
+        EXPECT_EQ(values_of<std::int32_t>(text, "connectivity"), written.corners);
+        EXPECT_EQ(values_of<std::int32_t>(text, "offsets"), written.ends);
+        std::map<int, unsigned int> found;
+        for (const int type : types)
+          ++found[type];
+        EXPECT_EQ(found, expected);
+        return text;
+      };
+      const bool        is_linear = element == Element::trilinear;
+      const std::string text      = check_file("mixed.vtu", bodies,
+                                          is_linear ? std::map<int, unsigned int>{{10, 1}, {12, 1}, {13, 1}, {14, 1}} :
+                                                           std::map<int, unsigned int>{{10, 12}, {12, 8}, {13, 8}, {14, 6}});
+      check_file("surface.vtu", surface,
+                 is_linear ? std::map<int, unsigned int>{{5, 8}, {9, 6}} : std::map<int, unsigned int>{{5, 32}, {9, 24}});
+      const auto volumes = values_of<std::int32_t>(text, "volume");
+      EXPECT_EQ(std::count(volumes.begin(), volumes.end(), 1), is_linear ? 1 : 8);
+
+      double sum = 0.;
+      for (unsigned int cell = 0; cell < bodies.types.size(); ++cell)
+        {
+          EXPECT_GT(volume(bodies, cell), 0.) << int(bodies.types[cell]);
+          sum += volume(bodies, cell);
+        }
+      EXPECT_NEAR(sum, 1. + 1. / 3. + 1. / 4. + 1.25 / 6., 1e-12);
+      EXPECT_NEAR(enclosed(surface), sum, 1e-12);
     }
 }
 

@@ -99,10 +99,10 @@ TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
     }
 
   // Bodies stay; outlines are smooth by polygons: the volume differs by those alone
-  const HexMesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
+  const Mesh coarse = generate_mesh(one_pin()), fine = generate_mesh(refined(one_pin(), 2.));
   EXPECT_EQ(coarse.volume_names, fine.volume_names);
-  EXPECT_GT(fine.hexahedra.size(), 6 * coarse.hexahedra.size());
-  EXPECT_LT(fine.hexahedra.size(), 10 * coarse.hexahedra.size());
+  EXPECT_GT(fine.cells.size(), 6 * coarse.cells.size());
+  EXPECT_LT(fine.cells.size(), 10 * coarse.cells.size());
   EXPECT_NEAR(volume(fine, "disc") / volume(coarse, "disc"), 1., 0.02);
 }
 

@@ -167,10 +167,11 @@ TEST(Declarations, SayWhatEveryKindAccepts)
       if (parameter.accepted.empty())
         free_texts.push_back(parameter.path);
     }
-  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Pin material/Single pins", "Mounts/Elastic mounts", "Mounts/Dashpots",
-                                                  "Steady sliding/Loads", "Steady sliding/Gaps", "Damping/Modal damping ratio",
-                                                  "Reduction/Bases", "Reduction/Component modes", "Accuracy study/Elements",
-                                                  "Accuracy study/Outlines", "Accuracy study/Bases", "Designs/Variables", "Designs/File"}));
+  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Materials/Volumes", "Mounts/Elastic mounts", "Mounts/Dashpots",
+                                                  "Mounts/Added masses", "Contact/Pairs", "Steady sliding/Loads", "Steady sliding/Gaps",
+                                                  "Damping/Modal damping ratio", "Reduction/Bases", "Reduction/Component modes",
+                                                  "Accuracy study/Elements", "Accuracy study/Outlines", "Accuracy study/Bases",
+                                                  "Designs/Variables", "Designs/File"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
@@ -179,7 +180,7 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
     read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 12345678.9, 3; disc_rim: 0, 7e9, 0",
               "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
               "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7",
-              "Pin material/Single pins=pin_top_1: 1.23456789e9, 0.3, 3000; pin_bottom_2: 2e9, 0.25, 3070",
+              "Materials/Volumes=pin_top_1: 1.23456789e9, 0.3, 3000; pin_bottom_2: 2e9, 0.25, 3070",
               "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02", "Output/Mode shapes=unstable",
               "Linear algebra/Factorization=MUMPS"});
   const Parameters back = read(printed(p));
@@ -190,7 +191,8 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
   EXPECT_EQ(back.solvers.complex_tolerance, 2e-10);
   EXPECT_EQ(back.materials.mounts[0].tangential, 12345678.9);
   EXPECT_EQ(back.materials.of("pin_top_1").young_modulus, 1.23456789e9);
-  EXPECT_EQ(back.materials.of("pin_bottom_2").rayleigh_beta, 1.2345678e-7);
+  EXPECT_EQ(back.materials.of("pin_bottom_2").rayleigh_beta, 0.);
+  EXPECT_EQ(back.materials.of("pin_bottom_1").rayleigh_beta, 1.2345678e-7);
   ASSERT_EQ(back.damping.modal_ratios.size(), 2u);
   EXPECT_EQ(back.damping.modal_ratios[0].ratio, 0.0123456789);
   EXPECT_EQ(back.damping.modal_ratios[1].frequency, 2500.5);
@@ -209,15 +211,20 @@ TEST(ParameterFiles, ZeroHasNoSign)
 TEST(ParameterChecks, RefuseWithNameAndReason)
 {
   const std::string damped = "Operation/Radial dissipation=consistent";
-  const std::string pins = "Pin material/Single pins", mounts = "Mounts/Elastic mounts", ratios = "Damping/Modal damping ratio";
+  const std::string pins = "Materials/Volumes", mounts = "Mounts/Elastic mounts", ratios = "Damping/Modal damping ratio";
   expect_refused({{"Band/Maximum frequency=0", {"give a positive frequency"}},
                   {"Output/Animation frames=-1", {"-1"}},
                   {"Disc material/Young modulus=0", {"positive"}},
                   {"Pin material/Poisson ratio=0.5", {"incompressible"}},
                   {"Disc material/Poisson ratio=-1", {"above -1"}},
                   {"Disc material/Rayleigh alpha=-1", {"-1"}},
-                  {pins + "=pin_top_1: 2e9, 0.25", {"is not the material of a pin"}},
+                  {pins + "=pin_top_1: 2e9, 0.25", {"is not the material of a volume"}},
                   {pins + "=pin_top_1: 2e9, 0.5, 3000", {", pin_top_1/Poisson ratio", "incompressible"}},
+                  {"Contact/Pairs=disc_top", {"`disc_top` is not a pair of surfaces"}},
+                  {"Contact/Pairs=top / pad: 0", {"is not a positive number"}},
+                  {"Contact/Pairs=top / top", {"would rub itself"}},
+                  {"Contact/Pairs=top / pad; top / pad: 2", {"is given twice"}},
+                  {"Contact/Pairs=", {"nothing rubs"}},
                   {mounts + "=disc_bore: 1, 2", {"is not an elastic mount"}},
                   {mounts + "=disc_bore: 1, two, 3", {"surface disc_bore", "`two` is not a finite number"}},
                   {mounts + "=disc_bore: 1, -2, 3", {"not a finite value >= 0"}},

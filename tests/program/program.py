@@ -37,7 +37,8 @@ end
 """
 
 COMPLEX_COLUMNS = ["label", "share [-]", "frequency [Hz]", "growth rate [1/s]", "divergence rate [%]", "effective damping ratio -2R/omega [%]",
-                   "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]", "verdict"]
+                   "residual [-]", "eps_res [-]", "unstable [-]", "wave with rotation [-]", "wave against rotation [-]",
+                   *(f"strain energy in {part} [%]" for part in ("disc", "pins", "mounts")), "verdict"]
 
 # Of the same eigenvalue found in another way [-]
 SAME = 1e-9

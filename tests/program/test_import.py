@@ -15,6 +15,7 @@ except ImportError:
 
 from hex_mesh import PARAMETERS, disc_with_pads
 from program import EXECUTABLE, SOURCE, ProgramTest, eigenvalues
+from tet_mesh import BRAKE, brake
 
 # Sides S1 to S6 of C3D8 by the corners of the element, from 0
 SIDES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 4, 5), (1, 2, 5, 6), (2, 3, 6, 7), (0, 3, 4, 7))
@@ -66,6 +67,41 @@ def nastran(mesh):
 def assignments(numbers, mesh):
     volumes = [word for name in mesh.bodies() for word in ("--volume", f"{name}={numbers[name]}")]
     return volumes + [word for name in mesh.surfaces() for word in ("--surface", f"{name}={numbers[name]}")]
+
+
+def abaqus_tetrahedra(mesh):
+    """Millimetres; C3D10, whose last two middle nodes Gmsh exchanges, sets of elements, surfaces of element faces, materials."""
+    lines = ["*NODE"] + [f"{i}, " + ", ".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
+    for volume in mesh.volumes():
+        lines.append(f"*ELEMENT, TYPE=C3D10, ELSET={volume.upper()}")
+        lines += [f"{i}, " + ", ".join(str(n + 1) for n in (*c[:8], c[9], c[8])) for i, (v, c) in enumerate(mesh.cells, 1) if v == volume]
+    sides = {frozenset(c[i] for i in side): (i_cell, number) for i_cell, (_, c) in enumerate(mesh.cells, 1)
+             for number, side in enumerate(((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)), 1)}
+    for surface in mesh.surfaces():
+        lines.append(f"*SURFACE, NAME={surface.upper()}")
+        lines += ["{}, S{}".format(*sides[frozenset(nodes[:3])]) for name, nodes in mesh.faces if name == surface]
+    for volume, (modulus, ratio, density) in TETRAHEDRA.items():
+        lines += [f"*SOLID SECTION, ELSET={volume.upper()}, MATERIAL=M_{volume.upper()}", f"*MATERIAL, NAME=M_{volume.upper()}"]
+        lines += ["*ELASTIC", f"{modulus}, {ratio}", "*DENSITY", f"{density},"]
+    return "\n".join(lines) + "\n"
+
+
+def nastran_tetrahedra(mesh):
+    """Millimetres; CTETRA of ten nodes, whose middle nodes are those of Abaqus; surfaces as CTRIA6."""
+    numbers = {name: i for i, name in enumerate([*mesh.volumes(), *mesh.surfaces()], 1)}
+    lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
+    cells = [("CTETRA", volume, (*c[:8], c[9], c[8])) for volume, c in mesh.cells] + [("CTRIA6", *face) for face in mesh.faces]
+    for i, (card, name, nodes) in enumerate(cells, 1):
+        words = [card, str(i), str(numbers[name]), *(str(n + 1) for n in nodes)]
+        lines += [",".join(words[:9])] + ([",".join(["+", *words[9:]])] if len(words) > 9 else [])
+    return "\n".join([*lines, "ENDDATA", ""]), numbers
+
+
+# N, mm, t, s; as BRAKE
+TETRAHEDRA = {"disc": ("110000.", "0.28", "7.2e-9"), **{f"pad_{side}_{part}": material for side in ("outer", "inner") for part, material in (
+    ("lining", ("5000.", "0.25", "2.6e-9")), ("backplate", ("210000.", "0.3", "7.85e-9")))}}
+PAIRS = ("disc_top / pad_outer_face", "disc_bottom / pad_inner_face")
+MOUNTS = ("disc_hub: 1e12, 1e12, 1e12", "pad_outer_back: 2e10, 2e10, 2e10", "pad_inner_back: 2e10, 2e10, 2e10")
 
 
 @unittest.skipIf(meshio is None, "needs python3-meshio")
@@ -146,6 +182,41 @@ class Import(ProgramTest):
                 name = source.replace(".", "_")
                 self.imported(source, f"{name}.msh", "--unit", unit, *names)
                 self.assert_same_eigenvalues(eigenvalues(self.run_mesh(name)), self.baseline)
+
+    def test_brake_of_quadratic_tetrahedra(self):
+        """Two pads of two volumes that do not match the disc: the parameter file written beside the mesh runs."""
+        mesh = brake()
+        mesh.write_msh(self.folder / "tet.msh")
+        mesh.write_msh(self.folder / "tet_4.msh", "4.1")
+        self.write("tet.prm", BRAKE.format(file="tet.msh"))
+        baseline = eigenvalues(self.run_scene("out_tet", file="tet.prm"))
+        self.assertTrue(any(value.real > 1 for value in baseline))
+        self.write("tet.inp", abaqus_tetrahedra(mesh))
+        text, numbers = nastran_tetrahedra(mesh)
+        self.write("tet.bdf", text)
+        rubs = [word for option, entries in (("--contact", PAIRS), ("--mount", MOUNTS)) for entry in entries for word in (option, entry)]
+        known = [f"Disc material/{name}={value}" for name, value in (("Young modulus", 110e9), ("Poisson ratio", 0.28), ("Density", 7200))]
+        known += ["Materials/Volumes=" + "; ".join(f"{name}: {values}" for name, values in (
+            ("pad_outer_lining", "5e9, 0.25, 2600"), ("pad_inner_lining", "5e9, 0.25, 2600"),
+            ("pad_outer_backplate", "210e9, 0.3, 7850"), ("pad_inner_backplate", "210e9, 0.3, 7850")))]
+        for source, unit, names, materials in (("tet.inp", "mm", {name: name for name in numbers}, []), ("tet.bdf", "mm", numbers, known),
+                                               ("tet.msh", "m", {name: name for name in numbers}, known),
+                                               ("tet_4.msh", "m", {name: name for name in numbers}, known)):
+            with self.subTest(source):
+                name = "from_" + source.replace(".", "_")
+                words = [word for volume in mesh.volumes() for word in ("--volume", f"{volume}={names[volume]}")]
+                words += [word for surface in mesh.surfaces() for word in ("--surface", f"{surface}={names[surface]}")]
+                self.imported(source, f"{name}.msh", "--unit", unit, *words, *rubs)
+                overrides = ["Operation/Friction coefficient=0.5", "Output/Mode shapes=none", *materials]
+                self.assert_same_eigenvalues(eigenvalues(self.run_scene(f"out_{name}", *overrides, file=f"{name}.prm")), baseline)
+        # Without them: comments to fill in
+        self.imported("tet.inp", "blank.msh", "--unit", "mm", *words)
+        stub = (self.folder / "blank.prm").read_text(encoding="utf-8")
+        for line in ("# Surfaces of the disc: disc_bottom, disc_hub, disc_top; of other bodies: pad_outer_face, ", "# set Pairs", "# set Elastic mounts",
+                     "set Element = quadratic", "pad_outer_lining: 5000000000, 0.25, 2600; pad_outer_backplate: 2.1e+11, 0.3, 7850"):
+            self.assertIn(line, stub)
+        for option, entry in (("--contact", "disc_top / pad_face"), ("--contact", "disc_top"), ("--mount", "hub: 0, 0, 1"), ("--mount", "disc_hub: 1")):
+            self.refused([f"`{entry}`", "disc_top"], "tet.inp", "refused.msh", "--unit", "mm", *words, option, entry)
 
     def test_lists_what_is_in_a_file(self):
         text = self.imported("brake.inp")

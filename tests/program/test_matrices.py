@@ -9,7 +9,7 @@ import unittest
 
 from program import SOURCE, ProgramTest
 
-MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "T_c"]
+MATRICES = ["M", "C", "K", "C_b", "P_n", "P_t", "P_b", "K_n", "T_c"]
 DISSIPATION = "Operation/Radial dissipation=consistent"
 
 # Open contact nodes, damping of the contact along both directions and of the materials, with friction's part in it

@@ -1,11 +1,13 @@
 """Meshes as other programs write them: names, tags, handedness, and what is said of those that cannot be read."""
 
+import math
 import pathlib
 import re
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from hex_mesh import PARAMETERS, disc_with_pads
 from program import ProgramTest, eigenvalues
+from tet_mesh import BRAKE, brake
 
 
 def renamed(mesh, old, *new, where=lambda nodes: True):
@@ -111,7 +113,7 @@ class Meshes(ProgramTest):
                 n = left_handed(mesh, lambda body, nodes: where(mesh, body, nodes))
                 results = self.run_mesh(mesh, f"left_{kind}")
                 self.assert_baseline(results)
-                self.assertIn(f"{n} of {len(mesh.cells)} hexahedra are left-handed", self.call(f"left_{kind}.prm", "--dry-run").stdout)
+                self.assertIn(f"{n} of {len(mesh.cells)} cells are left-handed", self.call(f"left_{kind}.prm", "--dry-run").stdout)
         self.assertNotIn("left-handed", self.call("baseline.prm", "--dry-run").stdout)
 
     # ------------------------------------------------------------------ clamps
@@ -151,3 +153,118 @@ class Meshes(ProgramTest):
         before = home.exists()
         self.assertEqual(self.dry_run("Geometry/Allow shell commands=true").returncode, 0)
         self.assertEqual(home.exists(), before)
+
+
+def turned(angle):
+    c, s = math.cos(angle), math.sin(angle)
+    return lambda x, y, z: (c * x - s * y, s * x + c * y, z)
+
+
+class Tetrahedra(ProgramTest):
+    """A brake of quadratic tetrahedra whose pads do not match the disc."""
+
+    def write_brake(self, mesh, name="brake"):
+        mesh.write_msh(self.folder / f"{name}.msh")
+        (self.folder / f"{name}.prm").write_text(BRAKE.format(file=f"{name}.msh"), encoding="utf-8")
+        return f"{name}.prm"
+
+    def test_symmetries(self):
+        expected = eigenvalues(self.run_scene("out", file=self.write_brake(brake())))
+        self.assertGreaterEqual(sum(value.real > 1 for value in expected), 2)
+        negative = "Operation/Rotation=negative"
+        for name, mesh, *overrides in (("turned", brake().moved(turned(0.7))), ("renumbered", brake().renumbered(1)),
+                                       ("mirrored", brake().moved(lambda x, y, z: (x, -y, z)), negative)):
+            with self.subTest(name):
+                self.assert_same_eigenvalues(eigenvalues(self.run_scene(f"out_{name}", *overrides, file=self.write_brake(mesh))), expected)
+        for n_processes in (2, 3):
+            with self.subTest(n_processes=n_processes):
+                several = self.run_scene(f"out_{n_processes}", file=self.write_brake(brake()), n_processes=n_processes)
+                self.assert_same_eigenvalues(eigenvalues(several), expected)
+
+    def test_refusals(self):
+        def spoiled(change):
+            mesh = brake()
+            change(mesh)
+            return mesh
+
+        def middle_at(part, beside=0.0):
+            """The middle node of the last element's first edge, along that edge and beside it."""
+            def change(mesh):
+                nodes = mesh.cells[-1][1]
+                first, last = mesh.points[nodes[0]], mesh.points[nodes[1]]
+                mesh.points[nodes[4]] = tuple(a + part * (b - a) + beside for a, b in zip(first, last))
+            return change
+
+        def pad(place):
+            return lambda mesh: mesh.moved(place, lambda volume: volume.startswith("pad_outer"))
+
+        def without(*names):
+            def change(mesh):
+                mesh.faces = [face for face in mesh.faces if face[0] not in names]
+            return change
+
+        def parted(of_nodes):
+            """The backplate has nodes of its own where it meets the lining."""
+            def change(mesh):
+                lining, own = {node for volume, nodes in mesh.cells if volume == "pad_outer_lining" for node in nodes[of_nodes]}, {}
+                for index, (volume, nodes) in enumerate(mesh.cells):
+                    if volume == "pad_outer_backplate":
+                        for node in lining.intersection(nodes) - own.keys():
+                            own[node] = len(mesh.points)
+                            mesh.points.append(mesh.points[node])
+                        mesh.cells[index] = volume, [own.get(node, node) for node in nodes]
+            return change
+
+        def with_corner(value):
+            def change(mesh):
+                mesh.points[mesh.cells[0][1][0]] = (value, 0.0, 0.0)
+            return change
+
+        def nothing(mesh):
+            pass
+
+        outer, inner, hub = "disc_top / pad_outer_face", "disc_bottom / pad_inner_face", "disc_hub: 1e12, 1e12, 1e12"
+        pairs = "Contact/Pairs={}; {}".format
+        held = "Mounts/Elastic mounts={}; {}: 0, 0, 2e10; {}: 0, 0, 2e10".format
+        between = "surfaces disc_top and pad_outer_face"
+        for change, mentions, *overrides in (
+                (middle_at(0.5, 0.05), ["1 second-order node", "more than half", "'pad_inner_backplate'"]),
+                (middle_at(0.1), ["folded by second-order nodes"]),
+                (parted(slice(4, 10)), ["not the second-order nodes", "merge"]),
+                (parted(slice(0, 10)), ["'pad_outer_lining'", "nothing holds it", "merge"]),
+                (with_corner(math.nan), ["no finite numbers"]),
+                (with_corner(math.inf), ["no finite numbers"]),
+                (pad(lambda x, y, z: (x, y, z + 0.05)), ["overlap by 0 m", between, "gap below"]),
+                (pad(lambda x, y, z: (1.5 * x, 1.5 * y, z)), ["only 5 %", "pad_outer", between, "20 %"]),
+                (pad(lambda x, y, z: (x, y, z - 0.005)), ["'pad_outer' and 'disc' overlap"]),
+                (pad(lambda x, y, z: (x, y, 0.012 + 0.4 * (z - 0.012))), ["do not face each other", "surfaces disc_top and pad_outer_back", "opposite"],
+                 pairs("disc_top / pad_outer_back", inner), held(hub, "pad_outer_face", "pad_inner_back")),
+                (nothing, ["overlap by 0 m", "surfaces disc_bottom and pad_outer_face"], pairs(f"{outer}; {inner}", "disc_bottom / pad_outer_face")),
+                (nothing, ["no physical surface 'disc_topp', which Contact/Pairs names", "disc_top"], pairs("disc_topp / pad_outer_face", inner)),
+                (nothing, ["'pad_outer_face' has a face on 'pad_outer'", "Contact/Pairs", "exchanged"], pairs("pad_outer_face / disc_top", inner)),
+                (nothing, ["'disc_hub' has a face on 'disc'", "Contact/Pairs"], pairs(f"{outer}; {inner}", "disc_top / disc_hub")),
+                (nothing, ["'pad_outer_face' that nothing uses", "Contact/Pairs"], pairs("disc_top / disc_bottom", inner)),
+                (nothing, ["no physical surface 'disc_bub', which Mounts/"], held("disc_bub: 0, 0, 1e10", "pad_outer_back", "pad_inner_back")),
+                (nothing, ["no volume `pad_outer_plate`", "pad_outer_backplate"], "Materials/Volumes=pad_outer_plate: 210e9, 0.3, 7850"),
+                (without("disc_top", "pad_outer_face"), ["'pad_outer'", "touches nothing", "Contact/Pairs"], f"Contact/Pairs={inner}"),
+                (without("pad_outer_back"), ["'pad_outer'", "nothing holds it", "Mounts/Elastic mounts"],
+                 f"Mounts/Elastic mounts={hub}; pad_inner_back: 0, 0, 2e10"),
+                (lambda mesh: mesh.cells.extend(mesh.cells[-10:]), ["10 of 298 elements have the same nodes as others", "'pad_inner_backplate'"]),
+                (nothing, ["second order", "quadratic"], "Discretization/Element=trilinear")):
+            with self.subTest(mentions):
+                self.dry_run_refused(mentions, *overrides, file=self.write_brake(spoiled(change), "spoiled"))
+
+    def test_notes(self):
+        fine = brake(n_parts=60, n_rings=8, pad_parts=2)
+        for mesh, note in ((brake().moved(lambda x, y, z: (x, y, z + 0.002), lambda volume: volume.startswith("pad_outer")), "up to 0.002 m"),
+                           (fine, "times as large as those of the disc")):
+            with self.subTest(note):
+                process = self.dry_run(file=self.write_brake(mesh, "noted"))
+                self.assertEqual((process.returncode, process.stderr), (0, ""))
+                self.assertIn(note, process.stdout)
+                self.assertNotIn("warning", process.stdout)  # such as: a disc of triangles is not round
+        script = BLOCKS + VOLUMES + SURFACES + "Mesh.Algorithm3D = 10;\n"
+        self.write("blocks.geo", script)
+        process = self.dry_run("Geometry/File=blocks.geo", "Mounts/Elastic mounts=")
+        self.assertIn("of first order are too stiff in bending", process.stdout)
+        self.assertIn("set Discretization/Element = quadratic", process.stdout)

@@ -79,7 +79,7 @@ class OwnGeometry(ProgramTest):
         self.assertRegex(text, r"4 pins like pin_top_1: 0\.0318 m high, 0\.00\d+ m\^2 on the disc")
         self.assertRegex(text, r"expected: \d+ dofs, \S+ GB of memory; \S+ GB are available")
         self.assertNotIn("warning", text)
-        text = self.understood("Pin material/Single pins=pin_top_2: 1.9e9, 0.25, 6140")
+        text = self.understood("Materials/Volumes=pin_top_2: 1.9e9, 0.25, 6140")
         self.assertIn("3 pins like pin_top_1", text)
         self.assertRegex(text, r"pin_top_2: 0\.0318 m high.*; bar waves 556\.3 m/s")
 
@@ -93,7 +93,7 @@ class OwnGeometry(ProgramTest):
 
     def test_units_are_doubted(self):
         self.doubted(["disc extends 46.3 m along z", "metres"], "Geometry/Disc thickness=46.3", refused=True)
-        self.doubted(["Pin material/Single pins, pin_top_1/Density is 3e+07"], "Pin material/Single pins=pin_top_1: 1e14, 0.25, 3e7",
+        self.doubted(["Materials/Volumes, pin_top_1/Density is 3e+07"], "Materials/Volumes=pin_top_1: 1e14, 0.25, 3e7",
                      refused=False)
         self.doubted(["Disc material: sqrt(E/rho) is 0.1636 m/s", "Pa"], "Disc material/Young modulus=210", refused=True)
 

@@ -44,6 +44,10 @@ class Results(ProgramTest):
     def test_modes(self):
         rows = read_table(self.results / "complex_modes.csv")
         frequencies = [float(row["frequency [Hz]"]) for row in rows]
+        for row in rows:
+            shares = [float(value) for name, value in row.items() if name.startswith("strain energy")]
+            self.assertAlmostEqual(sum(shares), 100, places=6)
+            self.assertGreaterEqual(min(shares), 0)
         # Ascending; of two that are equal to rounding the decaying one comes first.
         for lower, upper in zip(frequencies, frequencies[1:]):
             self.assertLessEqual(lower, upper * (1 + SAME))

@@ -17,7 +17,7 @@ namespace
   constexpr double band = 2. * M_PI * 5000.;
 
   /// Two pins on each side of a disc, opposite each other; mirror images about y = 0.
-  HexMesh four_pins()
+  Mesh four_pins()
   {
     return extrude(polar_plan(0.15, 0.3, 3, 12,
                               {{Plan::Side::top, 1, 2, 1, 1},
@@ -38,7 +38,7 @@ namespace
 
   struct SlidingScene : Scene
   {
-    explicit SlidingScene(const HexMesh            &mesh      = four_pins(),
+    explicit SlidingScene(const Mesh               &mesh      = four_pins(),
                           const MaterialParameters &materials = mounted(held),
                           const Element             element   = Element::trilinear,
                           const Rotation            rotation  = Rotation::positive)

@@ -19,7 +19,9 @@ namespace Squeal
     std::shared_ptr<MultiVector> vectors;     ///< n_free × k, orthonormal in M, zero on the other components
   };
 
-  /// Masses lumped to the nodes (row sums) [kg] whose rows this process has; zero of the others, and of clamped ones.
+  /// Masses lumped to the nodes [kg] whose rows this process has; zero of the others, and of clamped ones. They are row sums, or, where some of
+  /// these are not positive as at the corners of quadratic tetrahedra, shares of the whole mass in proportion to the diagonal (E. Hinton,
+  /// T. Rock, O. C. Zienkiewicz 1976).
   std::vector<double> nodal_masses(const Model &model, const SparseMatrix &mass);
 
   /**

@@ -23,13 +23,15 @@ namespace Squeal
     circumferential,
     flexural, ///< of pins, about the axis through their contact faces
     torsional,
-    longitudinal
+    longitudinal,
+    body ///< of another body, which gives it its name
   };
 
   template <>
   inline constexpr EnumName<ModeFamily> enum_table<ModeFamily>[] = {
-    {ModeFamily::unnamed, "unnamed"},   {ModeFamily::rigid_body, "RB"}, {ModeFamily::axial, "A"},     {ModeFamily::radial, "R"},
-    {ModeFamily::circumferential, "C"}, {ModeFamily::flexural, "F"},    {ModeFamily::torsional, "T"}, {ModeFamily::longitudinal, "L"}};
+    {ModeFamily::unnamed, "unnamed"}, {ModeFamily::rigid_body, "RB"},     {ModeFamily::axial, "A"},
+    {ModeFamily::radial, "R"},        {ModeFamily::circumferential, "C"}, {ModeFamily::flexural, "F"},
+    {ModeFamily::torsional, "T"},     {ModeFamily::longitudinal, "L"},    {ModeFamily::body, ""}};
 
   /// Which of the two modes of a doublet.
   enum class DoubletSign
@@ -39,8 +41,8 @@ namespace Squeal
     plus ///< the one that grows more, or has the higher frequency
   };
 
-  /// Family, nodal circles, nodal diameters and rank: what the two modes of a doublet and the modes of pins that are alike have in common.
-  using ModeShape = std::tuple<ModeFamily, int, int, int>;
+  /// Family, nodal circles, nodal diameters, rank and body: what the two modes of a doublet and the modes of pins that are alike have in common.
+  using ModeShape = std::tuple<ModeFamily, int, int, int, std::string>;
 
   /// Identity of a mode: the component mode that it is, or resembles most.
   struct ModeLabel
@@ -48,25 +50,21 @@ namespace Squeal
     ModeFamily  family          = ModeFamily::unnamed;
     int         nodal_circles   = 0; ///< of a disc mode
     int         nodal_diameters = 0; ///< of a disc mode
-    int         rank            = 0; ///< of a pin mode: 1 for the lowest of its family
+    int         rank            = 0; ///< of a mode of pins or another body: 1 for the lowest of its family
     DoubletSign sign            = DoubletSign::none;
     double      participation   = 0.; ///< Σ |ψᵀ M φ|² / φᴴ M φ over the component modes ψ of this shape [-]
+    std::string body            = {}; ///< of ModeFamily::body
 
     ModeShape shape() const
     {
-      return {family, nodal_circles, nodal_diameters, rank};
-    }
-
-    bool is_of_pins() const
-    {
-      return rank > 0;
+      return {family, nodal_circles, nodal_diameters, rank, body};
     }
   };
 
   /// Same shape and same sign.
   bool operator==(const ModeLabel &a, const ModeLabel &b);
 
-  /// `A0-4 -`: family, nodal circles, nodal diameters, sign; `F1`: family and rank.
+  /// `A0-4 -`: family, nodal circles, nodal diameters, sign; `F1`: family and rank; `pad_outer 3`: body and rank.
   std::string to_string(const ModeLabel &label);
 
   /// The same without blanks and signs: `A0-4_minus`.
@@ -128,10 +126,11 @@ namespace Squeal
                                                      const MultiVector            &imaginary_part);
 
   /**
-   * Names of pin modes: F flexural, T torsional, L longitudinal about the axis
+   * Names of modes of all bodies but the disc. Those of a body whose name begins with `pin_`: F flexural, T torsional, L longitudinal about the axis
    * through the centre of each pin's contact nodes along its normal, by the
    * larger energy, numbered in ascending order of frequency: the first two F
-   * modes of every pin are F1. Modes must come in that order.
+   * modes of every pin are F1. Of any other body, by the larger kinetic energy: its name, and its number among those of the body. Modes must
+   * come in that order.
    */
   std::vector<ModeLabel> pin_labels(const Model               &model,
                                     const ContactInterface    &interface,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/model/model.h>
+#include <squeal/parameters/contact.h>
 #include <squeal/parameters/operation.h>
 
 #include <Eigen/Core>
@@ -10,16 +11,41 @@
 
 namespace Squeal
 {
-  /// A pair of coincident nodes, one of the disc and one of a pin, with its local frame.
+  /// A node with its factor in a sum.
+  struct WeightedNode
+  {
+    Node   node; ///< the same on every process, but for is_own
+    double weight;
+  };
+
+  using WeightedNodes = std::vector<WeightedNode>;
+
+  /// A contact node of a pin with the point of the disc that it faces, and their local frame. Faces that match node by node make pairs of
+  /// coincident nodes, each with the weight 1; other faces are coupled by mortar(), whose rows these are.
   struct ContactNode
   {
-    Node            disc_node, pin_node; ///< the same on every process, but for is_own
-    unsigned int    pin;                 ///< component of the pin node
-    Eigen::Vector3d position;            ///< [m]
-    Eigen::Vector3d normal;              ///< n: outward unit normal of the disc
-    Eigen::Vector3d sliding;             ///< t: direction in which the disc moves relative to the pin
-    Eigen::Vector3d radial;              ///< b = n × t
-    double          area;                ///< share of the contact area [m²]
+    WeightedNodes   on_disc, on_pin; ///< Σ weight u: displacements of both sides
+    WeightedNodes   forces_of_pin;   ///< Σ weight f: the force of this node from forces on the pin's nodes
+    Node            pin_node;
+    unsigned int    pin;       ///< component of the pin node
+    Eigen::Vector3d position;  ///< [m]
+    Eigen::Vector3d normal;    ///< n: outward unit normal of the disc
+    Eigen::Vector3d sliding;   ///< t: direction in which the disc moves relative to the pin
+    Eigen::Vector3d radial;    ///< b = n × t
+    double          area;      ///< share of the contact area [m²]
+    double          friction;  ///< of the pair of surfaces: factor of the friction coefficient [-]
+    unsigned int    pair;      ///< number of the pair of surfaces
+    double          stiffness; ///< k of the pair [N/m³]; zero: nothing yields
+
+    bool is_rigid() const
+    {
+      return stiffness == 0.;
+    }
+
+    bool is_pair() const
+    {
+      return on_disc.size() == 1 && on_pin.size() == 1;
+    }
 
     /// Distance from the disc's axis [m].
     double axis_distance() const
@@ -31,24 +57,32 @@ namespace Squeal
   /// The contact nodes, the same on every process.
   using ContactInterface = std::vector<ContactNode>;
 
+  /// Contact nodes, and what the user should know of how they were found.
+  struct FoundContact
+  {
+    ContactInterface         interface;
+    std::vector<std::string> notes;
+  };
+
   /**
-   * Pairs the nodes of `disc_contact` and `pin_contact`. The normal of a node
-   * is the area average over the disc's contact faces that meet there; t is the
-   * direction of ±e_θ in the tangent plane.
+   * The contact nodes of pairs of surfaces: pairs of nodes where every node of the pins has one of the disc within @p tolerance [m] and every node of
+   * the disc one of the pins, else by mortar(). The normal of a pair is the area average over the disc's contact faces that meet there,
+   * that of another node the average over the pin's; t is the direction of ±e_θ in the tangent plane.
    *
-   * Throws MeshError if nodes have no partner within @p tolerance [m], if a
-   * node would belong to two pairs, or if a contact node is clamped.
+   * Throws MeshError if a contact node is clamped, and as mortar() does.
    */
-  ContactInterface pair_contact_nodes(const Model &model, Rotation rotation, double tolerance);
+  FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, Rotation rotation, double tolerance);
 
   /**
    * Viscous contact damping of each node [N s/m] in a state with reactions R_n0:
    *
    *   along b  c_b = μ |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω r;  zeros for `none`
-   *   along t  c_t = |R_n0| dμ/dw
+   *   along t  c_t = |R_n0| dμ/dw / f, for rows f t·(u_D − u_P) of P_t, f the friction factor of the pair
    */
   std::vector<double> radial_dissipation(const ContactInterface    &interface,
                                          const std::vector<double> &reactions,
                                          const OperationParameters &operation);
-  std::vector<double> sliding_dissipation(const std::vector<double> &reactions, const OperationParameters &operation);
+  std::vector<double> sliding_dissipation(const ContactInterface    &interface,
+                                          const std::vector<double> &reactions,
+                                          const OperationParameters &operation);
 } // namespace Squeal

@@ -44,6 +44,8 @@ namespace Squeal
    *
    *   Rᵀ diag(c_b) R   and   A diag(c_t) Aᵀ,   R = P_b T_c.
    *
+   * Springs of the contact are a term of the stiffness, T_cᵀ P_nᵀ k diag(D) P_n T_c, whose V is −k diag(D) P_n T_c.
+   *
    * add_modal_damping() appends a term of its own.
    */
   struct CoupledSystem

@@ -19,10 +19,10 @@ namespace Squeal
       return -direction.dot(node.normal);
     }
 
-    /// e·(n + μ t): force along e on the backplate for a unit reaction at a node with friction [-]; negative, since reactions are.
+    /// e·(n + μ f t): force along e on the backplate for a unit reaction at a node with friction [-]; negative, since reactions are.
     double force(const ContactNode &node, const double mu) const
     {
-      return direction.dot(node.normal + mu * node.sliding);
+      return direction.dot(node.normal + mu * node.friction * node.sliding);
     }
   };
 
@@ -45,8 +45,8 @@ namespace Squeal
   std::vector<Eigen::Vector3d> backplate_displacements(const std::vector<Travel> &travels, const std::vector<double> &approach);
 
   /**
-   * R_n0 [N] ≤ 0 if all nodes of a backplate have the same reaction, and the force along its travel, contact friction included, is
-   * the load per side: Σ e·(n + μ t) R_n0 = load.
+   * R_n0 [N] ≤ 0 if all nodes of a backplate have the same reaction, or on faces that do not match the same pressure, and the force along
+   * its travel, contact friction included, is the load per side: Σ e·(n + μ f t) R_n0 = load.
    *
    * Throws MeshError as travels() does, ParameterError if friction alone carries the load.
    */

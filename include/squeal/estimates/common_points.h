@@ -46,16 +46,16 @@ namespace Squeal
     cylindrical ///< radial, circumferential, z about the disc's axis: they follow a pin that stands at another angle
   };
 
-  /// The points of Gauss' rule in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest mesh serve all finer ones. The same on every
+  /// The points of quadrature() in all cells of a mesh, m_q = ρ |J| w_q: those of the coarsest mesh serve all finer ones. The same on every
   /// process.
-  CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int points_per_direction = 2);
+  CommonPoints common_points(const Model &model, const MaterialParameters &materials, unsigned int degree = 1);
 
   /**
    * E, 3 n_q × n: the displacement at common points times √m_q from free dofs of a mesh, so that (E u)ᵀ E v is the mass
    * product of u and v. Rows are distributed evenly over the processes, in the same way for all meshes. Nodal values alone count:
    * incompatible modes of an element, which vanish with the square of its size, do not.
    *
-   * Throws MeshError if the mesh lacks a body, or has no cell near a point. All processes must call; each looks for all points in its cells.
+   * Throws MeshError if the mesh lacks a body. All processes must call; each looks for all points in its cells.
    */
   std::unique_ptr<const SparseMatrix> displacements_at(const CommonPoints &points,
                                                        const Model        &model,

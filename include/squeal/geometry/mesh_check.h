@@ -1,18 +1,18 @@
 #pragma once
 
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 
 #include <string>
 #include <vector>
 
 namespace Squeal
 {
-  /// How well hexahedra are shaped.
+  /// How well cells are shaped.
   struct MeshQuality
   {
-    double       worst_scaled_jacobian; ///< 1 for a box, 0 for a flat corner, negative if inverted
-    unsigned int worst_element;         ///< index of the hexahedron it was found in
-    unsigned int n_bad;                 ///< hexahedra below smallest_scaled_jacobian
+    double       worst_scaled_jacobian; ///< 1 for a box and other regular cells, 0 for a flat corner, negative if inverted
+    unsigned int worst_element;         ///< index of the cell it was found in
+    unsigned int n_bad;                 ///< cells below smallest_scaled_jacobian
   };
 
   /**
@@ -24,36 +24,40 @@ namespace Squeal
    */
   inline constexpr double smallest_scaled_jacobian = 0.02;
 
-  /// Scaled Jacobian: at each corner, the triple product of the three edges that meet there, each divided by its length; the smallest of
-  /// the eight. Throws MeshError for a mesh without elements.
-  MeshQuality mesh_quality(const HexMesh &mesh);
+  /// Scaled Jacobian: at each corner, the triple product of the three edges that meet there, each divided by its length, relative to that
+  /// of a regular cell: 1 for hexahedra, √3/2 for wedges, 1/√2 for tetrahedra and pyramids, of whose corners the apex does not count; the
+  /// smallest of a cell. Edges are taken for straight. Throws MeshError for a mesh without elements.
+  MeshQuality mesh_quality(const Mesh &mesh);
 
   /**
    * The quality of a mesh that can be computed on.
    *
    * Throws MeshError for elements below smallest_scaled_jacobian, saying how
-   * many there are, which one is the worst and where it is, and as mesh_quality() does.
+   * many there are, which one is the worst and where it is, and as mesh_quality() does; in degree 2 also for nodes in the
+   * middle of edges and faces that neighbours do not share, for those off the middle of their edge by more than half of its length, and for cells whose isoparametric map has a Jacobian determinant that is not positive at
+   * quadrature points or negative at nodes.
    */
-  MeshQuality check_mesh(const HexMesh &mesh);
+  MeshQuality check_mesh(const Mesh &mesh);
+
+  /// Throws MeshError, naming @p where, for cells that occur twice, and where more than two share a face.
+  void check_unique(const Mesh &mesh, const std::string &where);
 
   /**
-   * Exchanges bottom and top of hexahedra that are left-handed, which other programs and mirrored copies make: all eight corners have
-   * negative Jacobians. Returns their number.
+   * Reorders the nodes of left-handed cells, which other programs and mirrored copies make: all corners have negative Jacobians.
+   * Returns their number.
    *
    * Throws MeshError for one that then lies on the same side of a face as its neighbour: it is not left-handed, but folded over.
    */
-  unsigned int make_right_handed(HexMesh &mesh);
+  unsigned int make_right_handed(Mesh &mesh);
 
   /**
-   * Throws MeshError, naming @p where, unless the mesh has the parts that
-   * every analysis needs: volumes `disc` and `pin_*`, surfaces `disc_contact`
-   * and `pin_contact`, and those in @p additional_surfaces; no node
-   * shared by two volumes; and every named surface on the outside of volumes
-   * of its kind (`disc_*` on the disc, `pin_*` on pins).
+   * Throws MeshError, naming @p where, unless the mesh has the parts that every analysis needs: the disc's volumes (is_of_disc()) and others,
+   * with no node in common; surfaces `disc_contact` and `pin_contact`, and those in @p additional_surfaces; and every named surface on the
+   * outside of bodies of its kind (`disc_*` on the disc, `pin_*` on pins).
    */
-  void check_parts(const HexMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
+  void check_parts(const Mesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
   /// Throws MeshError, naming @p where, for a body in several pieces, a pin that touches nothing, that neither a clamp nor a mount holds,
   /// or whose clamp and contact are exchanged; and for a mount whose nodes are all clamped. Needs what check_parts() makes sure of.
-  void check_bodies(const HexMesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
+  void check_bodies(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where);
 } // namespace Squeal

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/geometry/gmsh_mesh.h>
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 
 #include <iosfwd>
 #include <string>
@@ -10,18 +10,17 @@
 namespace Squeal
 {
   /**
-   * The hexahedra and named faces of a meshed three-dimensional model. The
-   * disc comes first, then the pins in the order of their physical groups.
-   * Nodes that no hexahedron uses are left out.
+   * The cells and named faces of a meshed three-dimensional model, with its bodies. Volumes of the disc come first, then the others in the
+   * order of their physical groups. Nodes that no cell uses are left out.
    *
-   * Throws MeshError, naming @p where, for other elements than eight-node
-   * hexahedra and four-node quadrilaterals (also of second order), with their
-   * count and type; for volumes without a name or named neither `disc` nor
-   * `pin_*`; and for surfaces whose name is neither a known one nor in
-   * @p additional_surfaces.
+   * Tetrahedra, pyramids, prisms and hexahedra of first or second order, mixed, with triangles and quadrilaterals on their faces. Serendipity
+   * elements get the nodes that they lack at centres of faces and of hexahedra, where their own functions put them.
+   *
+   * Throws MeshError, naming @p where, for other elements with their count and type; for elements of both orders; for volumes without a
+   * name; and for surfaces whose name is neither a known one nor in @p additional_surfaces.
    */
-  HexMesh make_hex_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
+  Mesh make_mesh(const GmshMesh &mesh, const std::vector<std::string> &additional_surfaces, const std::string &where);
 
   /// Writes a mesh with its physical names as .msh (Gmsh 4.1, text), from where it reads back unchanged.
-  void write_msh(const HexMesh &mesh, std::ostream &stream);
+  void write_msh(const Mesh &mesh, std::ostream &stream);
 } // namespace Squeal

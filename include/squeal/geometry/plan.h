@@ -1,7 +1,7 @@
 #pragma once
 
 #include <squeal/geometry/gmsh_mesh.h>
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 #include <squeal/parameters/geometry.h>
 
 #include <deal.II/base/point.h>
@@ -117,5 +117,5 @@ namespace Squeal
    * disc_contact, pin_contact, pin_clamp, pin_side, then one for each curve of
    * the plan.
    */
-  HexMesh extrude(const Plan &plan, const GeometryParameters &parameters);
+  Mesh extrude(const Plan &plan, const GeometryParameters &parameters);
 } // namespace Squeal

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 #include <squeal/geometry/plan.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
@@ -29,7 +29,7 @@ namespace Squeal
   ProblemSize expected_size(const Plan &plan, const GeometryParameters &parameters);
 
   /// Of a mesh, with elements of the given degree.
-  ProblemSize expected_size(const HexMesh &mesh, unsigned int degree);
+  ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
   /// Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
   void check_memory(const ProblemSize &size,
@@ -40,12 +40,9 @@ namespace Squeal
 
   /// Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where
   /// clearly more of it is round about another axis, which the second moments of the surface give.
-  bool is_round_about_z(const HexMesh &mesh, const std::string &where);
+  bool is_round_about_z(const Mesh &mesh, const std::string &where);
 
   /// Throws ParameterError where an element, of given @p degree, is so long that less than one distance of nodes fits into a shear wave of
   /// @p largest_circular_frequency [rad/s]: the modes at the end of the band are those of the mesh.
-  void check_wave_resolution(const HexMesh            &mesh,
-                             const MaterialParameters &materials,
-                             unsigned int              degree,
-                             double                    largest_circular_frequency);
+  void check_wave_resolution(const Mesh &mesh, const MaterialParameters &materials, unsigned int degree, double largest_circular_frequency);
 } // namespace Squeal

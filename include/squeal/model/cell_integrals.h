@@ -1,10 +1,8 @@
 #pragma once
 
-#include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
-#include <squeal/model/model.h>
+#include <squeal/model/element_values.h>
 
-#include <deal.II/dofs/dof_handler.h>
 #include <deal.II/lac/full_matrix.h>
 
 #include <functional>
@@ -13,17 +11,26 @@
 
 namespace Squeal
 {
-  using Cell          = dealii::DoFHandler<3>::active_cell_iterator;
-  using CellPredicate = std::function<bool(const Cell &)>;
+  /// Adds to the matrix of a cell or face, as large as it has dofs: those of node i are 3 i, 3 i + 1, 3 i + 2. Several threads call it.
+  using ElementIntegral = std::function<void(const ElementValues &, dealii::FullMatrix<double> &)>;
 
-  /// Fills the matrix of a cell, as large as it has dofs.
-  using CellIntegral = std::function<void(const Cell &, dealii::FullMatrix<double> &)>;
+  /// Matrices on the free dofs, one for each integral: its sum over the elements, which are all that the process has of their kind.
+  std::vector<std::shared_ptr<const SparseMatrix>> assemble(const Model                             &model,
+                                                            const std::vector<const NodalElement *> &elements,
+                                                            const std::vector<ElementIntegral>      &integrals);
 
-  /// Integrals that are called in their order for each cell. Several threads integrate, each with integrals of its own.
-  using MakeIntegrals = std::function<std::vector<CellIntegral>()>;
-
-  /// Matrices on the free dofs, one for each integral: its sum over those cells that contribute.
-  std::vector<std::shared_ptr<const SparseMatrix>> assemble_cells(const Model         &model,
-                                                                  const CellPredicate &contributes,
-                                                                  const MakeIntegrals &make_integrals);
+  /// Adds ∫ integrand(i, j, q) of shape functions of the same direction.
+  template <typename Integrand>
+  void add_in_each_direction(const ElementValues &values, dealii::FullMatrix<double> &matrix, const Integrand &integrand)
+  {
+    for (unsigned int i = 0; i < values.n_nodes(); ++i)
+      for (unsigned int j = 0; j < values.n_nodes(); ++j)
+        {
+          double sum = 0.;
+          for (unsigned int q = 0; q < values.n_points(); ++q)
+            sum += integrand(i, j, q) * values.JxW(q);
+          for (unsigned int c = 0; c < 3; ++c)
+            matrix(3 * i + c, 3 * j + c) += sum;
+        }
+  }
 } // namespace Squeal

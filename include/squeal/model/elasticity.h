@@ -16,10 +16,10 @@ namespace Squeal
   /// Names of the parameters of body_terms() and add_rotation().
   namespace BodyParameter
   {
-    std::string young_modulus(const std::string &body);  ///< E [Pa]
-    std::string density(const std::string &body);        ///< ρ [kg/m³]
-    std::string rayleigh_alpha(const std::string &body); ///< α [1/s]
-    std::string rayleigh_beta(const std::string &body);  ///< β [s]
+    std::string young_modulus(const std::string &volume);  ///< E [Pa]
+    std::string density(const std::string &volume);        ///< ρ [kg/m³]
+    std::string rayleigh_alpha(const std::string &volume); ///< α [1/s]
+    std::string rayleigh_beta(const std::string &volume);  ///< β [s]
 
     inline constexpr const char *angular_velocity = "angular velocity of the disc"; ///< Ω [rad/s], positive about e_z
   }                                                                                 // namespace BodyParameter
@@ -30,25 +30,25 @@ namespace Squeal
     std::string name;  ///< among ParameterValues
     std::string path;  ///< how a user finds it: "Mounts/Elastic mounts: disc_bore radial"
     const char *unit;  ///< per area
-    double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots
+    double      value; ///< k [N/m³] of springs, c [N s/m³] of dashpots, m [kg/m²] of masses
     int         power; ///< of λ in its term
     std::string surface;
-    int         direction; ///< 0 radial, 1 tangential, 2 axial
+    int         direction; ///< 0 radial, 1 tangential, 2 axial, 3 all
   };
 
   std::vector<MountParameter> mount_parameters(const MaterialParameters &materials);
 
   /**
-   * Terms of the disc and of every pin on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
-   * parameters of each body, such as "density, pin_top_1":
+   * Terms of every volume and mount on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
+   * parameters of each volume, such as "density, pin_top_1":
    *
    *   E K_b,   K_b,ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV for E = 1
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
-   *   λ c K_e of dashpots, c [N s/m³]
+   *   λ c K_e of dashpots, c [N s/m³];  λ² m ∫ φ_i · φ_j dA of masses, m [kg/m²]
    *   λ β E K_b + λ α ρ M_b
    *   λ² ρ M_b,  M_b,ij = ∫ φ_i · φ_j dV
    *
-   * Elements with incompatible modes: K_b of CellStiffness. Full Gauss quadrature, degree + 1 points per direction.
+   * Elements with incompatible modes: K_b of add_stiffness(). Points of quadrature().
    *
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */

@@ -1,27 +1,17 @@
 #pragma once
 
 #include <squeal/base/choices.h>
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 #include <squeal/linear_algebra/row_map.h>
-#include <squeal/parameters/materials.h>
 
 #include <boost/serialization/array.hpp>
 
+#include <mpi.h>
+
 #include <array>
 #include <cstdint>
-#include <memory>
-#include <set>
 #include <string>
 #include <vector>
-
-// Whoever asks for these includes deal.II's headers, which take seconds to read
-namespace dealii
-{
-  template <int, int>
-  class DoFHandler;
-  template <int, int>
-  class Mapping;
-} // namespace dealii
 
 namespace Squeal
 {
@@ -41,29 +31,42 @@ namespace Squeal
     }
   };
 
+  /// A Lagrange element of the model's degree: a cell, or a face of one.
+  struct NodalElement
+  {
+    Shape        shape;
+    Mesh::Nodes  nodes;     ///< places among the nodes of the model
+    unsigned int component; ///< as that of a node
+    std::int64_t number;    ///< tells those of all processes apart, ascends in the order of the cells
+    bool         is_own;    ///< every one is that of one process
+  };
+
+  struct Cell : NodalElement
+  {
+    unsigned int volume; ///< index into volume_names()
+  };
+
+  /// A face that belongs to one cell only, outwards by the right-hand rule.
+  struct Face : NodalElement
+  {
+    std::vector<unsigned int> surfaces; ///< that it is on: indices into the names of surfaces
+  };
+
   /**
-   * The discretised bodies: a mesh whose cells know their component and whose
-   * faces know their surface, the displacement dofs, and their numbering
-   * without the clamped ones, which never reach a matrix.
+   * The discretised bodies: cells and outer faces on nodes with displacement dofs, numbered without the clamped ones, which never reach a
+   * matrix. Cells are isoparametric.
    *
-   * Mesh, dofs and matrices are distributed: a process has its cells and those around them, all cells that meet at a node of its own
-   * among them. Process 0 makes the parts.
+   * All is distributed: a process has its cells and those that meet at a node of its own, with their faces. Process 0 makes the parts.
    */
   class Model
   {
   public:
     /**
-     * @param mesh      hexahedra with named parts; other processes than 0 need the names only
-     * @param element   quadratic ones follow named cylindrical surfaces about axes parallel to z
+     * @param mesh         with named parts; other processes than 0 need the names only
+     * @param element      of degree 2: see second_order()
      * @param communicator processes that share the work
-     *
-     * Throws MeshError, on all processes, if deal.II refuses the mesh.
      */
-    Model(const HexMesh &mesh, Element element, MPI_Comm communicator);
-    ~Model();
-
-    const dealii::DoFHandler<3, 3> &dof_handler() const;
-    const dealii::Mapping<3, 3>    &mapping() const;
+    Model(const Mesh &mesh, Element element, MPI_Comm communicator);
 
     Element element() const
     {
@@ -81,11 +84,20 @@ namespace Squeal
       return processes;
     }
 
-    /// Names of the components, in the order of the cells' material ids.
+    /// Names of the bodies, the disc's first.
     const std::vector<std::string> &component_names() const
     {
       return components;
     }
+
+    /// Names of the volumes of which the bodies are made.
+    const std::vector<std::string> &volume_names() const
+    {
+      return volumes;
+    }
+
+    /// Those of a body.
+    std::vector<unsigned int> volumes_of(unsigned int component) const;
 
     /// Nodes of the cells that this process has, in the order of these.
     const std::vector<Node> &nodes() const
@@ -93,17 +105,23 @@ namespace Squeal
       return node_table;
     }
 
-    /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
-    std::vector<Node> gathered_nodes() const;
+    const std::vector<Cell> &cells() const
+    {
+      return cell_table;
+    }
 
-    /// Place among nodes() of the node of a dof of deal.II's numbering, one of the cells that this process has.
-    unsigned int node_of_dof(std::size_t dof) const;
+    const std::vector<Face> &faces() const
+    {
+      return face_table;
+    }
 
-    /// Boundary ids of the faces of a named surface, one for each combination of names that they bear; throws MeshError naming the
-    /// known surfaces if there is none of this name.
-    const std::set<unsigned int> &surface_ids(const std::string &name) const;
+    /// Those of a named surface; throws MeshError naming the known surfaces if there is none of this name.
+    std::vector<const Face *> faces_of(const std::string &surface) const;
 
     bool has_surface(const std::string &name) const;
+
+    /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
+    std::vector<Node> gathered_nodes() const;
 
     /// Distribution of the free dofs.
     const RowMap &free_map() const
@@ -111,27 +129,21 @@ namespace Squeal
       return map;
     }
 
-    /// Number of a deal.II dof, one of the cells that this process has, among the free ones of all processes; -1 where clamped.
-    int free_dof(std::size_t dof) const;
-
     /// Number of all dofs, clamped ones included.
-    unsigned int n_dofs() const;
+    unsigned int n_dofs() const
+    {
+      return n_all_dofs;
+    }
 
   private:
-    struct Discretisation;
-
-    void create_triangulation(const HexMesh &mesh);
-    void number_free_dofs();
-    void find_nodes();
-
-    std::vector<std::string>            components, surfaces;
-    std::vector<std::set<unsigned int>> ids_of_surfaces;
-    Element                             element_type;
-    MPI_Comm                            processes;
-    std::unique_ptr<Discretisation>     discretisation;
-    std::vector<int>                    free_numbers; ///< of the dofs of the cells that this process has
-    std::vector<unsigned int>           dof_nodes;    ///< of these
-    std::vector<Node>                   node_table;
-    RowMap                              map;
+    std::vector<std::string>  components, volumes, surfaces;
+    std::vector<unsigned int> component_of_volume;
+    Element                   element_type;
+    MPI_Comm                  processes;
+    std::vector<Node>         node_table;
+    std::vector<Cell>         cell_table;
+    std::vector<Face>         face_table;
+    unsigned int              n_all_dofs;
+    RowMap                    map;
   };
 } // namespace Squeal

@@ -70,7 +70,7 @@ namespace Squeal
    *
    * Modes are scaled so that the largest modulus of a displacement is one, and rounded to multiples of 2⁻¹⁶. On the bodies are
    * `displacement_real`, `displacement_imag`,
-   * `amplitude` (root of the sum of |u|² over the components), `phase` (argument of each component [rad]) and the cell field `component`; on
+   * `amplitude` (root of the sum of |u|² over the components), `phase` (argument of each component [rad]) and the cell fields of a piece; on
    * the contact faces, in files `NAME_contact.vtu`, `normal_reaction_real` and `normal_reaction_imag` [N] in the same scale, `closed` (1: the
    * node belongs to S_0) and, where it is known, `energy_input` [1/m²]. The title of a mode is the text `mode` of the file's field data.
    */
@@ -137,6 +137,6 @@ namespace Squeal
     std::map<std::optional<Component>, Stage>                  stages;
     std::optional<Stage>                                       surface; ///< of animations
     const Stage                                                contact_faces;
-    std::vector<unsigned int>                                  pairs; ///< of the vertices of these
+    std::vector<int>                                           pairs; ///< of the vertices of these; -1: overhangs the disc
   };
 } // namespace Squeal

@@ -14,13 +14,13 @@ namespace Squeal
   std::string csv_field(const std::string &text);
 
   /// Nothing, a text, a count, or a number.
-  struct Cell : std::variant<std::monostate, std::string, long, double>
+  struct Entry : std::variant<std::monostate, std::string, long, double>
   {
-    Cell() = default;
+    Entry() = default;
 
     /// A value of any type: what is neither number nor text is named by its to_string().
     template <typename Value>
-    Cell(const Value &value)
+    Entry(const Value &value)
     {
       if constexpr (std::is_floating_point_v<Value>)
         emplace<double>(value);
@@ -33,10 +33,10 @@ namespace Squeal
     }
 
     template <typename Value>
-    Cell(const std::optional<Value> &value)
+    Entry(const std::optional<Value> &value)
     {
       if (value)
-        *this = Cell(*value);
+        *this = Entry(*value);
     }
   };
 
@@ -44,11 +44,11 @@ namespace Squeal
   template <typename Row>
   struct Column
   {
-    std::string                      name;
-    std::string                      unit; ///< "-" for none; "" for text
-    std::function<Cell(const Row &)> value;
-    int                              digits     = 3; ///< on the screen: after the point, or significant if scientific
-    bool                             scientific = false;
+    std::string                       name;
+    std::string                       unit; ///< "-" for none; "" for text
+    std::function<Entry(const Row &)> value;
+    int                               digits     = 3; ///< on the screen: after the point, or significant if scientific
+    bool                              scientific = false;
   };
 
   template <typename Row>
@@ -87,9 +87,9 @@ namespace Squeal
     };
 
     /// @p cell, of the last column.
-    Cell checked(const Cell &cell) const;
+    Entry checked(const Entry &cell) const;
 
-    std::vector<Head>              heads;
-    std::vector<std::vector<Cell>> cells; ///< by column
+    std::vector<Head>               heads;
+    std::vector<std::vector<Entry>> cells; ///< by column
   };
 } // namespace Squeal

@@ -11,14 +11,16 @@
 
 namespace Squeal
 {
-  /// Cells of this process, or faces of them, with shared vertices, as a file of fields has them. All nodes are vertices: an element of
-  /// degree p is p³ hexahedra, a face of it p² quadrilaterals, whose normals point out of the body.
+  /// Cells of this process, or faces of them, with shared vertices, as a file of fields has them. All nodes are vertices: elements of
+  /// degree 2 are divided into linear cells on their nodes. Normals of faces point out of the body.
   struct FieldMesh
   {
-    unsigned int              corners;    ///< of a cell: 8 for hexahedra, 4 for quadrilaterals
     std::vector<Node>         nodes;      ///< vertices
-    std::vector<std::int32_t> cells;      ///< places of their vertices among these, cell by cell in the order of VTK
+    std::vector<std::uint8_t> types;      ///< of each cell, number of VTK
+    std::vector<std::int32_t> corners;    ///< places among the vertices, cell by cell in the order of VTK
+    std::vector<std::int32_t> ends;       ///< of each cell, behind its last corner
     std::vector<std::int32_t> components; ///< of each cell, see Node
+    std::vector<std::int32_t> volumes;    ///< of each cell, see Cell; empty where every body is one volume, and for faces
   };
 
   /// All bodies, or those of a component.
@@ -38,9 +40,9 @@ namespace Squeal
     std::vector<float> values;
   };
 
-  /// What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, and fields, all compressed by zlib. Copies share
-  /// nothing, so that files on one mesh begin with a copy of a piece without fields. Cells are sorted into columns along z: consecutive
-  /// cells then share nodes, which compresses better.
+  /// What a process has of a file of VTK (.vtu): a mesh with the cell field `component`, where a body has several volumes `volume`, and
+  /// fields, all compressed by zlib. Copies share nothing, so that files on one mesh begin with a copy of a piece without fields. Cells
+  /// are sorted into columns along z: consecutive cells then share nodes, which compresses better.
   class VtuPiece
   {
   public:

@@ -10,9 +10,9 @@ namespace Squeal
   /// Isotropic linear elasticity with Rayleigh damping α M + β K.
   struct Material
   {
-    double young_modulus;       ///< E [Pa]
-    double poisson_ratio;       ///< ν [-]
-    double density;             ///< ρ [kg/m³]
+    double young_modulus  = 0.; ///< E [Pa]
+    double poisson_ratio  = 0.; ///< ν [-]
+    double density        = 0.; ///< ρ [kg/m³]
     double rayleigh_alpha = 0.; ///< α [1/s]
     double rayleigh_beta  = 0.; ///< β [s]
 
@@ -33,39 +33,54 @@ namespace Squeal
     }
   };
 
-  /// Elastic constants and density of one pin; its damping is that of all pins.
-  struct PinMaterial
+  /// Material of a volume, such as the lining or the backplate of a pad.
+  struct VolumeMaterial : Material
   {
-    std::string pin;
-    double      young_modulus; ///< E [Pa]
-    double      poisson_ratio; ///< ν [-]
-    double      density;       ///< ρ [kg/m³]
+    std::string volume;
   };
 
-  /// Materials and supports (sections `Disc material`, `Pin material`, `Mounts`).
+  /// Whether a volume of this name is one of the disc: `disc`, or `disc_` with more.
+  bool is_of_disc(const std::string &volume);
+
+  /// Mass on a named surface that moves with it, per area.
+  struct SurfaceMass
+  {
+    std::string surface;
+    double      mass; ///< [kg/m²]
+  };
+
+  /// Materials and supports (sections `Disc material`, `Pin material`, `Materials`, `Mounts`).
   struct MaterialParameters
   {
-    Material                 disc = {210e9, 0.3, 7850.};
-    Material                 pin  = {1.90e9, 0.25, 3070.};
-    std::vector<PinMaterial> single_pins;                                    ///< of pins that differ from the others
-    std::vector<Mount>       mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
-    std::vector<Mount>       dashpots;
+    Material                    disc = {210e9, 0.3, 7850.};
+    Material                    pin  = {1.90e9, 0.25, 3070.};
+    std::vector<VolumeMaterial> volumes;                                        ///< of those that differ
+    std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
+    std::vector<Mount>          dashpots;
+    std::vector<SurfaceMass>    masses;
 
     void declare(Declarations &declarations);
 
     /// Throws ParameterError.
     void check() const;
 
-    /// Material of a body, which is the disc or a pin.
-    Material of(const std::string &body) const;
+    /// That of a volume of its own, else that of the disc or of the pins.
+    Material of(const std::string &volume) const;
 
-    /// All materials, each with the section and the pin that set it.
+    bool has_own(const std::string &volume) const;
+
+    bool is_damped() const;
+
+    /// All of them, to be changed.
+    std::vector<Material *> each();
+
+    /// All materials, each with the section and the volume that set it.
     std::vector<std::pair<std::string, Material>> all() const;
 
-    /// The numbers of all springs and dashpots.
+    /// The numbers of all springs, dashpots and masses.
     std::vector<double *> mount_values();
 
-    /// Names of the surfaces that carry springs or dashpots.
+    /// Names of the surfaces that carry springs, dashpots or masses.
     std::vector<std::string> mounted_surfaces() const;
   };
 

@@ -5,6 +5,7 @@
 #include <squeal/parameters/designs.h>
 #include <squeal/parameters/geometry.h>
 #include <squeal/parameters/materials.h>
+#include <squeal/parameters/contact.h>
 #include <squeal/parameters/operation.h>
 #include <squeal/parameters/reduction.h>
 #include <squeal/parameters/sensitivity.h>
@@ -28,6 +29,7 @@ namespace Squeal
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;
+    ContactParameters        contact;
     OperationParameters      operation;
     SlidingParameters        sliding;
     DampingParameters        damping;

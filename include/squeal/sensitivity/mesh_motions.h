@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/geometry/hex_mesh.h>
+#include <squeal/geometry/mesh.h>
 #include <squeal/parameters/geometry.h>
 
 #include <string>
@@ -11,12 +11,12 @@ namespace Squeal
   /// How the nodes of a mesh move with a length or angle of the geometry, while elements stay what they are.
   struct MeshMotion
   {
-    std::string                 parameter; ///< "Geometry/Pin height"
-    std::string                 pin;       ///< the only one that moves; empty: all
-    std::string                 unit;
-    double                      value;         ///< of the parameter, in this unit
-    std::vector<HexMesh::Point> velocity;      ///< dx/dp of each node [m per unit]
-    bool                        moves_contact; ///< whether contact nodes move in the plane of the disc
+    std::string              parameter; ///< "Geometry/Pin height"
+    std::string              pin;       ///< the only one that moves; empty: all
+    std::string              unit;
+    double                   value;         ///< of the parameter, in this unit
+    std::vector<Mesh::Point> velocity;      ///< dx/dp of each node [m per unit]
+    bool                     moves_contact; ///< whether contact nodes move in the plane of the disc
   };
 
   /**
@@ -36,10 +36,10 @@ namespace Squeal
    *
    * Empty where the mesh is not that of these parameters or pins touch each other or a rim.
    */
-  std::vector<MeshMotion> mesh_motions(const HexMesh &mesh, const GeometryParameters &parameters);
+  std::vector<MeshMotion> mesh_motions(const Mesh &mesh, const GeometryParameters &parameters);
 
   /// The mesh with x + change · dx/dp.
-  HexMesh moved(HexMesh mesh, const MeshMotion &motion, double change);
+  Mesh moved(Mesh mesh, const MeshMotion &motion, double change);
 
   /// Largest |dx/dp| [m per unit].
   double largest_velocity(const MeshMotion &motion);

@@ -73,3 +73,18 @@ def disc(runs):
         found = [mode[column] for mode in leading for column in ("frequency [Hz]", "divergence rate [%]")]
         for name, number, value in zip(("A0-4 [Hz]", "A0-4 [%]", "A0-5 [Hz]", "A0-5 [%]", "F1 [Hz]", "F1 [%]"), quoted, found):
             yield Number(f"{name}, {element}, {outlines}", number, value)
+
+
+TETRAHEDRA = {1: ("2256.8", "3495.3", "1.117"), 1.3: ("2254.7", "3486.2", "1.131"), 1.65: ("2253.5", "3481.9", "1.134")}
+
+
+@entry("elements", "Quadratic tetrahedra on faces that do not match: A0-4 of the free disc, leading F1")
+def tetrahedra(runs):
+    for refinement, (disc, frequency, divergence) in TETRAHEDRA.items():
+        results = runs(f"tetrahedra_{refinement}", "disc_pins.prm", NO_SHAPES, "Geometry/File=disc_pins_tetrahedra.geo",
+                       f"Geometry/refinement={refinement}", "Discretization/Element=quadratic")
+        free = [mode["frequency [Hz]"] for mode in results.table("component_modes.csv") if mode["label"].startswith("A0-4")]
+        yield Number(f"refinement {refinement}, A0-4 [Hz]", disc, sum(free) / len(free))
+        leading = max(results.table("complex_modes.csv"), key=lambda mode: mode["divergence rate [%]"])
+        yield Number(f"refinement {refinement}, F1 [Hz]", frequency, leading["frequency [Hz]"])
+        yield Number(f"refinement {refinement}, F1 [%]", divergence, leading["divergence rate [%]"])

@@ -22,9 +22,9 @@ namespace Squeal
            {std::make_pair("", &ErrorKinds::total), std::make_pair("discretisation ", &ErrorKinds::discretisation),
             std::make_pair("reduction ", &ErrorKinds::reduction), std::make_pair("algebraic ", &ErrorKinds::algebraic)})
         columns.push_back({name + what, unit,
-                           [get, kind = kind](const Row &row) -> Cell {
+                           [get, kind = kind](const Row &row) -> Entry {
                              const std::optional<ErrorKinds> error = get(row);
-                             return error ? Cell(percent * (*error).*kind) : Cell();
+                             return error ? Entry(percent * (*error).*kind) : Entry();
                            },
                            2, true});
       return columns;
@@ -71,7 +71,7 @@ namespace Squeal
     template <typename Function>
     auto if_found(const Function &value)
     {
-      return [value](const ModeRow &row) { return row.mode->number >= 0 ? Cell(value(*row.mode)) : Cell(); };
+      return [value](const ModeRow &row) { return row.mode->number >= 0 ? Entry(value(*row.mode)) : Entry(); };
     }
 
     std::string counterpart(const ModeRow &row)
@@ -169,33 +169,35 @@ namespace Squeal
         }
       // Of sequences of three meshes or more; an order that was not observed is none
       const auto order = [](const std::optional<Extrapolation> &sequence) {
-        return sequence && !sequence->observed_orders.empty() ? Cell(sequence->observed_orders.back()) : Cell();
+        return sequence && !sequence->observed_orders.empty() ? Entry(sequence->observed_orders.back()) : Entry();
       };
-      return Table(
-        Columns<Row>{{"family", "", [](const Row &row) { return row.family->name; }},
-                     {"reference", "", [&](const Row &row) { return row.family == &reference ? "yes" : "no"; }},
-                     {"label", "", [](const Row &row) { return to_string(row.mode->label); }},
-                     {"meshes", "-", [](const Row &row) { return row.family->members.size(); }},
-                     {"cluster", "", [](const Row &row) { return row.mode->in_cluster ? "yes" : "no"; }},
-                     {"order of frequency", "-", [&](const Row &row) { return order(row.mode->frequency.sequence); }, 2},
-                     {"frequency", "Hz", [](const Row &row) { return row.mode->frequency.value; }, 3},
-                     {"uncertainty of frequency", "Hz", [](const Row &row) { return row.mode->frequency.uncertainty; }, 3},
-                     {"frequency beside reference", "%",
-                      [](const Row &row) {
-                        return row.counterpart ? Cell(percent * (row.mode->frequency.value / row.counterpart->frequency.value - 1.)) :
-                                                 Cell();
-                      },
-                      3},
-                     {"order of divergence rate", "-", [&](const Row &row) { return order(row.mode->divergence.sequence); }, 2},
-                     {"divergence rate", "%", [](const Row &row) { return percent * row.mode->divergence.value; }, 4},
-                     {"uncertainty of divergence rate", "percentage points",
-                      [](const Row &row) { return percent * row.mode->divergence.uncertainty; }, 4},
-                     {"divergence rate beside reference", "percentage points",
-                      [](const Row &row) {
-                        return row.counterpart ? Cell(percent * (row.mode->divergence.value - row.counterpart->divergence.value)) : Cell();
-                      },
-                      4}},
-        rows);
+      return Table(Columns<Row>{{"family", "", [](const Row &row) { return row.family->name; }},
+                                {"reference", "", [&](const Row &row) { return row.family == &reference ? "yes" : "no"; }},
+                                {"label", "", [](const Row &row) { return to_string(row.mode->label); }},
+                                {"meshes", "-", [](const Row &row) { return row.family->members.size(); }},
+                                {"cluster", "", [](const Row &row) { return row.mode->in_cluster ? "yes" : "no"; }},
+                                {"order of frequency", "-", [&](const Row &row) { return order(row.mode->frequency.sequence); }, 2},
+                                {"frequency", "Hz", [](const Row &row) { return row.mode->frequency.value; }, 3},
+                                {"uncertainty of frequency", "Hz", [](const Row &row) { return row.mode->frequency.uncertainty; }, 3},
+                                {"frequency beside reference", "%",
+                                 [](const Row &row) {
+                                   return row.counterpart ?
+                                            Entry(percent * (row.mode->frequency.value / row.counterpart->frequency.value - 1.)) :
+                                            Entry();
+                                 },
+                                 3},
+                                {"order of divergence rate", "-", [&](const Row &row) { return order(row.mode->divergence.sequence); }, 2},
+                                {"divergence rate", "%", [](const Row &row) { return percent * row.mode->divergence.value; }, 4},
+                                {"uncertainty of divergence rate", "percentage points",
+                                 [](const Row &row) { return percent * row.mode->divergence.uncertainty; }, 4},
+                                {"divergence rate beside reference", "percentage points",
+                                 [](const Row &row) {
+                                   return row.counterpart ?
+                                            Entry(percent * (row.mode->divergence.value - row.counterpart->divergence.value)) :
+                                            Entry();
+                                 },
+                                 4}},
+                   rows);
     }
 
     /// Meshes and elements without a solution: element, outlines, mesh factor, reason.

@@ -34,7 +34,7 @@ namespace Squeal
     if (design.needs_steady_sliding() || design.operation.rotating_disc || !design.damping.modal_ratios.empty())
       return "";
     std::ostringstream presences;
-    for (Material *material : {&design.materials.disc, &design.materials.pin})
+    for (Material *material : design.materials.each())
       {
         material->young_modulus = material->density = 1.;
         for (double *damping : {&material->rayleigh_alpha, &material->rayleigh_beta})
@@ -43,8 +43,6 @@ namespace Squeal
             *damping = 0.;
           }
       }
-    for (PinMaterial &pin : design.materials.single_pins)
-      pin.young_modulus = pin.density = 1.;
     for (double *value : design.materials.mount_values())
       *value = presence(*value);
     design.operation.load_per_side  = presence(design.operation.load_per_side);

@@ -15,31 +15,31 @@ namespace Squeal
     constexpr std::size_t n_shown = 20;
 
     /// Overlaps compare shapes; more digits than these say nothing.
-    Cell overlap_cell(const boost::optional<double> &overlap)
+    Entry overlap_cell(const boost::optional<double> &overlap)
     {
-      return overlap ? Cell(std::round(1e6 * *overlap) / 1e6) : Cell();
+      return overlap ? Entry(std::round(1e6 * *overlap) / 1e6) : Entry();
     }
 
     /// A value of solved designs only.
     template <typename Value>
-    std::function<Cell(const DesignResult &)> of_solved(Value value)
+    std::function<Entry(const DesignResult &)> of_solved(Value value)
     {
-      return [value](const DesignResult &row) { return row.outcome == DesignOutcome::solved ? Cell(std::invoke(value, row)) : Cell(); };
+      return [value](const DesignResult &row) { return row.outcome == DesignOutcome::solved ? Entry(std::invoke(value, row)) : Entry(); };
     }
 
     /// A value of one of the friction coefficients, where the design has it.
     template <typename Value>
-    std::function<Cell(const DesignResult &)> at(boost::optional<DesignGrowth> DesignResult::*growth,
-                                                 Value DesignGrowth::*value,
-                                                 const double         factor = 1.)
+    std::function<Entry(const DesignResult &)> at(boost::optional<DesignGrowth> DesignResult::*growth,
+                                                  Value DesignGrowth::*value,
+                                                  const double         factor = 1.)
     {
-      return [=](const DesignResult &row) -> Cell {
+      return [=](const DesignResult &row) -> Entry {
         if (!(row.*growth))
-          return Cell();
+          return Entry();
         if constexpr (std::is_same_v<Value, double>)
-          return Cell(factor * (*(row.*growth)).*value);
+          return Entry(factor * (*(row.*growth)).*value);
         else
-          return Cell((*(row.*growth)).*value);
+          return Entry((*(row.*growth)).*value);
       };
     }
 
@@ -135,7 +135,7 @@ namespace Squeal
   Table design_threshold_table(const std::vector<DesignResult> &designs)
   {
     using Line    = std::pair<int, DesignThreshold>;
-    const auto of = [](auto member) { return [member](const Line &line) { return Cell(line.second.*member); }; };
+    const auto of = [](auto member) { return [member](const Line &line) { return Entry(line.second.*member); }; };
 
     return Table(Columns<Line>{{"design", "-", &Line::first},
                                {"mu", "-", of(&DesignThreshold::friction_coefficient), 6},
@@ -152,8 +152,10 @@ namespace Squeal
   Table design_mode_table(const std::vector<DesignResult> &designs)
   {
     using Line         = std::pair<int, DesignMode>;
-    const auto of      = [](auto member) { return [member](const Line &line) { return Cell(line.second.*member); }; };
-    const auto percent = [](double DesignMode::*member) { return [member](const Line &line) { return Cell(100. * line.second.*member); }; };
+    const auto of      = [](auto member) { return [member](const Line &line) { return Entry(line.second.*member); }; };
+    const auto percent = [](double DesignMode::*member) {
+      return [member](const Line &line) { return Entry(100. * line.second.*member); };
+    };
 
     return Table(Columns<Line>{{"design", "-", &Line::first},
                                {"label", "", of(&DesignMode::label)},
@@ -167,7 +169,7 @@ namespace Squeal
                                {"estimated error of lambda", "-", of(&DesignMode::last_error), 1, true},
                                {"verdict", "", of(&DesignMode::verdict)},
                                {"largest divergence rate", "%", percent(&DesignMode::largest_divergence_rate), 4},
-                               {"onset", "-", [](const Line &line) { return line.second.onset ? Cell(*line.second.onset) : Cell(); }, 6}},
+                               {"onset", "-", [](const Line &line) { return line.second.onset ? Entry(*line.second.onset) : Entry(); }, 6}},
                  of_all(designs, &DesignResult::modes));
   }
 

@@ -176,8 +176,8 @@ namespace Squeal
   {
     const Linearisation &linearisation = modes.linearisation;
     const Model         &model         = *linearisation.scene->model;
-    constexpr int        per_cell      = 1; // its centre
-    ReferenceModes       result{body_frames(model), common_points(model, materials, per_cell), {}, {}, {}};
+    constexpr int        of_rule       = 0; // points at the centres of cells
+    ReferenceModes       result{body_frames(model), common_points(model, materials, of_rule), {}, {}, {}};
     const auto           E = displacements_at(result.points, model, Directions::cylindrical);
     result.shapes          = gather(*E * (*linearisation.coupled.kernel * *modes.real.vectors));
     for (std::size_t j = 0; j < modes.labels.size(); ++j)

@@ -103,7 +103,7 @@ namespace Squeal
     std::ostringstream stream;
     stream << "# squeal " << version << '\n';
     parameters.print(stream, false);
-    stream << "# mesh: " << scene.mesh.hexahedra.size() << " hexahedra, nodes " << std::hex << checksum(scene.mesh) << std::dec << '\n';
+    stream << "# mesh: " << cell_counts(scene.mesh) << ", nodes " << std::hex << checksum(scene.mesh) << std::dec << '\n';
     for (const auto &values : plan.designs)
       {
         for (const std::string &value : values)

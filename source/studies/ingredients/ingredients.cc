@@ -17,7 +17,7 @@ namespace Squeal
     const auto slope_text = [](const double slope) { return slope == 0. ? "none" : exact_text(slope) + " s/m"; };
     const auto hertz_text = [](const double frequency) { return exact_text(frequency) + " Hz"; };
 
-    const auto has_rayleigh_damping = [](const Parameters &p) { return p.materials.disc.is_damped() || p.materials.pin.is_damped(); };
+    const auto has_rayleigh_damping = [](const Parameters &p) { return p.materials.is_damped(); };
 
     // Why a scene cannot have them -----------------------------------------------
 
@@ -118,7 +118,7 @@ namespace Squeal
       // ------------------------------------------------------------------- bodies
       {"Rayleigh damping", [](P p) { return has_rayleigh_damping(p) ? std::string("as given") : "none"; }, nothing, [](P) { return false; },
        [](Variation &v) {
-         for (Material *material : {&v.parameters.materials.disc, &v.parameters.materials.pin})
+         for (Material *material : v.parameters.materials.each())
            material->rayleigh_alpha = material->rayleigh_beta = 0.;
        },
        ChangeKind::removes, Departure::mesh,

@@ -14,7 +14,7 @@ namespace Squeal
     template <typename Value>
     Column<IngredientResult> where_made(const std::string &name, const std::string &unit, const Value &value, const int digits = 3)
     {
-      return {name, unit, [value](const IngredientResult &row) { return row.obstacle.empty() ? Cell(value(row)) : Cell(); }, digits};
+      return {name, unit, [value](const IngredientResult &row) { return row.obstacle.empty() ? Entry(value(row)) : Entry(); }, digits};
     }
 
     /// Smaller changes are rounding, or the tolerances of solvers [%].
@@ -45,7 +45,7 @@ namespace Squeal
     {
       return {name, unit, [=](const IngredientMode &row) {
                 const auto &value = row.mode->*lambda;
-                return value ? Cell(factor * (modal_quantities(*value).*quantity)) : Cell();
+                return value ? Entry(factor * (modal_quantities(*value).*quantity)) : Entry();
               }};
     }
 
@@ -111,13 +111,13 @@ namespace Squeal
           modal_column("divergence rate tried", "%", &C::variant, &Q::divergence_rate, 100.),
           {"change of frequency", "%",
            [](const IngredientMode &row) {
-             return row.mode->reference && row.mode->variant ? Cell(row.mode->frequency(row.result->effect.band_end)) : Cell();
+             return row.mode->reference && row.mode->variant ? Entry(row.mode->frequency(row.result->effect.band_end)) : Entry();
            }},
           {"change of divergence rate", "percentage points", [](const IngredientMode &row) { return row.mode->divergence(); }},
           {"unstable here", "-", [](const IngredientMode &row) { return row.mode->unstable_reference; }},
           {"unstable tried", "-", [](const IngredientMode &row) { return row.mode->unstable_variant; }},
           {"overlap of shapes", "-",
-           [](const IngredientMode &row) { return row.mode->variant && row.mode->reference ? Cell(row.mode->overlap) : Cell(); }},
+           [](const IngredientMode &row) { return row.mode->variant && row.mode->reference ? Entry(row.mode->overlap) : Entry(); }},
           {"in cluster", "-", [](const IngredientMode &row) { return row.mode->in_cluster; }}},
         rows);
     }

@@ -49,9 +49,9 @@ namespace Squeal
     constexpr double reference_accuracy = 1e-11;
 
     /// A condition number; nothing where the matrix is singular to rounding.
-    Cell condition_cell(const double condition)
+    Entry condition_cell(const double condition)
     {
-      return std::isfinite(condition) ? Cell(condition) : Cell();
+      return std::isfinite(condition) ? Entry(condition) : Entry();
     }
 
     /// Largest errors in each group of modes, and times.
@@ -195,9 +195,9 @@ namespace Squeal
         }
       const auto median = [](std::vector<double> values) {
         std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-        return values.empty() ? Cell() : Cell(values[values.size() / 2]);
+        return values.empty() ? Entry() : Entry(values[values.size() / 2]);
       };
-      const auto good_share = [](const Row &row) { return row.ratios.empty() ? Cell() : Cell(100. * row.n_good / row.ratios.size()); };
+      const auto good_share = [](const Row &row) { return row.ratios.empty() ? Entry() : Entry(100. * row.n_good / row.ratios.size()); };
       return Table(Columns<Row>{{"basis", "", [](const Row &row) { return row.candidate.name; }},
                                 {"component modes", "", [](const Row &row) { return row.candidate.truncation; }},
                                 {"modes", "-", [](const Row &row) { return row.candidate.errors.size(); }},
@@ -219,8 +219,8 @@ namespace Squeal
         return [=](const Row &row) {
           for (const BasisSource asked : {source, other})
             if (const auto found = row.n.find(asked); found != row.n.end() && found->second > 0)
-              return Cell(found->second);
-          return Cell();
+              return Entry(found->second);
+          return Entry();
         };
       };
       using Source = BasisSource;
@@ -394,7 +394,13 @@ namespace Squeal
   extern const Study reduction_study = [] {
     Study study{"reduction", run_reduction_study, {"Reduction/"}, reduction_usage()};
     study.rules.push_back({"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }});
-    study.check = [](const Parameters &p) { reduction_plan(p); };
+    study.check = [](const Parameters &p) {
+      const auto &pairs = p.contact.pairs;
+      if (std::any_of(pairs.begin(), pairs.end(), [](const ContactPair &pair) { return pair.normal_stiffness > 0.; }))
+        throw ParameterError("the bases of section Reduction are those of rigid contact", "parameter Contact/Pairs",
+                             "leave out the normal stiffness, or choose Study = stability or sweep");
+      reduction_plan(p);
+    };
     return study;
   }();
 } // namespace Squeal

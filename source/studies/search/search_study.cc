@@ -270,7 +270,7 @@ namespace Squeal
       for (std::size_t v = 0; v < evaluations.variables.size(); ++v)
         columns.push_back({evaluations.variables[v].name, "", [v](const Row &row) { return row.design->values[v]; }});
       columns.push_back(
-        {name, unit, [](const Row &row) { return row.design->outcome == DesignOutcome::solved ? Cell(row.value) : Cell(); }, 5});
+        {name, unit, [](const Row &row) { return row.design->outcome == DesignOutcome::solved ? Entry(row.value) : Entry(); }, 5});
       columns.push_back({std::string("best ") + name, unit, &Row::best, 5});
       return Table(columns, rows);
     }

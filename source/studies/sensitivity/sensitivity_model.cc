@@ -81,6 +81,8 @@ namespace Squeal
           N += of_contact.along(values, by_reactions[result.N.size()]);
         if (modal_damping)
           N += of_damped_modes[result.N.size()] * as_column(triples.lambda).asDiagonal();
+        if (!parameter.spring_rates.empty())
+          N += of_contact.along(values, parameter.spring_rates);
         if (parameter.modal_ratio >= 0)
           N += of_contact.along(values, {{SystemParameter::modal_damping, modal_damping->rates_of_ratio(parameter.modal_ratio)}});
         result.N.push_back(std::move(N));
@@ -158,7 +160,7 @@ namespace Squeal
 
     // Both kinds are proportional to |r|, and r ≤ 0
     const std::vector<double> units(interface.size(), -1.);
-    const ContactDamping      per_newton{radial_dissipation(interface, units, operation), sliding_dissipation(units, operation)};
+    const ContactDamping      per_newton{radial_dissipation(interface, units, operation), sliding_dissipation(interface, units, operation)};
     for (std::size_t p = 0; p < parameters.size(); ++p)
       {
         ContactDamping of_parameter = per_newton;

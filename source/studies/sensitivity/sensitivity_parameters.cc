@@ -27,31 +27,32 @@ namespace Squeal
     SensitivityParameter of_material(const std::string              &section,
                                      const Material                 &material,
                                      const MaterialNumber           &number,
-                                     const std::vector<std::string> &bodies,
+                                     const std::vector<std::string> &volumes,
                                      const std::string              &single = "")
     {
       SensitivityParameter result{section + "/" + number.name, single, number.unit, material.*number.value, {}, {}};
-      for (const std::string &body : bodies)
-        result.body_rates[number.parameter(body)] = {1.};
+      for (const std::string &volume : volumes)
+        result.body_rates[number.parameter(volume)] = {1.};
       return result;
     }
 
-    /// (X(ν + h) − X(ν − h)) / 2h of the stiffness of some bodies, and of their damping by stiffness.
-    SensitivityParameter of_poisson_ratio(const std::string        &section,
-                                          const Scene              &scene,
-                                          const MaterialParameters &materials,
-                                          Material MaterialParameters::  *material,
-                                          const std::vector<std::string> &bodies)
+    /// (X(ν + h) − X(ν − h)) / 2h of the stiffness of some volumes with a material, and of their damping by stiffness.
+    SensitivityParameter of_poisson_ratio(const std::string              &section,
+                                          const Scene                    &scene,
+                                          const MaterialParameters       &materials,
+                                          const std::size_t               material,
+                                          const std::vector<std::string> &volumes,
+                                          const std::string              &single = "")
     {
       MaterialParameters less = materials, more = materials;
-      const double       nu = (materials.*material).poisson_ratio, h = relative_step * std::min(0.5 - nu, 1. + nu);
-      (less.*material).poisson_ratio -= h;
-      (more.*material).poisson_ratio += h;
-      SensitivityParameter    result{section + "/Poisson ratio", "", "-", nu, {}, {}};
+      const double       nu = less.each()[material]->poisson_ratio, h = relative_step * std::min(0.5 - nu, 1. + nu);
+      less.each()[material]->poisson_ratio -= h;
+      more.each()[material]->poisson_ratio += h;
+      SensitivityParameter    result{section + "/Poisson ratio", single, "-", nu, {}, {}};
       const std::vector<Term> before = body_terms(*scene.model, less).terms, after = body_terms(*scene.model, more).terms;
       for (std::size_t k = 0; k < after.size(); ++k)
-        for (const std::string &body : bodies)
-          if (after[k].coefficient.contains(BodyParameter::young_modulus(body)))
+        for (const std::string &volume : volumes)
+          if (after[k].coefficient.contains(BodyParameter::young_modulus(volume)))
             {
               result.derivative.push_back(after[k]);
               result.derivative.back().matrix = add(0.5 / h, *after[k].matrix, -0.5 / h, *before[k].matrix);
@@ -78,17 +79,24 @@ namespace Squeal
       });
     }
 
+    bool couple_the_same_nodes(const ContactNode &a, const ContactNode &b)
+    {
+      const auto same = [](const WeightedNode &x, const WeightedNode &y) { return x.node.dofs == y.node.dofs; };
+      return std::equal(a.on_disc.begin(), a.on_disc.end(), b.on_disc.begin(), b.on_disc.end(), same) &&
+             std::equal(a.on_pin.begin(), a.on_pin.end(), b.on_pin.begin(), b.on_pin.end(), same);
+    }
+
     MovedScene moved_scene(const Scene &scene, const MeshMotion &motion, const double change, const Run &run)
     {
       const Parameters &parameters = run.parameters;
       const Model       model(moved(scene.mesh, motion, change), parameters.discretization.element, run.communicator);
-      MovedScene        result{body_terms(model, parameters.materials),
-                        pair_contact_nodes(model, parameters.operation.rotation, parameters.geometry.pairing_tolerance)};
+      MovedScene        result{
+        body_terms(model, parameters.materials),
+        contact_nodes(model, parameters.contact.pairs, parameters.operation.rotation, parameters.geometry.pairing_tolerance).interface};
       if (parameters.operation.rotating_disc)
         add_rotation(result.bodies, model, parameters.operation.angular_velocity());
       for (std::size_t c = 0; c < result.interface.size(); ++c)
-        if (result.interface.size() != scene.interface.size() || result.interface[c].disc_node.dofs != scene.interface[c].disc_node.dofs ||
-            result.interface[c].pin_node.dofs != scene.interface[c].pin_node.dofs)
+        if (result.interface.size() != scene.interface.size() || !couple_the_same_nodes(result.interface[c], scene.interface[c]))
           throw MeshError("contact nodes have changed their numbers while they moved", "derivatives with respect to " + motion.parameter,
                           "set Sensitivity/Geometry = none");
       return result;
@@ -97,38 +105,52 @@ namespace Squeal
 
   std::vector<SensitivityParameter> sensitivity_parameters(const Scene &scene, const Parameters &parameters)
   {
-    const MaterialParameters       &materials  = parameters.materials;
-    const OperationParameters      &operation  = parameters.operation;
-    const std::vector<std::string> &components = scene.model->component_names();
-    const std::vector<std::string>  disc       = {components.front()};
-    std::vector<std::string>        alike, pins(components.begin() + 1, components.end()); // pins without a material of their own; all
-    for (const std::string &pin : pins)
-      if (std::none_of(materials.single_pins.begin(), materials.single_pins.end(),
-                       [&](const PinMaterial &single) { return single.pin == pin; }))
-        alike.push_back(pin);
+    const MaterialParameters  &materials = parameters.materials;
+    const OperationParameters &operation = parameters.operation;
+
+    std::vector<std::vector<std::string>> shared(2); // volumes of the disc's and of the pins' material
+    std::vector<std::string>              single;    // of a material of their own, and all pins
+    for (const std::string &volume : scene.model->volume_names())
+      {
+        if (!materials.has_own(volume))
+          shared[is_of_disc(volume) ? 0 : 1].push_back(volume);
+        if (!is_of_disc(volume) || materials.has_own(volume))
+          single.push_back(volume);
+      }
 
     std::vector<SensitivityParameter> result;
-    for (const MaterialNumber &number : material_numbers)
-      result.push_back(of_material("Disc material", materials.disc, number, disc));
-    result.push_back(of_poisson_ratio("Disc material", scene, materials, &MaterialParameters::disc, disc));
-    // Single pins have the damping of all
-    for (const MaterialNumber &number : material_numbers)
-      if (const std::vector<std::string> &bodies = number.of_single_pins ? alike : pins; !bodies.empty())
-        result.push_back(of_material("Pin material", materials.pin, number, bodies));
-    if (!alike.empty())
-      result.push_back(of_poisson_ratio("Pin material", scene, materials, &MaterialParameters::pin, alike));
-    for (const std::string &pin : pins)
+    const char *const                 sections[] = {"Disc material", "Pin material"};
+    for (const std::size_t m : {0, 1})
+      if (!shared[m].empty())
+        {
+          for (const MaterialNumber &number : material_numbers)
+            result.push_back(of_material(sections[m], materials.of(shared[m].front()), number, shared[m]));
+          result.push_back(of_poisson_ratio(sections[m], scene, materials, m, shared[m]));
+        }
+    for (const std::string &volume : single)
       for (const MaterialNumber &number : material_numbers)
-        if (number.of_single_pins)
-          {
-            const bool is_alike = std::find(alike.begin(), alike.end(), pin) != alike.end();
-            result.push_back(of_material(is_alike ? "Pin material" : "Pin material/Single pins", materials.of(pin), number, {pin}, pin));
-            if (!is_alike)
-              result.back().path = std::string("Pin material/Single pins: ") + number.name;
-          }
+        if (const bool has_own = materials.has_own(volume); has_own || number.of_single_pins)
+          result.push_back(of_material(has_own ? "Materials/Volumes:" : "Pin material", materials.of(volume), number, {volume}, volume));
+    for (std::size_t v = 0; v < materials.volumes.size(); ++v)
+      result.push_back(
+        of_poisson_ratio("Materials/Volumes:", scene, materials, 2 + v, {materials.volumes[v].volume}, materials.volumes[v].volume));
 
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});
+
+    // Damping by the reactions of steady sliding would depend on it as well
+    const auto &pairs = parameters.contact.pairs;
+    for (unsigned int pair = 0; pair < pairs.size(); ++pair)
+      if (pairs[pair].normal_stiffness > 0. && !(parameters.needs_steady_sliding() && parameters.has_contact_damping()))
+        {
+          result.push_back({text("Contact/Pairs: normal stiffness of ", pairs[pair].disc, " / ", pairs[pair].pin),
+                            "",
+                            "N/m^3",
+                            pairs[pair].normal_stiffness,
+                            {},
+                            {}});
+          result.back().spring_rates = {{contact_stiffness_parameter(pair), {1.}}};
+        }
 
     const auto &ratios = parameters.damping.modal_ratios;
     for (std::size_t i = 0; i < ratios.size(); ++i)

@@ -58,7 +58,7 @@ namespace Squeal
           rows.push_back(row);
       // Nothing per cent of a parameter that is zero
       const auto percent = [](double (Row::*value)() const) {
-        return [value](const Row &row) { return row.parameter->value != 0. ? Cell((row.*value)()) : Cell(); };
+        return [value](const Row &row) { return row.parameter->value != 0. ? Entry((row.*value)()) : Entry(); };
       };
       return Table(
         Columns<Row>{{"mode", "-", [](const Row &row) { return row.mode + 1; }},
@@ -76,9 +76,9 @@ namespace Squeal
                      {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
                      {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }},
                      {"estimated error of the growth rate per unit", "1/s",
-                      [](const Row &row) { return row.change ? Cell(std::abs(row.change->real())) : Cell(); }},
+                      [](const Row &row) { return row.change ? Entry(std::abs(row.change->real())) : Entry(); }},
                      {"estimated error of the frequency per unit", "Hz",
-                      [](const Row &row) { return row.change ? Cell(hertz(std::abs(row.change->imag()))) : Cell(); }},
+                      [](const Row &row) { return row.change ? Entry(hertz(std::abs(row.change->imag()))) : Entry(); }},
                      {"derivative of", "", [](const Row &row) { return row.of->kind; }}},
         rows);
     }
@@ -105,12 +105,14 @@ namespace Squeal
           // With respect to itself there is none
           if (parameters[p].operation != &OperationParameters::friction_coefficient)
             rows.push_back({&threshold, parameters[p], p});
-      const auto of_threshold = [](const auto &value) { return [value](const Row &row) { return Cell(value(*row.of->threshold)); }; };
-      const auto known = [](const auto &value) { return [value](const Row &row) { return row.has_value() ? Cell(value(row)) : Cell(); }; };
-      const auto percent = [](const auto &value) {
-        return [value](const Row &row) { return row.has_value() && row.parameter.value != 0. ? Cell(value(row)) : Cell(); };
+      const auto of_threshold = [](const auto &value) { return [value](const Row &row) { return Entry(value(*row.of->threshold)); }; };
+      const auto known        = [](const auto &value) {
+        return [value](const Row &row) { return row.has_value() ? Entry(value(row)) : Entry(); };
       };
-      const auto label = [&](const int branch) { return branch >= 0 ? Cell(chart.labels[branch]) : Cell(); };
+      const auto percent = [](const auto &value) {
+        return [value](const Row &row) { return row.has_value() && row.parameter.value != 0. ? Entry(value(row)) : Entry(); };
+      };
+      const auto label = [&](const int branch) { return branch >= 0 ? Entry(chart.labels[branch]) : Entry(); };
       return Table(Columns<Row>{{"mu", "-", of_threshold([](const Threshold &t) { return t.friction_coefficient; })},
                                 {"event", "", of_threshold([](const Threshold &t) { return t.event; })},
                                 {"label", "", of_threshold([=](const Threshold &t) { return label(t.branch); })},

@@ -1,6 +1,7 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/studies/stability/strain_energy.h>
 #include <squeal/studies/steps/mode_results.h>
 
 #include <boost/range/irange.hpp>
@@ -47,8 +48,11 @@ namespace Squeal
     }
 
     /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are unstable, how they
-    /// travel, estimates where there are any, and columns @p more by the numbers of the modes.
-    Table complex_table(const FrictionModes &friction, const std::vector<std::optional<WaveShares>> &waves, const Columns<int> &more)
+    /// travel, where their energy is, estimates where there are any, and columns @p more by the numbers of the modes.
+    Table complex_table(const FrictionModes                          &friction,
+                        const std::vector<std::optional<WaveShares>> &waves,
+                        const Columns<int>                           &energies,
+                        const Columns<int>                           &more)
     {
       const ComplexModes &modes = friction.modes;
       const auto          wave  = [&waves](double WaveShares::*share) {
@@ -65,6 +69,7 @@ namespace Squeal
                               {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }},
                               {"wave with rotation", "-", wave(&WaveShares::positive), 3},
                               {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
+      columns.insert(columns.end(), energies.begin(), energies.end());
       if (!modes.estimated_errors.empty())
         columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
       if (more.empty()) // else the error of the mesh is in the verdict
@@ -239,6 +244,13 @@ namespace Squeal
       write(*contact.tangential, "P_t", MatrixMarketSymmetry::general);
       write(*contact.radial, "P_b", MatrixMarketSymmetry::general);
       write(*contact.kernel, "T_c", MatrixMarketSymmetry::general);
+      const RowMap &contact_rows = contact.normal->rows();
+      write(SparseMatrix(contact_rows, contact_rows,
+                         [&](const int i, SparseMatrix::Row &row) {
+                           const ContactNode &node = interface[contact_rows.number(i)];
+                           row.emplace_back(contact_rows.number(i), node.stiffness * node.area);
+                         }),
+            "K_n", MatrixMarketSymmetry::general);
 
       const std::vector<Node> nodes = model.gathered_nodes();
       // Node coordinates with the rows of their dofs in M and K
@@ -265,7 +277,7 @@ namespace Squeal
             stream << ',' << node.area << '\n';
           }
       });
-      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, T_c in Matrix Market form");
+      run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market form");
     }
 
     // ----------------------------------------------------------------- the answer
@@ -308,9 +320,10 @@ namespace Squeal
     const double               omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
 
     // Process 0 writes the mesh; the others have their parts in the model, and need no more than names
-    if (HexMesh names; !run.is_root)
+    if (Mesh names; !run.is_root)
       {
         names.volume_names = scene.mesh.volume_names;
+        names.body_names   = scene.mesh.body_names;
         scene.mesh         = names;
       }
 
@@ -336,6 +349,7 @@ namespace Squeal
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
     run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation),
+                                                   strain_energy_columns(linearisation, friction.modes, parameters.materials),
                                                    coarser ? mesh_error_columns(errors, limits_of(parameters.goal)) : Columns<int>()));
     run.store_table("real_modes", real_table(frictionless));
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));

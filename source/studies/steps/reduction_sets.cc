@@ -13,8 +13,8 @@ namespace Squeal
     /// Whether a basis belongs to the problem.
     bool fits(const BasisRecipe &recipe, const Parameters &p)
     {
-      const bool has_damping = p.operation.radial_dissipation != RadialDissipation::none || p.operation.friction_slope != 0. ||
-                               p.materials.disc.is_damped() || p.materials.pin.is_damped();
+      const bool has_damping =
+        p.operation.radial_dissipation != RadialDissipation::none || p.operation.friction_slope != 0. || p.materials.is_damped();
       return (p.has_friction() || !recipe.needs_friction) && (has_damping || !recipe.needs_damping);
     }
 

@@ -6,6 +6,8 @@
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/studies/steps/scene.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 namespace Squeal
 {
   namespace
@@ -22,6 +24,16 @@ namespace Squeal
                                  locking_poisson_ratio,
                                  " on bending frequencies are more than 1 % too high, growth rates less accurate "
                                  "still; set Discretization/Element = incompatible modes"));
+    }
+
+    void warn_of_linear_cells(const Mesh &mesh, Run &run)
+    {
+      const auto n =
+        std::count_if(mesh.cells.begin(), mesh.cells.end(), [](const Mesh::Cell &cell) { return cell.shape != Shape::hexahedron; });
+      if (n > 0 && degree_of(run.parameters.discretization.element) == 1)
+        run.progress.note(text("  note: ", n,
+                               " tetrahedra, pyramids and wedges of first order are too stiff in bending: frequencies may be too high by "
+                               "more than 50 %; set Discretization/Element = quadratic"));
     }
 
     /// The mounts that hold something, however soft, in units of their own.
@@ -46,16 +58,19 @@ namespace Squeal
     GeometryParameters geometry = parameters.geometry;
     if (parameters.discretization.element == Element::quadratic)
       geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
-    scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator);
+    scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator, parameters.contact);
     const MeshQuality quality = check_mesh(scene.mesh);
-    for (const PinMaterial &single : parameters.materials.single_pins)
-      pin_number(scene.mesh.volume_names, single.pin, "Pin material/Single pins");
-    run.count("elements", scene.mesh.hexahedra.size());
+    for (const VolumeMaterial &own : parameters.materials.volumes)
+      if (std::count(scene.mesh.volume_names.begin(), scene.mesh.volume_names.end(), own.volume) == 0)
+        throw ParameterError("there is no volume `" + own.volume + "`", "parameter Materials/Volumes",
+                             "name one of " + boost::algorithm::join(scene.mesh.volume_names, ", "));
+    run.count("elements", scene.mesh.cells.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(
-      text(scene.mesh.hexahedra.size(), " hexahedra, ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
+      text(cell_counts(scene.mesh), ", ", scene.n_pins(), " pins, worst scaled Jacobian ", quality.worst_scaled_jacobian));
     for (const std::string &note : scene.mesh.notes)
       run.progress.note("  note: " + note);
+    warn_of_linear_cells(scene.mesh, run);
     summarise_scene(scene.mesh, run);
     // After the summary: what the mesh does not resolve is often a length or a modulus in other units.
     check_wave_resolution(scene.mesh, parameters.materials, degree_of(parameters.discretization.element),
@@ -64,8 +79,10 @@ namespace Squeal
       run.keep_geometry();
 
     run.progress.begin("Contact");
-    scene.model     = std::make_unique<Model>(scene.mesh, parameters.discretization.element, run.communicator);
-    scene.interface = pair_contact_nodes(*scene.model, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
+    scene.model = std::make_unique<Model>(scene.mesh, parameters.discretization.element, run.communicator);
+    FoundContact contact =
+      contact_nodes(*scene.model, parameters.contact.pairs, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
+    scene.interface = std::move(contact.interface);
     scene.contact   = contact_operators(*scene.model, scene.interface);
     if (parameters.needs_steady_sliding())
       check_sliding(*scene.model, scene.interface, parameters.operation, parameters.sliding);
@@ -77,6 +94,8 @@ namespace Squeal
     run.count("contact nodes", scene.interface.size());
     run.count("coupled dofs", n_coupled);
     run.progress.finish(text(scene.interface.size(), " contact nodes, ", n, " dofs, ", n_coupled, " coupled"));
+    for (const std::string &note : contact.notes)
+      run.progress.note("  note: " + note);
     return scene;
   }
 
@@ -95,8 +114,12 @@ namespace Squeal
         add_rotation(bodies, *scene.model, parameters.operation.angular_velocity());
       }
     scene.mounts = unit_mounts(bodies.terms);
-    scene.bodies = merged(bodies.terms, bodies.values);
-    scene.system = sparse_matrices(scene.bodies, bodies.values);
+    for (const Term &term : bodies.terms)
+      if (term.power == 0 && (term.kind == TermKind::body || term.kind == TermKind::mount))
+        scene.elastic.terms.push_back(term);
+    scene.elastic.values = bodies.values;
+    scene.bodies         = merged(bodies.terms, bodies.values);
+    scene.system         = sparse_matrices(scene.bodies, bodies.values);
     run.progress.finish(text(scene.system.stiffness->n_entries(), " entries in K"));
     return bodies;
   }
@@ -135,7 +158,7 @@ namespace Squeal
     for (unsigned int c = 0; c < interface.size(); ++c)
       if (!state || state->closed[c])
         result.closed.push_back(c);
-    result.damping = {radial_dissipation(interface, reactions, operation), sliding_dissipation(reactions, operation)};
+    result.damping = {radial_dissipation(interface, reactions, operation), sliding_dissipation(interface, reactions, operation)};
     return result;
   }
 

@@ -1,5 +1,6 @@
 #include <squeal/base/conventions.h>
 #include <squeal/base/memory.h>
+#include <squeal/geometry/cell_volume.h>
 #include <squeal/geometry/mesh_topology.h>
 #include <squeal/geometry/scene_size.h>
 #include <squeal/studies/steps/scene.h>
@@ -43,30 +44,29 @@ namespace Squeal
       return std::sqrt(material.young_modulus / material.density);
     }
 
-    /// The disc first, then the pins: those with the same height, contact area, volume and material as one.
-    std::vector<Body> summarise_bodies(const HexMesh &mesh, const MaterialParameters &materials)
+    /// The volumes, those of the disc first: those with the same height, contact area, volume and material as one.
+    std::vector<Body> summarise_bodies(const Mesh &mesh, const MaterialParameters &materials)
     {
-      std::vector<Body>                        bodies(mesh.volume_names.size());
-      std::vector<std::vector<HexMesh::Point>> points(bodies.size());
-      const std::vector<unsigned int>          volume_of_node = volume_of_nodes(mesh);
-      for (std::size_t node = 0; node < mesh.points.size(); ++node)
+      std::vector<Body>                     bodies(mesh.volume_names.size());
+      std::vector<std::vector<Mesh::Point>> points(bodies.size());
+      std::vector<unsigned int>             volume_of_node(mesh.points.size());
+      for (const Mesh::Cell &cell : mesh.cells)
         {
-          const HexMesh::Point &p      = mesh.points[node];
-          Body                 &body   = bodies[volume_of_node[node]];
-          const double          radius = std::hypot(p[0], p[1]);
-          body.inner_radius            = std::min(body.inner_radius, radius);
-          body.outer_radius            = std::max(body.outer_radius, radius);
-          points[volume_of_node[node]].push_back(p);
+          Body &body = bodies[cell.volume];
+          body.volume += volume_of(mesh, cell);
+          for (const unsigned int node : cell.nodes)
+            {
+              const double radius  = std::hypot(mesh.points[node][0], mesh.points[node][1]);
+              body.inner_radius    = std::min(body.inner_radius, radius);
+              body.outer_radius    = std::max(body.outer_radius, radius);
+              volume_of_node[node] = cell.volume;
+              points[cell.volume].push_back(mesh.points[node]);
+            }
         }
-      for (const HexFace &face : outer_faces(mesh))
-        {
-          const auto [centre, normal] = face_geometry(mesh, face.nodes);
-          bodies[face.volume].volume += centre * normal / 3.; // Gauss' theorem
-        }
-      for (const HexMesh::Quadrilateral &face : mesh.quadrilaterals)
+      for (const Mesh::Face &face : mesh.faces)
         if (const std::string &name = mesh.surface_names[face.surface];
             name == PhysicalNames::pin_contact || name == PhysicalNames::disc_contact)
-          bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face.nodes).area_normal.norm();
+          bodies[volume_of_node[face.nodes[0]]].contact_area += face_geometry(mesh, face).area_normal.norm();
 
       std::vector<Body> result;
       for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -109,13 +109,16 @@ namespace Squeal
       if (is_disc)
         return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ",
                     body.volume, " m^3, ", body.mass, " kg; ", waves);
-      const std::string names = body.names.size() == 1 ? body.names[0] : text(body.names.size(), " pins like ", body.names[0]);
+      const std::string names =
+        body.names.size() == 1 ?
+          body.names[0] :
+          text(body.names.size(), body.names[0].rfind(PhysicalNames::pin_prefix, 0) == 0 ? " pins like " : " volumes like ", body.names[0]);
       return text("    ", names, ": ", body.height, " m high, ", body.contact_area, " m^2 on the disc, ", body.volume, " m^3, ", body.mass,
                   " kg", body.names.size() == 1 ? "; " : " each; ", waves);
     }
   } // namespace
 
-  void summarise_scene(const HexMesh &mesh, Run &run)
+  void summarise_scene(const Mesh &mesh, Run &run)
   {
     const Parameters &parameters = run.parameters;
 

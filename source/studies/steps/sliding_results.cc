@@ -27,8 +27,8 @@ namespace Squeal
     /// How well a steady sliding state fulfils its equations, and what is known of its uniqueness.
     Table sliding_table(const SlidingState &state, const std::vector<PinContact> &pins)
     {
-      std::vector<std::pair<std::string, Cell>> rows;
-      std::map<std::string, double>             loads; // lower before upper
+      std::vector<std::pair<std::string, Entry>> rows;
+      std::map<std::string, double>              loads; // lower before upper
       for (const PinContact &pin : pins)
         loads[pin.side == 0 ? pin.pin : pin.side > 0 ? "the upper side" : "the lower side"] += pin.load;
       for (const auto &[part, load] : loads)
@@ -44,7 +44,7 @@ namespace Squeal
       rows.emplace_back("changes of the contact set [-]", state.n_steps);
       if (std::isfinite(state.uniqueness.unique_below))
         rows.emplace_back("friction coefficient below which the state is unique [-]", state.uniqueness.unique_below);
-      using Row = std::pair<std::string, Cell>;
+      using Row = std::pair<std::string, Entry>;
       return Table(Columns<Row>{{"quantity", "", &Row::first}, {"value", "", &Row::second, 3, true}}, rows);
     }
 
@@ -85,6 +85,6 @@ namespace Squeal
     FieldWriter(*scene.model, scene.interface, linearisation.closed, run.folder())
       .write_contact_state({std::vector<double>(u.begin(), u.end()), plates, state.reactions, state.gaps,
                             radial_dissipation(scene.interface, state.reactions, operation),
-                            sliding_dissipation(state.reactions, operation)});
+                            sliding_dissipation(scene.interface, state.reactions, operation)});
   }
 } // namespace Squeal

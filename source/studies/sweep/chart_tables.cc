@@ -48,8 +48,8 @@ namespace Squeal
     Table threshold_table(const SweepChart &line)
     {
       using Row                = Threshold;
-      const auto partner       = [](const Row &row) { return row.partner >= 0 ? Cell(row.partner + 1) : Cell(); };
-      const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Cell(line.labels[row.partner]) : Cell(); };
+      const auto partner       = [](const Row &row) { return row.partner >= 0 ? Entry(row.partner + 1) : Entry(); };
+      const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Entry(line.labels[row.partner]) : Entry(); };
       return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
                                 {"uncertainty", "-", &Row::uncertainty, 1, true},
                                 {"event", "", &Row::event},

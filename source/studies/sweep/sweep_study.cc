@@ -229,10 +229,10 @@ namespace Squeal
       using Row          = MapCell;
       const bool is_load = parameter == MapParameter::load;
       const auto known   = [](const auto &value) {
-        return [value](const Row &row) { return row.leading ? Cell(std::invoke(value, row)) : Cell(); };
+        return [value](const Row &row) { return row.leading ? Entry(std::invoke(value, row)) : Entry(); };
       };
       const auto leading = [](double ModalQuantities::*quantity, const double factor = 1.) {
-        return [quantity, factor](const Row &row) { return row.leading ? Cell(factor * ((*row.leading).*quantity)) : Cell(); };
+        return [quantity, factor](const Row &row) { return row.leading ? Entry(factor * ((*row.leading).*quantity)) : Entry(); };
       };
       std::sort(cells.begin(), cells.end(), [](const Row &a, const Row &b) {
         return std::tie(a.value, a.friction_coefficient) < std::tie(b.value, b.friction_coefficient);

@@ -24,13 +24,14 @@ namespace Squeal
 
     ParameterValues   body_rates; ///< dq/dp of the parameters q of the bodies' terms
     std::vector<Term> derivative; ///< dX/dp where X is not a product of powers of p, with coefficients in the parameters of the bodies
-    double OperationParameters::        *operation   = nullptr; ///< on which contact damping, or friction itself, depends; null: none
-    std::shared_ptr<const ContactMotion> contact     = {};      ///< null: contact nodes stay where they are but for the axial direction
-    int                                  modal_ratio = -1;      ///< number of the entry of Damping/Modal damping ratio; −1: none
+    double OperationParameters::        *operation    = nullptr; ///< on which contact damping, or friction itself, depends; null: none
+    std::shared_ptr<const ContactMotion> contact      = {};      ///< null: contact nodes stay where they are but for the axial direction
+    int                                  modal_ratio  = -1;      ///< number of the entry of Damping/Modal damping ratio; −1: none
+    ParameterValues                      spring_rates = {};      ///< dk/dp of the stiffnesses k of the contact
   };
 
   /// Every continuous parameter but those of the geometry that the scene depends on: materials of the disc and of the pins, of each pin by
-  /// itself Young's modulus and density, mounts, ratios of modal damping, friction coefficient, load, rotation speed, friction slope.
+  /// itself Young's modulus and density, mounts, stiffnesses of the contact, ratios of modal damping, friction coefficient, load, rotation speed, friction slope.
   /// Assembles the bodies with neighbouring Poisson's ratios.
   std::vector<SensitivityParameter> sensitivity_parameters(const Scene &scene, const Parameters &parameters);
 

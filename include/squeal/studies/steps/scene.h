@@ -9,19 +9,20 @@ namespace Squeal
   /// The bodies before anything is said about their contact.
   struct Scene
   {
-    HexMesh                mesh;
+    Mesh                   mesh;
     std::unique_ptr<Model> model;
     ContactInterface       interface; ///< all pairs of contact nodes
     ContactOperators       contact;   ///< of all pairs
     std::vector<Term>      bodies;    ///< merged terms of the uncoupled bodies
     SecondOrderSystem      system;    ///< M, C, K: their sum
+    BodyTerms              elastic;   ///< stiffness term by term
 
     /// Sum of the mounts' stiffnesses on the uncoupled dofs, each in units of its largest entry; null: none.
     std::shared_ptr<const SparseMatrix> mounts;
 
     unsigned int n_pins() const
     {
-      return mesh.volume_names.size() - 1;
+      return mesh.body_names.size() - 1;
     }
   };
 
@@ -55,7 +56,7 @@ namespace Squeal
 
   /// Prints, before the work, what the program understood: sizes, masses, and the memory to expect; warns of implausible values; rejects
   /// models that exceed the memory, and a disc that is not round about z but about another axis. Throws MeshError.
-  void summarise_scene(const HexMesh &mesh, Run &run);
+  void summarise_scene(const Mesh &mesh, Run &run);
 
   /// Meshes, checks and pairs; refuses parameters that do not fit the pins. The system is left empty.
   Scene mesh_scene(Run &run);

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <squeal/geometry/mesh.h>
+
+#include <deal.II/base/tensor.h>
+
+#include <utility>
+#include <vector>
+
+namespace Squeal
+{
+  /// A face of a contact surface: triangle or quadrilateral of degree 1 or 2.
+  struct SurfaceElement
+  {
+    Shape       shape;
+    Mesh::Nodes nodes; ///< indices into SurfacePatch::points, in the order of reference_nodes(); outwards by the right-hand rule
+  };
+
+  /// One side of a contact; its elements have one degree.
+  struct SurfacePatch
+  {
+    std::vector<dealii::Point<3>> points; ///< [m]
+    std::vector<SurfaceElement>   elements;
+  };
+
+  /// Nodes with weights [-].
+  using NodeWeights = std::vector<std::pair<unsigned int, double>>;
+
+  /// The multiplier j of a slave node; formulas at mortar().
+  struct MortarRow
+  {
+    unsigned int         node;         ///< of the slave
+    dealii::Tensor<1, 3> normal;       ///< unit, outwards from the slave; area-weighted mean over the elements at the node
+    double               area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
+    NodeWeights          slave;        ///< B_ji; the sum is one
+    NodeWeights          master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
+    NodeWeights          left_inverse; ///< G_ji, not the transpose of B
+  };
+
+  struct Mortar
+  {
+    std::vector<MortarRow> rows;         ///< by ascending node; slave nodes without a row are free of contact
+    double                 slave_area;   ///< of all slave elements [m²]
+    double                 overlap_area; ///< of the part that faces the master [m²]
+    double                 coarseness;   ///< largest ratio of element sizes, slave to master above it [-]
+    double                 largest_gap;  ///< or penetration, along the normals of the slave [m]
+  };
+
+  /**
+   * Couples two surfaces whose nodes do not match, by Lagrange multipliers with dual shape functions on the slave.
+   *
+   * The multiplier j is the pressure λ = Σ ψ_j λ_j; its force r_j = D_j λ_j acts on the relative displacement
+   *
+   *     g_j = Σ_i B_ji u_i − Σ_l W_jl u_l
+   *
+   * with forces f_i = Σ_j B_ji r_j on the slave and −Σ_j W_jl r_j on the master. The former determine it: r_j = Σ_i G_ji f_i, G Bᵀ = I.
+   * On flat faces g vanishes for linear displacements, and a constant pressure gives both sides their consistent nodal forces. If the
+   * meshes match, W = B.
+   *
+   * On an element ψ = diag(∫ Ñ) (∫ Ñ Ñᵀ)⁻¹ Ñ, so that ∫ ψ_i Ñ_j = δ_ij ∫ Ñ_j. Both integrals extend over the overlap and use the quadrature
+   * points of ∫ ψ_j N_l: linear displacements are exact whatever the quadrature. Ñ = N and B = G = I, except on slaves with 6-node
+   * triangles, where ∫ N vanishes for a corner. There, with α = 1/5,
+   *
+   *     Ñ_v = N_v + α Σ_e N_e,   Ñ_e = (1 − 2 α) N_e,   ũ_v = u_v,   ũ_e = (u_e − α (u_v + u_v')) / (1 − 2 α)
+   *     r_v = f_v + α Σ_e f_e,   r_e = (1 − 2 α) f_e
+   *
+   * for corners v and the nodes e in the middle of an edge v v'. 9-node quadrilaterals of such a slave are transformed as well, because
+   * they share edges with triangles; their centre node is unchanged. B u = ũ.
+   *
+   * At the edge of the overlap D_j may be small or negative. A multiplier with less than a tenth of the ∫ Ñ_j of the whole elements is
+   * added to the neighbour with the largest D: the rows of B and W become their means weighted by D, D and the rows of G are summed.
+   * Slave elements that overlap by less than 2 % carry no multiplier, which keeps ∫ Ñ Ñᵀ invertible; Σ D_j lacks their share.
+   *
+   * B. I. Wohlmuth, SIAM J. Numer. Anal. 38 (2000) 989–1012 (dual functions); M. A. Puso, T. A. Laursen, Comput. Methods Appl. Mech.
+   * Engrg. 193 (2004) 601–629 (segments); A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34 (2012) B421–B446
+   * (degree 2); T. Cichosz, M. Bischoff, Comput. Methods Appl. Mech. Engrg. 200 (2011) 1317–1332 (partial overlap).
+   *
+   * @param search_distance largest gap or penetration of the two surfaces, along the normals of the slave [m]
+   *
+   * Throws MeshError if the overlap is less than 10⁻³ of the slave, if the normals are not opposite (mean cosine above −½), or if the
+   * reference coordinates of a point cannot be found.
+   */
+  Mortar mortar(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
+} // namespace Squeal

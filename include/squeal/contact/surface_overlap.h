@@ -1,0 +1,48 @@
+#pragma once
+
+#include <squeal/contact/mortar.h>
+
+#include <Eigen/Core>
+
+namespace Squeal
+{
+  /// Most nodes of a face.
+  inline constexpr int most_face_nodes = 9;
+
+  using FaceVector = Eigen::Matrix<double, most_face_nodes, 1>;
+  using FaceMatrix = Eigen::Matrix<double, most_face_nodes, most_face_nodes>;
+
+  /// Integrals over the part of a slave element that faces the master, with the area of the slave; entries beyond the nodes are zero.
+  struct ElementOverlap
+  {
+    FaceMatrix                                       mass = FaceMatrix::Zero(); ///< ∫ N_i N_j [m²]
+    std::vector<std::pair<unsigned int, FaceMatrix>> coupling;                  ///< ∫ N_i N_l with each master element [m²]
+
+    double area() const
+    {
+      return mass.sum();
+    }
+  };
+
+  struct SurfaceOverlap
+  {
+    std::vector<ElementOverlap> elements;    ///< of the slave
+    double                      mean_cosine; ///< between the normals of both surfaces, area-weighted; −1 without overlap
+    double                      coarseness;  ///< see Mortar
+    double                      largest_gap; ///< see Mortar
+  };
+
+  /// Sums over segments: intersections of slave and master elements, projected onto the plane of the slave element. Elements of degree
+  /// 2 are cut into four by their nodes first. Quadrature points are mapped to both elements along the normal of that plane. Throws
+  /// MeshError if the reference coordinates of a point cannot be found.
+  SurfaceOverlap overlap(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
+
+  /// Integrals over a whole element.
+  struct WholeElement
+  {
+    FaceVector           functions = FaceVector::Zero(); ///< ∫ N_i [m²]
+    dealii::Tensor<1, 3> area_normal;                    ///< ∫ n [m²]
+  };
+
+  WholeElement whole_element(const SurfacePatch &patch, const SurfaceElement &element);
+} // namespace Squeal

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <deal.II/base/point.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace Squeal
+{
+  /// Shapes of cells and of their faces.
+  enum class Shape : std::uint8_t
+  {
+    triangle,
+    quadrilateral,
+    tetrahedron,
+    pyramid,
+    wedge,
+    hexahedron
+  };
+
+  /// Corners, edges and faces of a shape; numbers are those of Gmsh. Reference coordinates are deal.II's: unit triangle and tetrahedron,
+  /// unit square and cube, wedge = triangle × [0, 1], pyramid on [−1, 1]² with its apex at (0, 0, 1).
+  struct Topology
+  {
+    const char                          *name; ///< plural
+    unsigned int                         dimension;
+    std::vector<dealii::Point<3>>        corners;
+    std::vector<std::array<unsigned, 2>> edges;
+
+    /// Corners around each, outwards by the right-hand rule; of a triangle or quadrilateral: itself.
+    std::vector<std::vector<unsigned int>> faces;
+  };
+
+  const Topology &topology(Shape shape);
+
+  constexpr Shape shape_of_face(const std::size_t n_corners)
+  {
+    return n_corners == 3 ? Shape::triangle : Shape::quadrilateral;
+  }
+
+  /// Nodes of a Lagrange element of degree 1 or 2: its corners; then, in degree 2, the middles of its edges, the centres of its quadrilateral faces
+  /// and of a hexahedron.
+  std::vector<dealii::Point<3>> reference_nodes(Shape shape, unsigned int degree);
+
+  inline constexpr unsigned int most_nodes = 27;
+
+  /// Numbers of the nodes of a face among those of its cell, in the order of the face's own shape.
+  const std::vector<unsigned int> &nodes_of_face(Shape cell, unsigned int degree, unsigned int face);
+
+  /**
+   * Shape functions N_i of a Lagrange element, in the order of reference_nodes(): deal.II's FE_Q, FE_SimplexP, FE_WedgeP and FE_PyramidP, and for
+   * pyramids of degree 2, which deal.II lacks, the nodal basis of P_2 + span{w x, w y, w, w²}, w = x y / (1 − z) (M. Bergot, G. Cohen,
+   * M. Duruflé 2010).
+   */
+  class ShapeFunctions
+  {
+  public:
+    static const ShapeFunctions &of(Shape shape, unsigned int degree);
+
+    virtual ~ShapeFunctions() = default;
+
+    virtual unsigned int n() const = 0;
+
+    virtual double value(unsigned int i, const dealii::Point<3> &x) const = 0;
+
+    /// With respect to reference coordinates; the third component is zero for faces.
+    virtual dealii::Tensor<1, 3> gradient(unsigned int i, const dealii::Point<3> &x) const = 0;
+  };
+
+  /// A point of a quadrature rule.
+  struct QuadraturePoint
+  {
+    dealii::Point<3> x; ///< reference coordinates
+    double           weight;
+  };
+
+  /// Rule exact for the mass of an undistorted element of the degree, with positive weights: Gauss' with degree + 1 points a direction,
+  /// that of Witherden and Vincent (2015) on triangles and tetrahedra.
+  std::vector<QuadraturePoint> quadrature(Shape shape, unsigned int degree);
+} // namespace Squeal

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <squeal/parameters/declarations.h>
+
+#include <string>
+#include <vector>
+
+namespace Squeal
+{
+  /// Surfaces that rub: one of the disc, one of another body.
+  struct ContactPair
+  {
+    std::string disc, pin;
+    double      friction_factor  = 1.; ///< friction coefficient of the pair over that of Operation/Friction coefficient [-]
+    double      normal_stiffness = 0.; ///< k of the contact [N/m³]; zero: nothing yields, the constraint
+  };
+
+  /// What rubs what (section `Contact`).
+  struct ContactParameters
+  {
+    std::vector<ContactPair> pairs = {{"disc_contact", "pin_contact"}};
+
+    void declare(Declarations &declarations);
+  };
+} // namespace Squeal

@@ -1,0 +1,237 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/contact/surface_overlap.h>
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Parts of the slave's area, of that of an element and of ∫ Ñ_j that must at least be in the overlap [-].
+    constexpr double least_overlap = 1e-3, least_of_element = 0.02, least_of_node = 0.1;
+
+    /// Smaller weights are rounding errors.
+    constexpr double least_weight = 1e-13;
+
+    /// Largest mean cosine between normals of surfaces that face each other.
+    constexpr double largest_cosine = -0.5;
+
+    unsigned int n_corners(const SurfaceElement &element)
+    {
+      return element.shape == Shape::triangle ? 3 : 4;
+    }
+
+    /// From N to Ñ, see mortar(); α = 0 without 6-node triangles.
+    class Transformation
+    {
+    public:
+      explicit Transformation(const SurfacePatch &slave)
+      {
+        for (unsigned int j = 0; j < slave.points.size(); ++j)
+          {
+            values.push_back({{j, 1.}});
+            forces.push_back({{j, 1.}});
+          }
+        for (const SurfaceElement &element : slave.elements)
+          if (element.nodes.size() == 6)
+            alpha = 0.2;
+        if (alpha > 0.)
+          for (const SurfaceElement &element : slave.elements)
+            for (unsigned int i = 0; i < n_corners(element); ++i)
+              add_edge(element.nodes[n_corners(element) + i], element.nodes[i], element.nodes[(i + 1) % n_corners(element)]);
+      }
+
+      /// T in Ñ = T N on an element.
+      FaceMatrix of(const SurfaceElement &element) const
+      {
+        FaceMatrix         result = FaceMatrix::Identity();
+        const unsigned int n      = n_corners(element);
+        if (alpha > 0.)
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              result(n + i, n + i) = 1. - 2. * alpha;
+              result(i, n + i) = result((i + 1) % n, n + i) = alpha;
+            }
+        return result;
+      }
+
+      std::vector<NodeWeights> values; ///< ũ_j of u
+      std::vector<NodeWeights> forces; ///< on ũ_j, of those on u
+
+    private:
+      void add_edge(const unsigned int e, const unsigned int v, const unsigned int w)
+      {
+        if (values[e].size() > 1)
+          return; // the edge of the element on its other side
+        values[e] = {{e, 1. / (1. - 2. * alpha)}, {v, -alpha / (1. - 2. * alpha)}, {w, -alpha / (1. - 2. * alpha)}};
+        forces[e] = {{e, 1. - 2. * alpha}};
+        forces[v].emplace_back(e, alpha);
+        forces[w].emplace_back(e, alpha);
+      }
+
+      double alpha = 0.;
+    };
+
+    /// A slave node with what the elements there add up to.
+    struct SlaveNode
+    {
+      dealii::Tensor<1, 3>           area_normal;
+      double                         whole = 0.; ///< ∫ Ñ_j over the elements
+      double                         area  = 0.; ///< and over the overlap
+      std::map<unsigned int, double> master;     ///< ∫ ψ_j N_l
+      std::set<unsigned int>         neighbours; ///< in elements that overlap
+    };
+
+    /// Adds the dual functions of an element; does nothing if its functions depend on each other there.
+    void add_element(std::vector<SlaveNode> &nodes,
+                     const SurfaceElement   &element,
+                     const FaceMatrix       &transformation,
+                     const ElementOverlap   &overlap,
+                     const SurfacePatch     &master)
+    {
+      const int                         n    = element.nodes.size();
+      const Eigen::MatrixXd             mass = (transformation * overlap.mass * transformation.transpose()).topLeftCorner(n, n);
+      const Eigen::VectorXd             area = mass.rowwise().sum();
+      const Eigen::LLT<Eigen::MatrixXd> factor(mass);
+      if (factor.info() != Eigen::Success)
+        return;
+      for (int j = 0; j < n; ++j)
+        {
+          nodes[element.nodes[j]].area += area[j];
+          nodes[element.nodes[j]].neighbours.insert(element.nodes.begin(), element.nodes.end());
+        }
+      for (const auto &[number, coupling] : overlap.coupling)
+        {
+          const auto           &others = master.elements[number].nodes;
+          const Eigen::MatrixXd dual   = area.asDiagonal() * factor.solve((transformation * coupling).topLeftCorner(n, others.size()));
+          for (int j = 0; j < n; ++j)
+            for (unsigned int l = 0; l < others.size(); ++l)
+              nodes[element.nodes[j]].master[others[l]] += dual(j, l);
+        }
+    }
+
+    /// Slave nodes of each row, by the node that has it: nodes with hardly any overlap join the largest of their neighbours.
+    std::map<unsigned int, std::vector<unsigned int>> grouped(const std::vector<SlaveNode> &nodes)
+    {
+      std::map<unsigned int, std::vector<unsigned int>> groups;
+      std::vector<unsigned int>                         row(nodes.size());
+      std::vector<double>                               area(nodes.size());
+      for (unsigned int j = 0; j < nodes.size(); ++j)
+        {
+          row[j]    = j;
+          area[j]   = nodes[j].area;
+          groups[j] = {j};
+        }
+      // Repeat, because a negative area may make a sum too small
+      for (bool is_changed = true; is_changed;)
+        {
+          is_changed = false;
+          for (unsigned int j = 0; j < nodes.size(); ++j)
+            if (row[j] == j && !(area[j] > least_of_node * nodes[j].whole))
+              {
+                unsigned int largest = j;
+                for (const unsigned int other : nodes[j].neighbours)
+                  if (row[other] != j && (largest == j || area[row[other]] > area[largest]))
+                    largest = row[other];
+                if (largest == j)
+                  continue;
+                for (const unsigned int i : groups[j])
+                  row[i] = largest;
+                groups[largest].insert(groups[largest].end(), groups[j].begin(), groups[j].end());
+                area[largest] += area[j];
+                groups.erase(j);
+                is_changed = true;
+              }
+        }
+      for (unsigned int j = 0; j < nodes.size(); ++j)
+        if (!(area[j] > least_of_node * nodes[j].whole))
+          groups.erase(j);
+      return groups;
+    }
+
+    NodeWeights listed(const std::map<unsigned int, double> &weights)
+    {
+      NodeWeights result;
+      for (const auto &[node, weight] : weights)
+        if (std::abs(weight) > least_weight)
+          result.emplace_back(node, weight);
+      return result;
+    }
+
+    MortarRow make_row(const unsigned int               node,
+                       const std::vector<unsigned int> &group,
+                       const std::vector<SlaveNode>    &nodes,
+                       const Transformation            &transformation)
+    {
+      MortarRow row{node, nodes[node].area_normal / nodes[node].area_normal.norm(), 0., {}, {}, {}};
+      for (const unsigned int j : group)
+        row.area += nodes[j].area;
+      std::map<unsigned int, double> slave, master, left_inverse;
+      for (const unsigned int j : group)
+        {
+          for (const auto &[i, weight] : transformation.values[j])
+            slave[i] += weight * (nodes[j].area / row.area);
+          for (const auto &[l, integral] : nodes[j].master)
+            master[l] += integral / row.area;
+          for (const auto &[i, weight] : transformation.forces[j])
+            left_inverse[i] += weight;
+        }
+      row.slave        = listed(slave);
+      row.master       = listed(master);
+      row.left_inverse = listed(left_inverse);
+      double sum       = 0.;
+      for (const auto &[l, weight] : row.master)
+        sum += weight;
+      for (auto &[l, weight] : row.master)
+        weight /= sum;
+      return row;
+    }
+
+    void check(const Mortar &mortar, const double mean_cosine, const double search_distance)
+    {
+      const char *where = "surfaces disc_contact and pin_contact";
+      if (mean_cosine > largest_cosine)
+        throw MeshError(text("the contact faces do not face each other: the mean cosine between their normals is ", mean_cosine), where,
+                        "let the normals of the two surfaces be opposite");
+      if (!(mortar.overlap_area >= least_overlap * mortar.slave_area) || mortar.rows.empty())
+        throw MeshError(
+          text("the contact faces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m² on the pins' side"), where,
+          text("let the faces lie on each other, with a gap below ", search_distance, " m, or name in Contact/Pairs those that do"));
+    }
+  } // namespace
+
+  Mortar mortar(const SurfacePatch &slave, const SurfacePatch &master, const double search_distance)
+  {
+    const SurfaceOverlap   overlaps = overlap(slave, master, search_distance);
+    const Transformation   transformation(slave);
+    std::vector<SlaveNode> nodes(slave.points.size());
+    Mortar                 result{{}, 0., 0., overlaps.coarseness, overlaps.largest_gap};
+    for (unsigned int e = 0; e < slave.elements.size(); ++e)
+      {
+        const SurfaceElement &element = slave.elements[e];
+        const WholeElement    whole   = whole_element(slave, element);
+        const FaceMatrix      t       = transformation.of(element);
+        const FaceVector      areas   = t * whole.functions;
+        for (unsigned int j = 0; j < element.nodes.size(); ++j)
+          {
+            nodes[element.nodes[j]].whole += areas[j];
+            nodes[element.nodes[j]].area_normal += whole.area_normal;
+          }
+        const double area = overlaps.elements[e].area();
+        result.slave_area += areas.sum();
+        result.overlap_area += area;
+        if (area > least_of_element * areas.sum())
+          add_element(nodes, element, t, overlaps.elements[e], master);
+      }
+    for (const auto &[node, group] : grouped(nodes))
+      result.rows.push_back(make_row(node, group, nodes, transformation));
+    check(result, overlaps.mean_cosine, search_distance);
+    return result;
+  }
+} // namespace Squeal

@@ -1,0 +1,80 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/parameters/contact.h>
+#include <squeal/parameters/number_list.h>
+
+#include <deal.II/base/utilities.h>
+
+#include <boost/algorithm/string/join.hpp>
+
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    constexpr const char *where = "parameter Contact/Pairs";
+
+    std::string print(const std::vector<ContactPair> &pairs)
+    {
+      std::vector<std::string> texts;
+      for (const ContactPair &pair : pairs)
+        {
+          const bool is_rigid = pair.normal_stiffness == 0.;
+          texts.push_back(pair.disc + " / " + pair.pin +
+                          (is_rigid && pair.friction_factor == 1. ? "" : ": " + exact_text(pair.friction_factor)) +
+                          (is_rigid ? "" : ", " + exact_text(pair.normal_stiffness)));
+        }
+      return boost::algorithm::join(texts, "; ");
+    }
+
+    std::vector<ContactPair> parse(const std::string &text)
+    {
+      using dealii::Utilities::split_string_list;
+      std::vector<ContactPair> pairs;
+      const auto               refuse = [](const std::string &what) {
+        throw ParameterError(what, where,
+                                           "write surface of the disc / surface of another body: friction factor; ..., such as disc_top / pad_outer; "
+                                                         "disc_bottom / pad_inner: 0.9");
+      };
+      for (const std::string &entry : split_string_list(text, ';'))
+        {
+          if (entry.empty())
+            continue;
+          const auto halves = split_string_list(entry, ':'), names = split_string_list(halves[0], '/');
+          if (halves.size() > 2 || names.size() != 2 || names[0].empty() || names[1].empty())
+            refuse(in_quotes(entry) + " is not a pair of surfaces");
+          ContactPair pair{names[0], names[1]};
+          const auto  numbers = halves.size() == 2 ? split_numbers(halves[1], "Contact/Pairs", where) : std::vector<std::string>{"1"};
+          const auto  factor = parse_number(numbers[0]), stiffness = numbers.size() > 1 ? parse_number(numbers[1]) : std::optional(0.);
+          if (numbers.size() > 2 || !factor || !(*factor > 0.))
+            refuse("the friction factor in " + in_quotes(entry) + " is not a positive number");
+          if (!stiffness || !(*stiffness >= 0.))
+            refuse("the normal stiffness in " + in_quotes(entry) + " is not a number >= 0");
+          pair.friction_factor  = *factor;
+          pair.normal_stiffness = *stiffness;
+          if (names[0] == names[1])
+            refuse(in_quotes(names[0]) + " would rub itself");
+          for (const ContactPair &other : pairs)
+            if (other.disc == names[0] && other.pin == names[1])
+              refuse(in_quotes(entry) + " is given twice");
+          pairs.push_back(pair);
+        }
+      if (pairs.empty())
+        refuse("nothing rubs");
+      return pairs;
+    }
+  } // namespace
+
+  void ContactParameters::declare(Declarations &declarations)
+  {
+    declarations.enter("Contact");
+    declarations.add_text(
+      "Pairs",
+      "Surfaces that rub, as a list `surface of the disc / surface of another body: friction factor, normal stiffness; ...`; the factor, 1 "
+      "if it is left out, multiplies Operation/Friction coefficient, the stiffness is that of springs between the faces, which stay rigid "
+      "on each other without it. Their meshes need not match: faces whose nodes do not coincide are coupled by mortar elements. Units: "
+      "none, N/m^3.",
+      [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
+  }
+} // namespace Squeal
