@@ -56,6 +56,9 @@ namespace Squeal
     private:
       using Leaf = std::pair<BoundingBox<3>, const Cell *>;
 
+      /// Cells in which find() looks.
+      std::vector<Leaf> candidates(unsigned int body, const Point<3> &point, PointSearch search) const;
+
       const Model             &model;
       std::vector<RTree<Leaf>> trees; ///< of each body
     };
@@ -119,18 +122,28 @@ namespace Squeal
       return it - names.begin();
     }
 
+    std::vector<PointLocation::Leaf> PointLocation::candidates(const unsigned int body,
+                                                               const Point<3>    &point,
+                                                               const PointSearch  search) const
+    {
+      std::vector<Leaf> result;
+      trees[body].query(boost::geometry::index::intersects(point), std::back_inserter(result));
+      if (search == PointSearch::nearest)
+        {
+          const unsigned int n = result.size() + n_beside;
+          result.clear();
+          trees[body].query(boost::geometry::index::nearest(point, n), std::back_inserter(result));
+        }
+      return result;
+    }
+
     PointInCell PointLocation::find(const unsigned int body, const Point<3> &point, const PointSearch search) const
     {
-      PointInCell  nearest{{}, {}, std::numeric_limits<double>::infinity()};
-      const auto   query     = boost::geometry::index::nearest(point, std::max<std::size_t>(1, trees[body].size()));
-      const auto   is_nearer = [&](const Point<3> &x, const Point<3> &y) { return x.distance(point) < y.distance(point); };
-      unsigned int beside    = 0;
-      for (auto leaf = trees[body].qbegin(query); leaf != trees[body].qend(); ++leaf)
+      PointInCell nearest{{}, {}, std::numeric_limits<double>::infinity()};
+      const auto  is_nearer = [&](const Point<3> &x, const Point<3> &y) { return x.distance(point) < y.distance(point); };
+      for (const Leaf &leaf : candidates(body, point, search))
         {
-          // Boxes that hold the point come first
-          if (!leaf->first.point_inside(point) && (search == PointSearch::inside || ++beside > n_beside))
-            break;
-          const Cell &cell      = *leaf->second;
+          const Cell &cell      = *leaf.second;
           const auto  nodes     = places_of_nodes(model, cell);
           const auto  reference = reference_coordinates(cell.shape, model.degree(), nodes, point);
           Point<3>    inside    = reference ? cut_to(cell.shape, *reference) : Point<3>();
