@@ -1,18 +1,15 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
 #include <squeal/contact/contact_interface.h>
-#include <squeal/contact/mortar.h>
+#include <squeal/geometry/surface_overlap.h>
 
 #include <deal.II/base/mpi.h>
-
-#include <boost/serialization/vector.hpp>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 
@@ -73,24 +70,6 @@ namespace Squeal
       return all;
     }
 
-    void add_areas(ContactSurface &surface, const SurfaceElement &element, const unsigned int degree)
-    {
-      const ShapeFunctions &functions = ShapeFunctions::of(element.shape, degree);
-      for (const QuadraturePoint &point : quadrature(element.shape, degree))
-        {
-          Eigen::Vector3d along[2] = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-          for (unsigned int i = 0; i < functions.n(); ++i)
-            for (unsigned int d = 0; d < 2; ++d)
-              along[d] += functions.gradient(i, point.x)[d] * surface.position(element.nodes[i]);
-          const Eigen::Vector3d normal = point.weight * along[0].cross(along[1]);
-          for (unsigned int i = 0; i < functions.n(); ++i)
-            {
-              surface.areas[element.nodes[i]] += functions.value(i, point.x) * normal.norm();
-              surface.area_normals[element.nodes[i]] += normal;
-            }
-        }
-    }
-
     ContactSurface contact_surface(const Model &model, const std::string &name)
     {
       const std::vector<SentFace>    faces = all_faces_of(model, name);
@@ -114,7 +93,12 @@ namespace Squeal
           for (const Node &node : face.nodes)
             element.nodes.push_back(places.at(node.number));
           surface.patch.elements.push_back(element);
-          add_areas(surface, element, model.degree());
+          const WholeElement whole = whole_element(surface.patch, element);
+          for (unsigned int i = 0; i < element.nodes.size(); ++i)
+            {
+              surface.areas[element.nodes[i]] += whole.functions[i];
+              surface.area_normals[element.nodes[i]] += whole.area_normal;
+            }
         }
       return surface;
     }
@@ -150,7 +134,11 @@ namespace Squeal
     {
       for (const WeightedNodes *side : {&node.on_disc, &node.on_pin})
         for (const auto &[partner, weight] : *side)
-          if (partner.dofs[0] < 0)
+          if (!partner.masters.empty())
+            throw MeshError("a contact node is tied to another body",
+                            "contact node at " + place(node.position) + ", parameter Contact/Tied",
+                            "keep tied and contact faces apart, with at least one layer of elements between them");
+          else if (partner.dofs[0] < 0)
             throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(node.position),
                             "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
     }
@@ -207,15 +195,6 @@ namespace Squeal
       return result;
     }
 
-    /// Gaps between surfaces that count as contact, beside the mean size of the pins' faces [-].
-    constexpr double largest_gap = 0.5;
-
-    /// Gaps beside the mean size of the pins' faces that a note mentions: more than chords of a curved face leave [-].
-    constexpr double small_gap = 0.05;
-
-    /// How many times as large as those of the disc faces of the pins may be before their pressure oscillates [-].
-    constexpr double most_coarseness = 3.;
-
     /// Part of the contact face of a body that must at least lie on the disc [-].
     constexpr double least_of_body = 0.2;
 
@@ -235,11 +214,10 @@ namespace Squeal
             text("let at least ", 100. * least_of_body, " % of it lie on that surface, with gaps well below the size of its elements"));
     }
 
-    FoundContact mortar_nodes(const Model &model, const ContactSurface &disc, const ContactSurface &pins)
+    FoundContact mortar_nodes(const Model &model, const ContactPair &pair, const ContactSurface &disc, const ContactSurface &pins)
     {
-      const double area     = std::accumulate(pins.areas.begin(), pins.areas.end(), 0.);
-      const double size     = std::sqrt(area / pins.patch.elements.size());
-      const Mortar coupling = mortar(pins.patch, disc.patch, largest_gap * size);
+      const double gap      = largest_gap(pins.patch);
+      const Mortar coupling = mortar(pins.patch, disc.patch, gap);
       FoundContact result;
       for (const MortarRow &row : coupling.rows)
         {
@@ -254,15 +232,8 @@ namespace Squeal
           result.interface.push_back(node);
         }
       check_overlap(model, pins, result.interface);
-      result.notes.push_back(text("faces do not match node by node: coupled by mortar elements over ",
-                                  std::round(1000. * coupling.overlap_area / coupling.slave_area) / 10., " % of ", coupling.slave_area,
-                                  " m^2"));
-      if (coupling.largest_gap > small_gap * size)
-        result.notes.push_back(
-          text("gaps or penetrations of up to ", coupling.largest_gap, " m: the faces are coupled as if they touched"));
-      if (coupling.coarseness > most_coarseness)
-        result.notes.push_back(text("faces are up to ", coupling.coarseness,
-                                    " times as large as those of the disc: the pressure is resolved by the coarser side only"));
+      result.notes    = coupling_notes(coupling, gap, pair.pin, pair.disc);
+      result.notes[0] = "faces do not match node by node: " + result.notes[0];
       return result;
     }
 
@@ -274,7 +245,7 @@ namespace Squeal
       FoundContact         result;
       try
         {
-          result = of_disc ? FoundContact{pairs(disc, pins, *of_disc), {}} : mortar_nodes(model, disc, pins);
+          result = of_disc ? FoundContact{pairs(disc, pins, *of_disc), {}} : mortar_nodes(model, pair, disc, pins);
         }
       catch (const MeshError &error)
         {

@@ -2,6 +2,7 @@
 #include <squeal/base/text.h>
 #include <squeal/contact/contact_operators.h>
 #include <squeal/linear_algebra/communication.h>
+#include <squeal/linear_algebra/slave_rows.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,6 @@ namespace Squeal
 {
   namespace
   {
-    /// u_slave = Σ coefficient u_master: (master, coefficient) of each slave, in numbers of free dofs.
-    using SlaveRows = std::map<int, std::vector<std::pair<int, double>>>;
-
     /// Direction in which a node is eliminated: the coordinate axis nearest to the normal.
     unsigned int eliminated_direction(const ContactNode &node)
     {
@@ -35,32 +33,11 @@ namespace Squeal
               row.emplace_back(other.dofs[j], sign * weight / self->weight * ratio);
     }
 
-    /// Replaces masters that are slaves of other rows by their masters, as between nodes on edges and at corners of quadratic faces.
-    void resolve(SlaveRows &rows)
+    void resolve_contact(SlaveRows &rows)
     {
-      constexpr int most_passes = 20;
-      bool          is_done     = false;
-      for (int pass = 0; !is_done; ++pass)
-        {
-          if (pass == most_passes)
-            throw MeshError("contact nodes depend on each other in a circle", "surfaces disc_contact and pin_contact",
-                            "let the contact faces overlap by whole elements");
-          is_done = true;
-          for (auto &[slave, row] : rows)
-            {
-              SlaveRows::mapped_type resolved;
-              for (const auto &[master, coefficient] : row)
-                if (const auto known = rows.find(master); known == rows.end())
-                  resolved.emplace_back(master, coefficient);
-                else
-                  for (const auto &[its_master, share] : known->second)
-                    {
-                      resolved.emplace_back(its_master, coefficient * share);
-                      is_done = false;
-                    }
-              row = std::move(resolved);
-            }
-        }
+      if (!resolve(rows)) // edges and corners of quadratic faces depend on each other
+        throw MeshError("contact nodes depend on each other in a circle", "surfaces disc_contact and pin_contact",
+                        "let the contact faces overlap by whole elements");
     }
 
     /// Columns of the masters of all slaves, whoever has them; the columns of this process begin with number @p first.
@@ -181,7 +158,7 @@ namespace Squeal
     for (const ContactNode &contact : interface)
       if (contact.is_rigid())
         eliminate(slaves, contact, contact.pin_node, contact.on_pin, contact.on_disc);
-    resolve(slaves);
+    resolve_contact(slaves);
     const auto along  = [&](const auto &direction) { return relative_displacement(model, interface, direction); };
     const auto normal = along([](const ContactNode &node) { return node.normal; });
     return {normal,
@@ -212,13 +189,15 @@ namespace Squeal
     SlaveRows slaves;
     if (boundary == ContactBoundary::sliding)
       for (const ContactNode &contact : interface)
-        if (component == Component::pins)
-          eliminate(slaves, contact, contact.pin_node, contact.on_pin, {});
-        else
-          for (const WeightedNode &on_disc : contact.on_disc)
-            if (slaves.count(on_disc.node.dofs[eliminated_direction(contact)]) == 0)
-              eliminate(slaves, contact, on_disc.node, {on_disc}, {});
-    resolve(slaves);
+        {
+          if (component == Component::pins)
+            eliminate(slaves, contact, contact.pin_node, contact.on_pin, {});
+          else
+            for (const WeightedNode &on_disc : contact.on_disc)
+              if (slaves.count(on_disc.node.dofs[eliminated_direction(contact)]) == 0)
+                eliminate(slaves, contact, on_disc.node, {on_disc}, {});
+        }
+    resolve_contact(slaves);
     return kernel_matrix(model.free_map(), kept, slaves);
   }
 

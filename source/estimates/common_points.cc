@@ -334,8 +334,9 @@ namespace Squeal
           const auto        &functions = ShapeFunctions::of(place.cell->shape, model.degree());
           for (unsigned int i = 0; i < functions.n(); ++i)
             for (unsigned int component = 0; component < 3; ++component)
-              if (const int dof = model.nodes()[place.cell->nodes[i]].dofs[component]; dof >= 0 && factors[component] != 0.)
-                result.entries.emplace_back(dof, factors[component] * functions.value(i, place.reference));
+              if (const double factor = factors[component] * functions.value(i, place.reference); factors[component] != 0.)
+                model.nodes()[place.cell->nodes[i]].for_each_dof(
+                  component, [&](const int dof, const double weight) { result.entries.emplace_back(dof, factor * weight); });
           sent[map.owner(number)].push_back(result);
         }
     std::vector<SparseMatrix::Row> own(map.n_local());

@@ -190,6 +190,11 @@ namespace Squeal
           require(pair.disc, "Contact/Pairs");
           require(pair.pin, "Contact/Pairs");
         }
+      for (const TiedPair &pair : contact.tied)
+        {
+          require(pair.slave, "Contact/Tied");
+          require(pair.master, "Contact/Tied");
+        }
       for (const std::string &name : mounted)
         require(name, "Mounts/Elastic mounts or Mounts/Dashpots");
     }
@@ -239,7 +244,9 @@ namespace Squeal
     {
       const GmshMesh gmsh = run_gmsh_once(parameters, where, communicator);
       check_groups(gmsh, where);
-      const auto with_note = [&gmsh](Mesh mesh) {
+      const auto finished = [&](Mesh mesh) {
+        if (mesh.tied = contact.tied; !mesh.tied.empty())
+          find_bodies(mesh);
         if (!gmsh.why_not_confined.empty())
           mesh.notes.push_back("this system cannot keep a geometry from running programs and writing files (" + gmsh.why_not_confined +
                                ")");
@@ -251,6 +258,8 @@ namespace Squeal
           std::vector<std::string> surfaces = additional_surfaces;
           for (const ContactPair &pair : contact.pairs)
             surfaces.insert(surfaces.end(), {pair.disc, pair.pin});
+          for (const TiedPair &pair : contact.tied)
+            surfaces.insert(surfaces.end(), {pair.slave, pair.master});
           Mesh mesh = make_mesh(gmsh, surfaces, where);
           if (contact.pairs.size() > 1 || contact.pairs[0].disc != PhysicalNames::disc_contact ||
               contact.pairs[0].pin != PhysicalNames::pin_contact)
@@ -258,14 +267,14 @@ namespace Squeal
           check_unique(mesh, where);
           if (const unsigned int n = make_right_handed(mesh); n > 0)
             mesh.notes.push_back(text(n, " of ", mesh.cells.size(), " cells are left-handed; their nodes have been reordered"));
-          return with_note(std::move(mesh));
+          return finished(std::move(mesh));
         }
       Plan plan = make_plan(gmsh, {parameters.pin_rings, parameters.pin_grading}, where);
       check_least_memory(expected_size(plan, parameters), where, communicator);
       if (parameters.outlines == Outlines::true_area)
         enlarge_to_true_area(plan);
       smooth(plan);
-      return with_note(extrude(plan, parameters));
+      return finished(extrude(plan, parameters));
     }
 
     // Of the supplied plan, where elements of the wanted size do not fit between the pins
@@ -285,8 +294,11 @@ namespace Squeal
     GeometryParameters parameters  = in_unit(given, exponent);
     if (is_built_in)
       check_least_memory(expected_size(parameters), where, communicator);
-    Mesh mesh = mesh_once(parameters, where, additional_surfaces, contact, communicator);
-    check_parts(mesh, additional_surfaces, where);
+    Mesh                     mesh   = mesh_once(parameters, where, additional_surfaces, contact, communicator);
+    std::vector<std::string> needed = additional_surfaces;
+    for (const TiedPair &pair : contact.tied)
+      needed.insert(needed.end(), {pair.slave, pair.master});
+    check_parts(mesh, needed, where);
     check_bodies(mesh, additional_surfaces, where);
     for (int attempt = 1; is_built_in && attempt < max_attempts && mesh_quality(mesh).worst_scaled_jacobian < smallest_scaled_jacobian;
          ++attempt)
@@ -299,7 +311,14 @@ namespace Squeal
         point *= std::pow(10., exponent);
     check_mesh(mesh);
     if (!is_built_in) // conforming by construction
-      check_topology(mesh, given.pairing_tolerance, where);
+      {
+        // Tied faces may coincide and need not match: what shares nodes is checked
+        mesh.tied.clear();
+        find_bodies(mesh);
+        check_topology(mesh, given.pairing_tolerance, where);
+        mesh.tied = contact.tied;
+        find_bodies(mesh);
+      }
     return mesh;
   }
 } // namespace Squeal

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string_view>
 
 namespace Squeal
@@ -36,6 +37,13 @@ namespace Squeal
     for (const auto &[shape, n] : numbers)
       result += text(result.empty() ? "" : ", ", n, ' ', topology(shape).name);
     return result.empty() ? "no cells" : result;
+  }
+
+  std::string describe_cell(const Mesh &mesh, const std::size_t cell)
+  {
+    const Mesh::Point c = centre(mesh, mesh.cells[cell]);
+    return text("element ", mesh.element_tags.empty() ? cell : mesh.element_tags[cell], " of volume '",
+                mesh.volume_names[mesh.cells[cell].volume], "', near (", c[0], ", ", c[1], ", ", c[2], ") m");
   }
 
   std::uint64_t checksum(const Mesh &mesh)
@@ -74,6 +82,22 @@ namespace Squeal
     }
   } // namespace
 
+  std::vector<std::pair<unsigned int, unsigned int>> tied_links(const Mesh &mesh)
+  {
+    std::vector<std::pair<unsigned int, unsigned int>> links;
+    for (const TiedPair &pair : mesh.tied)
+      {
+        std::optional<unsigned int> first;
+        for (const Mesh::Face &face : mesh.faces)
+          if (const std::string &surface = mesh.surface_names[face.surface]; surface == pair.slave || surface == pair.master)
+            {
+              first = first.value_or(face.nodes[0]);
+              links.emplace_back(*first, face.nodes[0]);
+            }
+      }
+    return links;
+  }
+
   void find_bodies(Mesh &mesh)
   {
     // Volumes by way of their nodes
@@ -82,6 +106,8 @@ namespace Squeal
     for (const Mesh::Cell &cell : mesh.cells)
       for (const unsigned int node : cell.nodes)
         sets.union_set<std::size_t>(cell.volume, names.size() + node);
+    for (const auto &[node, other] : tied_links(mesh))
+      sets.union_set<std::size_t>(names.size() + node, names.size() + other);
     const auto first_of_disc = std::find_if(names.begin(), names.end(), is_of_disc) - names.begin();
     for (std::size_t volume = 0; volume < names.size(); ++volume)
       if (is_of_disc(names[volume]))
@@ -147,9 +173,9 @@ namespace Squeal
   {
     std::array<unsigned int, 4> key_of(std::array<unsigned int, 4> corners, const unsigned int n_corners)
     {
-      std::sort(corners.begin(), corners.begin() + n_corners);
       if (n_corners == 3)
-        corners[3] = corners[2];
+        corners[3] = std::max({corners[0], corners[1], corners[2]});
+      std::sort(corners.begin(), corners.end());
       return corners;
     }
 

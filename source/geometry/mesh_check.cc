@@ -1,6 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/geometry/cell_volume.h>
+#include <squeal/geometry/curved_cells.h>
 #include <squeal/geometry/mesh_check.h>
 #include <squeal/parameters/materials.h>
 
@@ -61,42 +61,54 @@ namespace Squeal
       return b.corners[(first + 1) % b.n_corners] == a.corners[1];
     }
 
-    std::string at_point(const Mesh::Point &p)
-    {
-      return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
-    }
-
-    std::string describe(const Mesh &mesh, const std::size_t element)
-    {
-      const Mesh::Cell &cell = mesh.cells[element];
-      return text("element ", mesh.element_tags.empty() ? element : mesh.element_tags[element], " of volume '",
-                  mesh.volume_names[cell.volume], "', near ", at_point(centre(mesh, cell)));
-    }
-
     std::string list(const std::vector<std::string> &names)
     {
       return names.empty() ? "(none)" : boost::algorithm::join(names, ", ");
     }
 
-    void check_connected(const Mesh &mesh, const std::string &where)
+    /// Several discs on one axis are volumes of their own, each with a mount.
+    void check_connected(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
     {
       boost::disjoint_sets_with_storage<> sets(mesh.points.size());
       for (const Mesh::Cell &cell : mesh.cells)
         for (const unsigned int node : cell.nodes)
           sets.union_set(node, cell.nodes[0]);
-      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size()); // elements, by root
+      for (const auto &[node, other] : tied_links(mesh))
+        sets.union_set(node, other);
+      std::vector<std::map<std::size_t, std::size_t>> pieces(mesh.body_names.size());       // elements, by root
+      std::vector<std::set<std::size_t>>              of_volumes(mesh.volume_names.size()); // roots
+      std::set<std::size_t>                           held;                                 // roots
       for (const Mesh::Cell &cell : mesh.cells)
-        ++pieces[mesh.body_of(cell)][sets.find_set(cell.nodes[0])];
+        {
+          const std::size_t root = sets.find_set(cell.nodes[0]);
+          ++pieces[mesh.body_of(cell)][root];
+          of_volumes[cell.volume].insert(root);
+        }
+      for (const Mesh::Face &face : mesh.faces)
+        if (const std::string &surface = mesh.surface_names[face.surface];
+            std::count(mounted_surfaces.begin(), mounted_surfaces.end(), surface) > 0)
+          held.insert(sets.find_set(face.nodes[0]));
+      const auto is_whole = [&](const std::size_t volume) { return mesh.body_of_volume[volume] != 0 || of_volumes[volume].size() == 1; };
+      const auto is_held  = [&](const auto &piece) { return held.count(piece.first) > 0; };
       for (std::size_t body = 0; body < pieces.size(); ++body)
-        if (pieces[body].size() > 1)
-          {
-            std::string sizes;
-            for (const auto &[root, size] : pieces[body])
-              sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
-            throw MeshError("Body '" + mesh.body_names[body] + "' is in " + std::to_string(pieces[body].size()) +
-                              " pieces that share no node, of " + sizes + " elements",
-                            where, "join them (Coherence, BooleanUnion or common curves), or give every pin a physical volume of its own");
-          }
+        {
+          if (pieces[body].size() == 1)
+            continue;
+          bool are_discs = body == 0 && std::all_of(pieces[0].begin(), pieces[0].end(), is_held);
+          for (std::size_t volume = 0; volume < of_volumes.size(); ++volume)
+            are_discs = are_discs && is_whole(volume);
+          if (are_discs)
+            continue;
+          std::string sizes;
+          for (const auto &[root, size] : pieces[body])
+            sizes += (sizes.empty() ? "" : ", ") + std::to_string(size);
+          throw MeshError(
+            "Body '" + mesh.body_names[body] + "' is in " + std::to_string(pieces[body].size()) + " pieces that share no node, of " +
+              sizes + " elements",
+            where,
+            "join them (Coherence, BooleanUnion or common curves) or tie their faces by Contact/Tied; give every pin a physical "
+            "volume of its own, and each of several discs one that begins with 'disc_' and a surface in Mounts/Elastic mounts");
+        }
     }
 
     /// Nodes of a named surface, by the body they belong to.
@@ -119,81 +131,6 @@ namespace Squeal
         for (const unsigned int b : others)
           nearest = std::min(nearest, mesh.points[a].distance(mesh.points[b]));
       return nearest;
-    }
-    // ------------------------------------------------------- curved elements
-
-    /// Refuses nodes of edges so far off their middles that the edge turns back or bulges beyond a half circle.
-    void check_middles(const Mesh &mesh)
-    {
-      constexpr double           farthest = 0.5; // of the edge's length
-      std::set<unsigned int>     off;
-      std::optional<std::size_t> first;
-      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
-        {
-          const Mesh::Cell &cell    = mesh.cells[element];
-          std::size_t       on_edge = topology(cell.shape).corners.size();
-          for (const auto &[a, b] : topology(cell.shape).edges)
-            {
-              const unsigned int node = cell.nodes[on_edge++];
-              const Mesh::Point &p = mesh.corner(cell, a), &q = mesh.corner(cell, b);
-              if (mesh.points[node].distance(p + (q - p) / 2.) <= farthest * p.distance(q))
-                continue;
-              off.insert(node);
-              first = first.value_or(element);
-            }
-        }
-      if (first)
-        throw MeshError(
-          text(off.size(), off.size() == 1 ? " second-order node lies" : " second-order nodes lie",
-               " off the middle of the edge by more than half of its length; one of them is at ", at_point(mesh.points[*off.begin()])),
-          describe(mesh, *first), "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
-    }
-
-    /// Refuses edges and quadrilaterals whose middle nodes are not those of their neighbours, or are corners elsewhere: they would move apart.
-    void check_shared_middles(const Mesh &mesh)
-    {
-      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order, of edges each twice
-      std::vector<bool>                                   is_corner(mesh.points.size(), false);
-      std::set<std::size_t>                               unmatched; // elements
-      for (const Mesh::Cell &cell : mesh.cells)
-        for (unsigned int v = 0; v < topology(cell.shape).corners.size(); ++v)
-          is_corner[cell.nodes[v]] = true;
-      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
-        {
-          const Mesh::Cell &cell  = mesh.cells[element];
-          const auto        check = [&](std::array<unsigned int, 4> corners, const unsigned int middle) {
-            std::sort(corners.begin(), corners.end());
-            if (is_corner[middle] || middles.emplace(corners, middle).first->second != middle)
-              unmatched.insert(element);
-          };
-          std::size_t on_edge = topology(cell.shape).corners.size();
-          for (const auto &[a, b] : topology(cell.shape).edges)
-            check({{cell.nodes[a], cell.nodes[a], cell.nodes[b], cell.nodes[b]}}, cell.nodes[on_edge++]);
-          for (unsigned int f = 0; f < topology(cell.shape).faces.size(); ++f)
-            if (const auto &numbers = nodes_of_face(cell.shape, 2, f); numbers.size() == 9)
-              check({{cell.nodes[numbers[0]], cell.nodes[numbers[1]], cell.nodes[numbers[2]], cell.nodes[numbers[3]]}},
-                    cell.nodes[numbers[8]]);
-        }
-      if (!unmatched.empty())
-        throw MeshError(text(unmatched.size(), " of ", mesh.cells.size(),
-                             " elements share corners with neighbours, but not the second-order nodes between these"),
-                        describe(mesh, *unmatched.begin()),
-                        "merge the second-order nodes as well as the corners, and mesh neighbours with elements of one size");
-    }
-
-    void check_curved(const Mesh &mesh)
-    {
-      check_shared_middles(mesh);
-      check_middles(mesh);
-      std::vector<std::size_t> inverted;
-      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
-        if (!(worst_determinant(mesh, mesh.cells[element]) > 0.))
-          inverted.push_back(element);
-      if (!inverted.empty())
-        throw MeshError(text(inverted.size(), " of ", mesh.cells.size(), inverted.size() == 1 ? " elements is" : " elements are",
-                             " folded by second-order nodes: the Jacobian determinant is negative or zero"),
-                        describe(mesh, inverted[0]),
-                        "use smaller elements where surfaces curve, or let Gmsh straighten them (Mesh.HighOrderOptimize = 1)");
     }
 
     /// The nodes of a cell's mirror image, one for each node: bottom and top exchanged, or two coordinates of the base.
@@ -242,7 +179,7 @@ namespace Squeal
       throw MeshError(text(quality.n_bad, " of ", mesh.cells.size(), quality.n_bad == 1 ? " elements is" : " elements are",
                            " inverted or degenerate; the worst one has scaled Jacobian ", quality.worst_scaled_jacobian, ", at least ",
                            smallest_scaled_jacobian, " is needed"),
-                      describe(mesh, quality.worst_element),
+                      describe_cell(mesh, quality.worst_element),
                       "change the element size or the number of nodes per pin face; keep pins away from "
                       "edges and from each other, and in a mesh of your own correct these elements, flat tetrahedra of Gmsh by "
                       "Mesh.Algorithm3D = 10 or another size");
@@ -264,8 +201,8 @@ namespace Squeal
       }
     if (twins)
       throw MeshError(text(mesh.cells.size() - known.size(), " of ", mesh.cells.size(),
-                           " elements have the same nodes as others, the first one is ", describe(mesh, twins->second), ", the other one ",
-                           describe(mesh, twins->first)),
+                           " elements have the same nodes as others, the first one is ", describe_cell(mesh, twins->second),
+                           ", the other one ", describe_cell(mesh, twins->first)),
                       where, "remove elements that occur twice, for example those of a volume that was meshed or exported twice");
 
     const std::vector<CellFace> faces = all_faces(mesh);
@@ -275,7 +212,7 @@ namespace Squeal
         elements.insert({faces[i].cell, faces[i + 1].cell, faces[i + 2].cell});
     if (!elements.empty())
       throw MeshError(text("More than two elements share a face; this concerns ", elements.size(), " elements, the first one is ",
-                           describe(mesh, *elements.begin())),
+                           describe_cell(mesh, *elements.begin())),
                       where, "remove elements that overlap");
   }
 
@@ -304,7 +241,7 @@ namespace Squeal
           const auto element = std::find_if(reordered.begin(), reordered.end(),
                                             [&](const std::size_t e) { return e == faces[i].cell || e == faces[i + 1].cell; });
           throw MeshError("An element is inverted: it and its neighbour lie on the same side of their common face",
-                          describe(mesh, element == reordered.end() ? reordered[0] : *element),
+                          describe_cell(mesh, element == reordered.end() ? reordered[0] : *element),
                           "correct the nodes of this element, or let no two elements overlap");
         }
     return reordered.size();
@@ -358,7 +295,7 @@ namespace Squeal
     for (const std::string &name : needed)
       if (with_faces.count(name) == 0)
         throw MeshError("There is no face on a physical surface '" + name + "'; the surfaces are: " + list(mesh.surface_names), where,
-                        "give the surface this name, or say in Contact/Pairs which surfaces rub");
+                        "give the surface this name, or correct the names in Contact/Pairs and Contact/Tied");
 
     // Named faces are outer faces of volumes of their kind
     const std::vector<CellFace> faces = all_faces(mesh);
@@ -384,7 +321,7 @@ namespace Squeal
 
   void check_bodies(const Mesh &mesh, const std::vector<std::string> &mounted_surfaces, const std::string &where)
   {
-    check_connected(mesh, where);
+    check_connected(mesh, mounted_surfaces, where);
 
     const std::vector<unsigned int> body_of_node = body_of_nodes(mesh);
     const std::set<unsigned int>    disc         = nodes_by_body(mesh, body_of_node, PhysicalNames::disc_contact)[0];

@@ -100,9 +100,10 @@ namespace Squeal
         if (group.dimension == 2)
           {
             if (std::find(known.begin(), known.end(), group.name) == known.end())
-              throw MeshError("There is a physical surface '" + group.name + "' that nothing uses", where,
-                              "name it in Contact/Pairs or Mounts/Elastic mounts, or take the name away; known names of surfaces: " +
-                                boost::algorithm::join(known, ", "));
+              throw MeshError(
+                "There is a physical surface '" + group.name + "' that nothing uses", where,
+                "name it in Contact/Pairs, Contact/Tied or Mounts/Elastic mounts, or take the name away; known names of surfaces: " +
+                  boost::algorithm::join(known, ", "));
             add_group(all, group, names, where);
           }
     }

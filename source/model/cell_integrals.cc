@@ -12,11 +12,12 @@ namespace Squeal
 
   namespace
   {
-    /// A free dof of an element, and its place among the rows of this process; -1 for those of others.
+    /// A free dof of an element, or of masters of its tied nodes, and its place among the rows of this process; -1 for those of others.
     struct FreeDof
     {
       unsigned int in_element;
       int          number, row;
+      double       weight; ///< in the element's dof
     };
 
     /// An element that contributes to rows of this process.
@@ -35,8 +36,9 @@ namespace Squeal
           std::vector<FreeDof> dofs;
           for (unsigned int i = 0; i < element->nodes.size(); ++i)
             for (unsigned int c = 0; c < 3; ++c)
-              if (const int number = model.nodes()[element->nodes[i]].dofs[c]; number >= 0)
-                dofs.push_back({3 * i + c, number, model.free_map().place(number)});
+              model.nodes()[element->nodes[i]].for_each_dof(c, [&](const int number, const double weight) {
+                dofs.push_back({3 * i + c, number, model.free_map().place(number), weight});
+              });
           if (std::any_of(dofs.begin(), dofs.end(), [](const FreeDof &dof) { return dof.row >= 0; }))
             result.push_back({element, std::move(dofs)});
         }
@@ -53,6 +55,7 @@ namespace Squeal
           for (const FreeDof &dof : dofs)
             columns.push_back(dof.number);
           std::sort(columns.begin(), columns.end());
+          columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
           for (const FreeDof &dof : dofs)
             if (dof.row >= 0)
               rows.add_entries(dof.row, columns.begin(), columns.end(), true);
@@ -96,7 +99,7 @@ namespace Squeal
               for (const FreeDof &i : contributions[first + e].dofs)
                 if (i.row >= 0)
                   for (const FreeDof &j : contributions[first + e].dofs)
-                    matrices[k].add(i.row, j.number, found[k][e](i.in_element, j.in_element));
+                    matrices[k].add(i.row, j.number, i.weight * j.weight * found[k][e](i.in_element, j.in_element));
           });
         }
     }

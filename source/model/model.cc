@@ -1,5 +1,7 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/geometry/second_order.h>
+#include <squeal/geometry/tied_faces.h>
 #include <squeal/linear_algebra/communication.h>
 #include <squeal/model/model.h>
 
@@ -10,7 +12,6 @@
 #include <deal.II/lac/sparsity_tools.h>
 
 #include <boost/algorithm/string/join.hpp>
-#include <boost/serialization/vector.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -80,8 +81,9 @@ namespace Squeal
     class Division
     {
     public:
-      Division(const Mesh &mesh, const unsigned int n_processes)
+      Division(const Mesh &mesh, const SlaveRows &masters, const unsigned int n_processes)
         : mesh(mesh)
+        , masters(masters)
         , process_of_cell(mesh.cells.size(), 0)
       {
         find_faces();
@@ -115,7 +117,7 @@ namespace Squeal
             const Mesh::Cell &cell   = mesh.cells[c];
             const bool        is_own = process_of_cell[c] == process;
             has_cell[c]              = is_own || std::any_of(cell.nodes.begin(), cell.nodes.end(),
-                                                             [&](const unsigned int node) { return process_of_node[node] == process; });
+                                                             [&](const unsigned int node) { return has_dofs_of(node, process); });
             if (has_cell[c])
               result.cells.push_back(
                 {{cell.shape, places(cell.nodes), mesh.body_of(cell), static_cast<std::int64_t>(c), is_own}, cell.volume});
@@ -137,10 +139,20 @@ namespace Squeal
 
     private:
       const Mesh                                             &mesh;
-      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces; ///< outer ones with their surfaces
+      const SlaveRows                                        &masters; ///< of tied nodes
+      std::vector<std::pair<CellFace, std::vector<unsigned>>> faces;   ///< outer ones with their surfaces
       std::vector<unsigned int>                               process_of_cell, process_of_node;
       std::vector<Node>                                       nodes_of_mesh;
       std::vector<int>                                        n_dofs_of_process;
+
+      /// Whether the displacement of a node has a part in rows of a process.
+      bool has_dofs_of(const unsigned int node, const unsigned int process) const
+      {
+        const auto tied = masters.find(node);
+        return tied == masters.end() ? process_of_node[node] == process :
+                                       std::any_of(tied->second.begin(), tied->second.end(),
+                                                   [&](const auto &master) { return process_of_node[master.first] == process; });
+      }
 
       void find_faces()
       {
@@ -189,7 +201,8 @@ namespace Squeal
                                     {{0, 0, 0}},
                                     mesh.body_of(mesh.cells[c]),
                                     number++,
-                                    false};
+                                    false,
+                                    {}};
               process_of_node[n] = std::min(process_of_node[n], process_of_cell[c]);
             }
       }
@@ -201,6 +214,14 @@ namespace Squeal
           if (face.surface == static_cast<std::size_t>(clamp - mesh.surface_names.begin()))
             for (const unsigned int node : face.nodes)
               nodes_of_mesh[node].dofs = {{-1, -1, -1}};
+        for (const auto &[slave, row] : masters)
+          {
+            Node &node = nodes_of_mesh[slave];
+            if (node.dofs[0] < 0)
+              throw MeshError(text("a tied node is clamped by pin_clamp, at (", mesh.points[slave], ") m"), "parameter Contact/Tied",
+                              "exchange the surfaces of the tie, or keep tied and clamped faces apart");
+            node.dofs = {{-1, -1, -1}};
+          }
 
         std::vector<unsigned int> order(mesh.points.size());
         std::iota(order.begin(), order.end(), 0);
@@ -216,6 +237,9 @@ namespace Squeal
                 dof = next++;
                 ++n_dofs_of_process[process_of_node[node]];
               }
+        for (const auto &[slave, row] : masters)
+          for (const auto &[master, weight] : row)
+            nodes_of_mesh[slave].masters.push_back({nodes_of_mesh[master].dofs, weight});
       }
     };
   } // namespace
@@ -238,7 +262,9 @@ namespace Squeal
         // Process 0 alone has all cells, and of the parts of other processes one at a time
         const unsigned int n        = n_processes(communicator);
         const Mesh         with_all = degree() == 2 ? second_order(mesh) : mesh;
-        const Division     division(with_all, n);
+        const TiedNodes    tied     = tied_nodes(with_all);
+        const Division     division(with_all, tied.masters, n);
+        tied_notes = tied.notes;
         n_all_dofs = 3 * with_all.points.size();
         for (unsigned int process = 1; process < n; ++process)
           send(process, division.part(process), communicator);
@@ -283,10 +309,5 @@ namespace Squeal
       if (std::count(face.surfaces.begin(), face.surfaces.end(), it - surfaces.begin()) > 0)
         result.push_back(&face);
     return result;
-  }
-
-  bool Model::has_surface(const std::string &name) const
-  {
-    return std::find(surfaces.begin(), surfaces.end(), name) != surfaces.end();
   }
 } // namespace Squeal

@@ -46,9 +46,8 @@ namespace Squeal
       const RowMap                                &map = model.free_map();
       std::vector<dealii::types::global_dof_index> dofs;
       for (const Node &node : model.nodes())
-        for (const int dof : node.dofs)
-          if (dof >= 0)
-            dofs.push_back(dof);
+        for (int d = 0; d < 3; ++d)
+          node.for_each_dof(d, [&](const int dof, double) { dofs.push_back(dof); });
       std::sort(dofs.begin(), dofs.end());
       dealii::IndexSet own(map.n()), relevant(map.n());
       if (map.n_local() > 0)
@@ -72,10 +71,7 @@ namespace Squeal
       Vectors<Number> result(mesh.nodes.size());
       for (std::size_t i = 0; i < result.size(); ++i)
         for (int d = 0; d < 3; ++d)
-          {
-            const int dof = mesh.nodes[i].dofs[d];
-            result[i][d]  = dof >= 0 ? values(dof) : Number();
-          }
+          mesh.nodes[i].for_each_dof(d, [&](const int dof, const double weight) { result[i][d] += weight * values(dof); });
       return result;
     }
 
@@ -260,7 +256,7 @@ namespace Squeal
     // Clamped dofs follow their backplate
     for (std::size_t i = 0; i < values.size(); ++i)
       for (int d = 0; d < 3; ++d)
-        if (const Node &node = stage.mesh.nodes[i]; node.dofs[d] < 0)
+        if (const Node &node = stage.mesh.nodes[i]; node.dofs[d] < 0 && node.masters.empty())
           values[i][d] = state.backplates[node.component][d];
     write(stage, "sliding_state", {}, {vector_field("displacement", values, [](const double u) { return u; })});
 

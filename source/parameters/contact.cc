@@ -13,7 +13,7 @@ namespace Squeal
 {
   namespace
   {
-    constexpr const char *where = "parameter Contact/Pairs";
+    constexpr const char *where = "parameter Contact/Pairs", *where_tied = "parameter Contact/Tied";
 
     std::string print(const std::vector<ContactPair> &pairs)
     {
@@ -64,6 +64,31 @@ namespace Squeal
         refuse("nothing rubs");
       return pairs;
     }
+
+    std::vector<TiedPair> parse_tied(const std::string &text)
+    {
+      using dealii::Utilities::split_string_list;
+      std::vector<TiedPair> result;
+      for (const std::string &entry : split_string_list(text, ';'))
+        {
+          if (entry.empty())
+            continue;
+          const auto names = split_string_list(entry, '/');
+          if (names.size() != 2 || names[0].empty() || names[1].empty() || names[0] == names[1])
+            throw ParameterError(in_quotes(entry) + " is not a pair of surfaces", where_tied,
+                                 "write surface / other surface; ..., such as lining_back / backplate_front");
+          result.push_back({names[0], names[1]});
+        }
+      return result;
+    }
+
+    std::string print_tied(const std::vector<TiedPair> &pairs)
+    {
+      std::vector<std::string> texts;
+      for (const TiedPair &pair : pairs)
+        texts.push_back(pair.slave + " / " + pair.master);
+      return boost::algorithm::join(texts, "; ");
+    }
   } // namespace
 
   void ContactParameters::declare(Declarations &declarations)
@@ -76,5 +101,26 @@ namespace Squeal
       "on each other without it. Their meshes need not match: faces whose nodes do not coincide are coupled by mortar elements. Units: "
       "none, N/m^3.",
       [this] { return print(pairs); }, [this](const std::string &text) { pairs = parse(text); });
+    declarations.add_text(
+      "Tied",
+      "Surfaces that are bonded, as a list `surface / other surface; ...`: nodes of the first one follow the second one, and the volumes "
+      "become one body. Their meshes need not match; the first should be the smaller, finer or softer one. Units: none.",
+      [this] { return print_tied(tied); }, [this](const std::string &text) { tied = parse_tied(text); });
+  }
+
+  void ContactParameters::check() const
+  {
+    for (const TiedPair &one : tied)
+      {
+        for (const ContactPair &pair : pairs)
+          for (const std::string &surface : {one.slave, one.master})
+            if (surface == pair.disc || surface == pair.pin)
+              throw ParameterError("surface " + in_quotes(surface) + " is tied, and rubs according to Contact/Pairs", where_tied,
+                                   "remove it from one of the two lists");
+        for (const TiedPair &other : tied)
+          if (&one != &other && one.slave == other.slave)
+            throw ParameterError("surface " + in_quotes(one.slave) + " is the first of two ties", where_tied,
+                                 "let each surface follow one other surface");
+      }
   }
 } // namespace Squeal

@@ -332,6 +332,7 @@ namespace Squeal
   void Parameters::check() const
   {
     geometry.check();
+    contact.check();
     materials.check();
     discretization.check();
     check_contact_state();

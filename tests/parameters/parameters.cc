@@ -168,10 +168,10 @@ TEST(Declarations, SayWhatEveryKindAccepts)
         free_texts.push_back(parameter.path);
     }
   EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Materials/Volumes", "Mounts/Elastic mounts", "Mounts/Dashpots",
-                                                  "Mounts/Added masses", "Contact/Pairs", "Steady sliding/Loads", "Steady sliding/Gaps",
-                                                  "Damping/Modal damping ratio", "Reduction/Bases", "Reduction/Component modes",
-                                                  "Accuracy study/Elements", "Accuracy study/Outlines", "Accuracy study/Bases",
-                                                  "Designs/Variables", "Designs/File"}));
+                                                  "Mounts/Added masses", "Contact/Pairs", "Contact/Tied", "Steady sliding/Loads",
+                                                  "Steady sliding/Gaps", "Damping/Modal damping ratio", "Reduction/Bases",
+                                                  "Reduction/Component modes", "Accuracy study/Elements", "Accuracy study/Outlines",
+                                                  "Accuracy study/Bases", "Designs/Variables", "Designs/File"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
@@ -225,6 +225,9 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                   {"Contact/Pairs=top / top", {"would rub itself"}},
                   {"Contact/Pairs=top / pad; top / pad: 2", {"is given twice"}},
                   {"Contact/Pairs=", {"nothing rubs"}},
+                  {"Contact/Tied=back / back", {"`back / back` is not a pair of surfaces"}},
+                  {"Contact/Tied=back / disc_contact", {"`disc_contact` is tied, and rubs"}},
+                  {"Contact/Tied=back / front; back / side", {"`back` is the first of two ties"}},
                   {mounts + "=disc_bore: 1, 2", {"is not an elastic mount"}},
                   {mounts + "=disc_bore: 1, two, 3", {"surface disc_bore", "`two` is not a finite number"}},
                   {mounts + "=disc_bore: 1, -2, 3", {"not a finite value >= 0"}},

@@ -53,15 +53,20 @@ def abaqus(mesh):
     return "\n".join(lines) + "\n"
 
 
-def nastran(mesh):
-    """Millimetres in free format; bodies and surfaces, the latter as shells, by the numbers of their properties."""
-    numbers = {name: i for i, name in enumerate([*mesh.bodies(), *mesh.surfaces()], 1)}
+def bulk(mesh, elements, groups):
+    """Nastran cards in free format, millimetres: (card, name of the group, nodes) of each element, whose property is the number of its group."""
+    numbers = {name: i for i, name in enumerate(groups, 1)}
     lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
-    cells = [("CHEXA", body, nodes) for body, nodes in mesh.cells] + [("CQUAD4", name, nodes) for names, nodes in mesh.faces for name in names]
-    for i, (card, name, nodes) in enumerate(cells, 1):
+    for i, (card, name, nodes) in enumerate(elements, 1):
         words = [card, str(i), str(numbers[name]), *(str(n + 1) for n in nodes)]
-        lines += [",".join(words[:9]) + (",+" if len(words) > 9 else "")] + ([",".join(["+", *words[9:]])] if len(words) > 9 else [])
+        lines += [",".join(words[:9])] + ([",".join(["+", *words[9:]])] if len(words) > 9 else [])
     return "\n".join([*lines, "ENDDATA", ""]), numbers
+
+
+def nastran(mesh):
+    """Bodies and surfaces, the latter as shells."""
+    cells = [("CHEXA", body, nodes) for body, nodes in mesh.cells]
+    return bulk(mesh, cells + [("CQUAD4", name, nodes) for names, nodes in mesh.faces for name in names], [*mesh.bodies(), *mesh.surfaces()])
 
 
 def assignments(numbers, mesh):
@@ -87,14 +92,9 @@ def abaqus_tetrahedra(mesh):
 
 
 def nastran_tetrahedra(mesh):
-    """Millimetres; CTETRA of ten nodes, whose middle nodes are those of Abaqus; surfaces as CTRIA6."""
-    numbers = {name: i for i, name in enumerate([*mesh.volumes(), *mesh.surfaces()], 1)}
-    lines = ["BEGIN BULK"] + [f"GRID,{i},," + ",".join(repr(1e3 * x) for x in point) for i, point in enumerate(mesh.points, 1)]
-    cells = [("CTETRA", volume, (*c[:8], c[9], c[8])) for volume, c in mesh.cells] + [("CTRIA6", *face) for face in mesh.faces]
-    for i, (card, name, nodes) in enumerate(cells, 1):
-        words = [card, str(i), str(numbers[name]), *(str(n + 1) for n in nodes)]
-        lines += [",".join(words[:9])] + ([",".join(["+", *words[9:]])] if len(words) > 9 else [])
-    return "\n".join([*lines, "ENDDATA", ""]), numbers
+    """CTETRA of ten nodes, whose middle nodes are those of Abaqus; surfaces as CTRIA6."""
+    cells = [("CTETRA", volume, (*c[:8], c[9], c[8])) for volume, c in mesh.cells]
+    return bulk(mesh, cells + [("CTRIA6", *face) for face in mesh.faces], [*mesh.volumes(), *mesh.surfaces()])
 
 
 # N, mm, t, s; as BRAKE

@@ -7,7 +7,7 @@ import re
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from hex_mesh import PARAMETERS, disc_with_pads
 from program import ProgramTest, eigenvalues
-from tet_mesh import BRAKE, brake
+from tet_mesh import BRAKE, brake, clutch
 
 
 def renamed(mesh, old, *new, where=lambda nodes: True):
@@ -160,6 +160,30 @@ def turned(angle):
     return lambda x, y, z: (c * x - s * y, s * x + c * y, z)
 
 
+def part_pad(mesh, pad, of_nodes=slice(0, 10)):
+    """The backplate has nodes of its own where it meets the lining."""
+    lining, own = {node for volume, nodes in mesh.cells if volume == f"{pad}_lining" for node in nodes[of_nodes]}, {}
+    for index, (volume, nodes) in enumerate(mesh.cells):
+        if volume == f"{pad}_backplate":
+            for node in lining.intersection(nodes) - own.keys():
+                own[node] = len(mesh.points)
+                mesh.points.append(mesh.points[node])
+            mesh.cells[index] = volume, [own.get(node, node) for node in nodes]
+    mesh.faces = [(name, [own.get(node, node) for node in nodes] if name == f"{pad}_front" else nodes) for name, nodes in mesh.faces]
+
+
+def bonded_brake(pad_parts=None):
+    """Backplates are meshed separately, with other divisions than the linings if these are given, and have a face to tie."""
+    mesh = brake(backplate_parts=pad_parts, has_bond=True)
+    if pad_parts is None:
+        for pad in ("pad_outer", "pad_inner"):
+            part_pad(mesh, pad)
+    return mesh
+
+
+TIED = "Contact/Tied=pad_outer_lining_back / pad_outer_front; pad_inner_lining_back / pad_inner_front"
+
+
 class Tetrahedra(ProgramTest):
     """A brake of quadratic tetrahedra whose pads do not match the disc."""
 
@@ -180,6 +204,46 @@ class Tetrahedra(ProgramTest):
             with self.subTest(n_processes=n_processes):
                 several = self.run_scene(f"out_{n_processes}", file=self.write_brake(brake()), n_processes=n_processes)
                 self.assert_same_eigenvalues(eigenvalues(several), expected)
+
+    def test_tied_backplates(self):
+        expected = eigenvalues(self.run_scene("out_one_body", file=self.write_brake(brake())))
+        file = self.write_brake(bonded_brake(), "bonded")
+        for n_processes in (1, 2):
+            with self.subTest(n_processes=n_processes):
+                tied = self.run_scene(f"out_tied_{n_processes}", TIED, "Output/Mode shapes=unstable", file=file, n_processes=n_processes)
+                self.assert_same_eigenvalues(eigenvalues(tied), expected)
+        # Faces that do not match converge to the same: both are coarse
+        other = eigenvalues(self.run_scene("out_other", TIED, file=self.write_brake(bonded_brake(5), "bonded_5")))
+        self.assertEqual(len(other), len(expected))
+        self.assert_same_eigenvalues(other, expected, 0.02)
+
+    def test_two_discs(self):
+        pairs = "Contact/Pairs=rear_face / pad_rear; front_face / pad_front"
+        held = "Mounts/Elastic mounts=disc_rear_hub: 1e12, 1e12, 1e12; disc_front_hub: {0}, {0}, {0}; pad_back: 2e10, 2e10, 2e10".format
+        volumes = "Materials/Volumes="
+        file = self.write_brake(clutch(), "clutch")
+        values = eigenvalues(self.run_scene("out_clutch", pairs, held("1e12"), volumes, file=file))
+        # Mirrored about the plane between the discs it is the same
+        mirrored = self.write_brake(clutch().moved(lambda x, y, z: (x, y, -z)), "mirrored")
+        self.assert_same_eigenvalues(eigenvalues(self.run_scene("out_mirrored", pairs, held("1e12"), volumes, file=mirrored)), values)
+        other = eigenvalues(self.run_scene("out_soft", pairs, held("1e11"), volumes, file=file))
+        self.assertGreater(max(abs(a - b) for a, b in zip(values, other)), 1)
+        loose = clutch()
+        loose.faces = [face for face in loose.faces if face[0] != "disc_front_hub"]
+        self.dry_run_refused(["'disc' is in 2 pieces", "each of several discs"], pairs, held("1e12").replace("disc_front_hub: 1e12, 1e12, 1e12; ", ""),
+                             volumes, file=self.write_brake(loose, "loose"))
+
+    def test_ties_that_are_refused(self):
+        file = self.write_brake(bonded_brake(), "bonded")
+        for mentions, *overrides in (
+                (["'pad_outer_lining_back' that nothing uses", "Contact/Tied"],),
+                (["`pad_outer_face` is tied, and rubs"], "Contact/Tied=pad_outer_face / pad_outer_front"),
+                (["'pad_inner_fronts', which Contact/Tied names"], TIED + "s"),
+                (["`pad_outer_front` is not a pair"], "Contact/Tied=pad_outer_front")):
+            with self.subTest(mentions):
+                self.dry_run_refused(mentions, *overrides, file=file)
+        apart = bonded_brake(5).moved(lambda x, y, z: (x, y, z + 0.05), lambda volume: volume == "pad_outer_backplate")
+        self.dry_run_refused(["overlap by 0 m", "surfaces pad_outer_lining_back and pad_outer_front"], TIED, file=self.write_brake(apart, "apart"))
 
     def test_refusals(self):
         def spoiled(change):
@@ -204,16 +268,7 @@ class Tetrahedra(ProgramTest):
             return change
 
         def parted(of_nodes):
-            """The backplate has nodes of its own where it meets the lining."""
-            def change(mesh):
-                lining, own = {node for volume, nodes in mesh.cells if volume == "pad_outer_lining" for node in nodes[of_nodes]}, {}
-                for index, (volume, nodes) in enumerate(mesh.cells):
-                    if volume == "pad_outer_backplate":
-                        for node in lining.intersection(nodes) - own.keys():
-                            own[node] = len(mesh.points)
-                            mesh.points.append(mesh.points[node])
-                        mesh.cells[index] = volume, [own.get(node, node) for node in nodes]
-            return change
+            return lambda mesh: part_pad(mesh, "pad_outer", of_nodes)
 
         def with_corner(value):
             def change(mesh):
@@ -257,7 +312,7 @@ class Tetrahedra(ProgramTest):
     def test_notes(self):
         fine = brake(n_parts=60, n_rings=8, pad_parts=2)
         for mesh, note in ((brake().moved(lambda x, y, z: (x, y, z + 0.002), lambda volume: volume.startswith("pad_outer")), "up to 0.002 m"),
-                           (fine, "times as large as those of the disc")):
+                           (fine, "pad_outer_face are up to")):
             with self.subTest(note):
                 process = self.dry_run(file=self.write_brake(mesh, "noted"))
                 self.assertEqual((process.returncode, process.stderr), (0, ""))

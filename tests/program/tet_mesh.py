@@ -101,16 +101,33 @@ class TetMesh:
         write(path, version, {**sections, "Elements": rows})
 
 
-def brake(n_parts=12, n_rings=2, pad_parts=3):
+def brake(n_parts=12, n_rings=2, pad_parts=3, backplate_parts=None, has_bond=False):
     """A ring and two pads of lining and backplate, whose nodes are at other angles and radii than the disc's."""
     mesh, t = TetMesh(), 0.012
     radii = [0.08 + 0.06 * i / n_rings for i in range(n_rings + 1)]
     mesh.block("disc", radii, angles(n_parts), [-t, t], {"-a": "disc_hub", "+c": "disc_top", "-c": "disc_bottom"}, is_ring=True)
-    span = [math.radians(10 + 50 * i / pad_parts) for i in range(pad_parts + 1)]
+
+    def span(n):
+        return [math.radians(10 + 50 * i / n) for i in range(n + 1)]
+
     for pad, sign in (("pad_outer", 1), ("pad_inner", -1)):
         near, far = ("-c", "+c") if sign > 0 else ("+c", "-c")
-        for part, low, high, sides in (("lining", t, t + 0.012, {near: f"{pad}_face"}), ("backplate", t + 0.012, t + 0.018, {far: f"{pad}_back"})):
-            mesh.block(f"{pad}_{part}", [0.09, 0.12, 0.135], span, sorted((sign * low, sign * high)), sides, body=pad)
+        lining, backplate = {near: f"{pad}_face"}, {far: f"{pad}_back"}
+        if has_bond:
+            lining[far], backplate[near] = f"{pad}_lining_back", f"{pad}_front"
+        mesh.block(f"{pad}_lining", [0.09, 0.12, 0.135], span(pad_parts), sorted((sign * t, sign * (t + 0.012))), lining, body=pad)
+        mesh.block(f"{pad}_backplate", [0.09, 0.12, 0.135], span(backplate_parts or pad_parts), sorted((sign * (t + 0.012), sign * (t + 0.018))), backplate,
+                   body=f"{pad}_backplate" if backplate_parts else pad)
+    return mesh
+
+
+def clutch():
+    """Two discs on one axis and a pad between them, which rubs both."""
+    mesh, radii = TetMesh(), [0.08, 0.11, 0.14]
+    for disc, low, high, face, side in (("disc_rear", -0.02, -0.008, "rear_face", "+c"), ("disc_front", 0.008, 0.02, "front_face", "-c")):
+        mesh.block(disc, radii, angles(12), [low, high], {"-a": f"{disc}_hub", side: face}, body=disc, is_ring=True)
+    mesh.block("pad", [0.09, 0.12, 0.135], [math.radians(10 + 12 * i) for i in range(5)], [-0.008, 0.008],
+               {"-c": "pad_rear", "+c": "pad_front", "+a": "pad_back"})
     return mesh
 
 

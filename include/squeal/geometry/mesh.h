@@ -1,6 +1,7 @@
 #pragma once
 
 #include <squeal/geometry/shape.h>
+#include <squeal/parameters/contact.h>
 
 #include <boost/container/static_vector.hpp>
 #include <deal.II/base/point.h>
@@ -42,8 +43,9 @@ namespace Squeal
     std::vector<Face>         faces; ///< on named surfaces only; once for each name that a face bears
     std::vector<std::string>  volume_names;
     std::vector<std::string>  body_names;     ///< the disc's first
-    std::vector<unsigned int> body_of_volume; ///< of each volume: volumes that share nodes are one body
+    std::vector<unsigned int> body_of_volume; ///< of each volume, see find_bodies()
     std::vector<std::string>  surface_names;
+    std::vector<TiedPair>     tied;         ///< surfaces that are bonded
     std::vector<std::string>  notes;        ///< what was corrected, for the user
     std::vector<std::size_t>  element_tags; ///< of the cells in the file, for messages; empty without one
 
@@ -66,11 +68,14 @@ namespace Squeal
   std::uint64_t checksum(const Mesh &mesh);
 
   /**
-   * Finds the bodies: volumes that share nodes, and all volumes of the disc, which comes first; the others follow in the order of their first
+   * Finds the bodies: volumes that share nodes or are tied, and all volumes of the disc, which comes first; the others follow in the order of their first
    * volumes. A body bears the name of its volume; one of several volumes what their names have in common up to the end of a word, as `pin_1`
    * of `pin_1_lining` and `pin_1_backplate`, or, where nothing is or another part has that name, the name of the first. The disc is `disc`.
    */
   void find_bodies(Mesh &mesh);
+
+  /// Pairs of nodes that join what Mesh::tied bonds.
+  std::vector<std::pair<unsigned int, unsigned int>> tied_links(const Mesh &mesh);
 
   /// Index of the body that each node belongs to.
   std::vector<unsigned int> body_of_nodes(const Mesh &mesh);
@@ -120,6 +125,9 @@ namespace Squeal
     double relative; ///< to the extent of the cell across that face [-]
     double length;   ///< [m]
   };
+
+  /// Number, volume and place of a cell, for messages.
+  std::string describe_cell(const Mesh &mesh, std::size_t cell);
 
   /// Mean of the corners [m].
   Mesh::Point centre(const Mesh &mesh, const Mesh::Cell &cell);

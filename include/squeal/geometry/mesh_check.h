@@ -33,9 +33,8 @@ namespace Squeal
    * The quality of a mesh that can be computed on.
    *
    * Throws MeshError for elements below smallest_scaled_jacobian, saying how
-   * many there are, which one is the worst and where it is, and as mesh_quality() does; in degree 2 also for nodes in the
-   * middle of edges and faces that neighbours do not share, for those off the middle of their edge by more than half of its length, and for cells whose isoparametric map has a Jacobian determinant that is not positive at
-   * quadrature points or negative at nodes.
+   * many there are, which one is the worst and where it is, and as mesh_quality() does; in degree 2 also
+   * as check_curved() does.
    */
   MeshQuality check_mesh(const Mesh &mesh);
 

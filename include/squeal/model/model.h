@@ -5,6 +5,7 @@
 #include <squeal/linear_algebra/row_map.h>
 
 #include <boost/serialization/array.hpp>
+#include <boost/serialization/vector.hpp>
 
 #include <mpi.h>
 
@@ -15,19 +16,44 @@
 
 namespace Squeal
 {
-  /// One finite element node: a support point of the displacement, with its three dofs.
-  struct Node
+  /// Dofs of a node with its factor in a sum.
+  struct WeightedDofs
   {
-    std::array<double, 3> position;  ///< [m]
-    std::array<int, 3>    dofs;      ///< numbers among the free dofs; -1 where clamped
-    unsigned int          component; ///< 0: the disc; k ≥ 1: pin k
-    std::int64_t          number;    ///< tells the nodes of all processes apart; ascends in the order of the cells
-    bool                  is_own;    ///< every node is that of one process, which has the rows of its dofs
+    std::array<int, 3> dofs; ///< numbers among the free dofs; -1 where clamped
+    double             weight;
 
     template <class Archive>
     void serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &position &dofs &component &number &is_own;
+      archive &dofs &weight;
+    }
+  };
+
+  /// One finite element node: a support point of the displacement, with its three dofs.
+  struct Node
+  {
+    std::array<double, 3>     position;  ///< [m]
+    std::array<int, 3>        dofs;      ///< numbers among the free dofs; -1 where clamped or tied
+    unsigned int              component; ///< 0: the disc; k ≥ 1: pin k
+    std::int64_t              number;    ///< tells the nodes of all processes apart; ascends in the order of the cells
+    bool                      is_own;    ///< every node is that of one process, which has the rows of its dofs
+    std::vector<WeightedDofs> masters;   ///< of a tied node: u = Σ weight u of these; empty for others
+
+    /// Calls visit(dof, weight) for each free dof of which the displacement along axis @p direction is the weighted sum.
+    template <typename Visit>
+    void for_each_dof(const unsigned int direction, const Visit &visit) const
+    {
+      if (dofs[direction] >= 0)
+        visit(dofs[direction], 1.);
+      for (const WeightedDofs &master : masters)
+        if (master.dofs[direction] >= 0)
+          visit(master.dofs[direction], master.weight);
+    }
+
+    template <class Archive>
+    void serialize(Archive &archive, const unsigned int /*version*/)
+    {
+      archive &position &dofs &component &number &is_own &masters;
     }
   };
 
@@ -53,8 +79,8 @@ namespace Squeal
   };
 
   /**
-   * The discretised bodies: cells and outer faces on nodes with displacement dofs, numbered without the clamped ones, which never reach a
-   * matrix. Cells are isoparametric.
+   * The discretised bodies: cells and outer faces on nodes with displacement dofs, numbered without the clamped and the tied ones, which
+   * never reach a matrix. Cells are isoparametric.
    *
    * All is distributed: a process has its cells and those that meet at a node of its own, with their faces. Process 0 makes the parts.
    */
@@ -118,8 +144,6 @@ namespace Squeal
     /// Those of a named surface; throws MeshError naming the known surfaces if there is none of this name.
     std::vector<const Face *> faces_of(const std::string &surface) const;
 
-    bool has_surface(const std::string &name) const;
-
     /// Nodes of all processes in the order of their numbers, on process 0: for files of small models.
     std::vector<Node> gathered_nodes() const;
 
@@ -129,14 +153,20 @@ namespace Squeal
       return map;
     }
 
-    /// Number of all dofs, clamped ones included.
+    /// Number of all dofs, clamped and tied ones included.
     unsigned int n_dofs() const
     {
       return n_all_dofs;
     }
 
+    /// How tied faces were coupled, for the user; on process 0.
+    const std::vector<std::string> &notes() const
+    {
+      return tied_notes;
+    }
+
   private:
-    std::vector<std::string>  components, volumes, surfaces;
+    std::vector<std::string>  components, volumes, surfaces, tied_notes;
     std::vector<unsigned int> component_of_volume;
     Element                   element_type;
     MPI_Comm                  processes;

@@ -15,11 +15,21 @@ namespace Squeal
     double      normal_stiffness = 0.; ///< k of the contact [N/m³]; zero: nothing yields, the constraint
   };
 
-  /// What rubs what (section `Contact`).
+  /// Surfaces that are bonded: nodes of the slave move with the master.
+  struct TiedPair
+  {
+    std::string slave, master;
+  };
+
+  /// What rubs what, and what is bonded (section `Contact`).
   struct ContactParameters
   {
     std::vector<ContactPair> pairs = {{"disc_contact", "pin_contact"}};
+    std::vector<TiedPair>    tied;
 
     void declare(Declarations &declarations);
+
+    /// Throws ParameterError.
+    void check() const;
   };
 } // namespace Squeal

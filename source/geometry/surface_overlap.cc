@@ -1,5 +1,5 @@
 #include <squeal/base/exceptions.h>
-#include <squeal/contact/surface_overlap.h>
+#include <squeal/geometry/surface_overlap.h>
 
 #include <boost/container/small_vector.hpp>
 #include <boost/iterator/function_output_iterator.hpp>
@@ -72,8 +72,8 @@ namespace Squeal
 
     const FaceMatrix &coefficients(const SurfaceElement &element)
     {
-      static const std::array<FaceMatrix, 4> all = {find_coefficients(Shape::triangle, 1), find_coefficients(Shape::quadrilateral, 1),
-                                                    find_coefficients(Shape::triangle, 2), find_coefficients(Shape::quadrilateral, 2)};
+      static const FaceMatrix all[] = {find_coefficients(Shape::triangle, 1), find_coefficients(Shape::quadrilateral, 1),
+                                       find_coefficients(Shape::triangle, 2), find_coefficients(Shape::quadrilateral, 2)};
       return all[kind(element)];
     }
 
@@ -379,7 +379,7 @@ namespace Squeal
         const Eigen::Matrix<double, 3, 2> tangents = map * derivatives(in_plane(point.x));
         const Vector3d                    area     = point.weight * tangents.col(0).cross(tangents.col(1));
         result.functions += area.norm() * coefficients(element) * monomials(in_plane(point.x));
-        result.area_normal += dealii::Tensor<1, 3>({area[0], area[1], area[2]});
+        result.area_normal += area;
       }
     return result;
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/contact/mortar.h>
+#include <squeal/geometry/mortar.h>
 
 #include <Eigen/Core>
 
@@ -40,8 +40,8 @@ namespace Squeal
   /// Integrals over a whole element.
   struct WholeElement
   {
-    FaceVector           functions = FaceVector::Zero(); ///< ∫ N_i [m²]
-    dealii::Tensor<1, 3> area_normal;                    ///< ∫ n [m²]
+    FaceVector      functions   = FaceVector::Zero();      ///< ∫ N_i [m²]
+    Eigen::Vector3d area_normal = Eigen::Vector3d::Zero(); ///< ∫ n [m²]
   };
 
   WholeElement whole_element(const SurfacePatch &patch, const SurfaceElement &element);

@@ -1,6 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
-#include <squeal/contact/surface_overlap.h>
+#include <squeal/geometry/surface_overlap.h>
 
 #include <Eigen/Cholesky>
 
@@ -21,6 +21,12 @@ namespace Squeal
 
     /// Largest mean cosine between normals of surfaces that face each other.
     constexpr double largest_cosine = -0.5;
+
+    /// Largest gap over the mean size of the slave's faces, and the one from which a note mentions it: chords of curved faces leave less [-].
+    constexpr double touching_gap = 0.5, noted_gap = 0.05;
+
+    /// Size of slave faces over that of the master's from which the pressure of the slave oscillates [-].
+    constexpr double noted_coarseness = 3.;
 
     unsigned int n_corners(const SurfaceElement &element)
     {
@@ -81,7 +87,6 @@ namespace Squeal
     /// A slave node with what the elements there add up to.
     struct SlaveNode
     {
-      dealii::Tensor<1, 3>           area_normal;
       double                         whole = 0.; ///< ∫ Ñ_j over the elements
       double                         area  = 0.; ///< and over the overlap
       std::map<unsigned int, double> master;     ///< ∫ ψ_j N_l
@@ -169,7 +174,7 @@ namespace Squeal
                        const std::vector<SlaveNode>    &nodes,
                        const Transformation            &transformation)
     {
-      MortarRow row{node, nodes[node].area_normal / nodes[node].area_normal.norm(), 0., {}, {}, {}};
+      MortarRow row{node, 0., {}, {}, {}};
       for (const unsigned int j : group)
         row.area += nodes[j].area;
       std::map<unsigned int, double> slave, master, left_inverse;
@@ -215,14 +220,10 @@ namespace Squeal
     for (unsigned int e = 0; e < slave.elements.size(); ++e)
       {
         const SurfaceElement &element = slave.elements[e];
-        const WholeElement    whole   = whole_element(slave, element);
         const FaceMatrix      t       = transformation.of(element);
-        const FaceVector      areas   = t * whole.functions;
+        const FaceVector      areas   = t * whole_element(slave, element).functions;
         for (unsigned int j = 0; j < element.nodes.size(); ++j)
-          {
-            nodes[element.nodes[j]].whole += areas[j];
-            nodes[element.nodes[j]].area_normal += whole.area_normal;
-          }
+          nodes[element.nodes[j]].whole += areas[j];
         const double area = overlaps.elements[e].area();
         result.slave_area += areas.sum();
         result.overlap_area += area;
@@ -233,5 +234,29 @@ namespace Squeal
       result.rows.push_back(make_row(node, group, nodes, transformation));
     check(result, overlaps.mean_cosine, search_distance);
     return result;
+  }
+
+  double largest_gap(const SurfacePatch &slave)
+  {
+    double area = 0.;
+    for (const SurfaceElement &element : slave.elements)
+      area += whole_element(slave, element).functions.sum();
+    return touching_gap * std::sqrt(area / slave.elements.size());
+  }
+
+  std::vector<std::string> coupling_notes(const Mortar      &coupling,
+                                          const double       largest_gap,
+                                          const std::string &slave,
+                                          const std::string &master)
+  {
+    std::vector<std::string> notes = {text("coupled by mortar elements over ",
+                                           std::round(1000. * coupling.overlap_area / coupling.slave_area) / 10., " % of ",
+                                           coupling.slave_area, " m^2")};
+    if (coupling.largest_gap > noted_gap / touching_gap * largest_gap)
+      notes.push_back(text("gaps or penetrations of up to ", coupling.largest_gap, " m: the faces are coupled as if they touched"));
+    if (coupling.coarseness > noted_coarseness)
+      notes.push_back(text("faces of ", slave, " are up to ", coupling.coarseness, " times as large as those of ", master,
+                           ": the pressure is resolved by the coarser side only"));
+    return notes;
   }
 } // namespace Squeal

@@ -1,0 +1,90 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/geometry/cell_volume.h>
+#include <squeal/geometry/curved_cells.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Refuses nodes of edges so far off their middles that the edge turns back or bulges beyond a half circle.
+    void check_middles(const Mesh &mesh)
+    {
+      constexpr double           farthest = 0.5; // of the edge's length
+      std::set<unsigned int>     off;
+      std::optional<std::size_t> first;
+      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+        {
+          const Mesh::Cell &cell    = mesh.cells[element];
+          std::size_t       on_edge = topology(cell.shape).corners.size();
+          for (const auto &[a, b] : topology(cell.shape).edges)
+            {
+              const unsigned int node = cell.nodes[on_edge++];
+              const Mesh::Point &p = mesh.corner(cell, a), &q = mesh.corner(cell, b);
+              if (mesh.points[node].distance(p + (q - p) / 2.) <= farthest * p.distance(q))
+                continue;
+              off.insert(node);
+              first = first.value_or(element);
+            }
+        }
+      if (first)
+        throw MeshError(text(off.size(), off.size() == 1 ? " second-order node lies" : " second-order nodes lie",
+                             " off the middle of the edge by more than half of its length; one of them is at (", mesh.points[*off.begin()],
+                             ") m"),
+                        describe_cell(mesh, *first),
+                        "move second-order nodes to the middles of their edges, or use smaller elements where a surface curves");
+    }
+
+    /// Refuses edges and quadrilaterals whose middle nodes are not those of their neighbours, or are corners elsewhere: they would move apart.
+    void check_shared_middles(const Mesh &mesh)
+    {
+      std::map<std::array<unsigned int, 4>, unsigned int> middles; // by corners in ascending order, of edges each twice
+      std::vector<bool>                                   is_corner(mesh.points.size(), false);
+      std::set<std::size_t>                               unmatched; // elements
+      for (const Mesh::Cell &cell : mesh.cells)
+        for (unsigned int v = 0; v < topology(cell.shape).corners.size(); ++v)
+          is_corner[cell.nodes[v]] = true;
+      for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+        {
+          const Mesh::Cell &cell  = mesh.cells[element];
+          const auto        check = [&](std::array<unsigned int, 4> corners, const unsigned int middle) {
+            std::sort(corners.begin(), corners.end());
+            if (is_corner[middle] || middles.emplace(corners, middle).first->second != middle)
+              unmatched.insert(element);
+          };
+          std::size_t on_edge = topology(cell.shape).corners.size();
+          for (const auto &[a, b] : topology(cell.shape).edges)
+            check({{cell.nodes[a], cell.nodes[a], cell.nodes[b], cell.nodes[b]}}, cell.nodes[on_edge++]);
+          for (unsigned int f = 0; f < topology(cell.shape).faces.size(); ++f)
+            if (const auto &numbers = nodes_of_face(cell.shape, 2, f); numbers.size() == 9)
+              check({{cell.nodes[numbers[0]], cell.nodes[numbers[1]], cell.nodes[numbers[2]], cell.nodes[numbers[3]]}},
+                    cell.nodes[numbers[8]]);
+        }
+      if (!unmatched.empty())
+        throw MeshError(text(unmatched.size(), " of ", mesh.cells.size(),
+                             " elements share corners with neighbours, but not the second-order nodes between these"),
+                        describe_cell(mesh, *unmatched.begin()),
+                        "merge the second-order nodes as well as the corners, and mesh neighbours with elements of one size");
+    }
+  } // namespace
+
+  void check_curved(const Mesh &mesh)
+  {
+    check_shared_middles(mesh);
+    check_middles(mesh);
+    std::vector<std::size_t> inverted;
+    for (std::size_t element = 0; element < mesh.cells.size(); ++element)
+      if (!(worst_determinant(mesh, mesh.cells[element]) > 0.))
+        inverted.push_back(element);
+    if (!inverted.empty())
+      throw MeshError(text(inverted.size(), " of ", mesh.cells.size(), inverted.size() == 1 ? " elements is" : " elements are",
+                           " folded by second-order nodes: the Jacobian determinant is negative or zero"),
+                      describe_cell(mesh, inverted[0]),
+                      "use smaller elements where surfaces curve, or let Gmsh straighten them (Mesh.HighOrderOptimize = 1)");
+  }
+} // namespace Squeal
