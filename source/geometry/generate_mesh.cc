@@ -146,10 +146,9 @@ namespace Squeal
     /// Of the least that a mesh is for; what more it takes is known later.
     void check_least_memory(ProblemSize size, const std::string &where, const MPI_Comm communicator)
     {
-      constexpr unsigned int least_degree = 1;
-      constexpr double       no_modes     = 0.;
-      size.contact_nodes                  = 0.; // their attachment modes are not always needed
-      check_memory(size, least_degree, no_modes, where, communicator);
+      constexpr double no_modes = 0.;
+      size.contact_nodes        = 0.; // their attachment modes are not always needed
+      check_memory(size, no_modes, where, communicator);
     }
 
     /// Refuses a mesh whose groups, of the dimensions that count, do not say what they are.

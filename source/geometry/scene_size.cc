@@ -17,12 +17,28 @@ namespace Squeal
   namespace
   {
     // Fit of ProblemSize::memory() [byte]
-    constexpr double program            = 3.0e8;
-    constexpr double per_dof            = 1.55e4; ///< at reference_dofs; sparse factors grow a little faster than their matrices
-    constexpr double reference_dofs     = 3e4;
-    constexpr double growth             = 0.03;
-    constexpr double quadratic_elements = 2.; ///< rows of their matrices are longer
+    constexpr double program          = 1.8e8;
+    constexpr double bytes_per_entry  = 90.;   ///< of K: of all matrices together
+    constexpr double factor_per_dof   = 3100.; ///< at reference_dofs
+    constexpr double reference_dofs   = 3e4;
+    constexpr double factor_growth    = 0.4; ///< exponent of the factor per dof
     constexpr double vectors_per_node = 1., vectors_per_mode = 3.;
+
+    /// ProblemSize::row_length of meshes of one shape.
+    double row_length(const Shape shape, const unsigned int degree)
+    {
+      switch (shape)
+        {
+          case Shape::tetrahedron:
+            return degree > 1 ? 75. : 40.;
+          case Shape::pyramid:
+            return degree > 1 ? 100. : 50.;
+          case Shape::wedge:
+            return degree > 1 ? 120. : 55.;
+          default:
+            return degree > 1 ? 160. : 65.;
+        }
+    }
 
     /// Of a plan with numbers of faces and nodes, and of those under all pins together. Layers of nodes share those of neighbouring layers.
     ProblemSize extruded(const double              faces,
@@ -36,9 +52,9 @@ namespace Squeal
     }
   } // namespace
 
-  double ProblemSize::memory(const unsigned int degree, const double n_modes) const
+  double ProblemSize::memory(const double n_modes) const
   {
-    const double matrices = per_dof * std::pow(std::max(dofs / reference_dofs, 1.), growth) * (degree > 1 ? quadratic_elements : 1.);
+    const double matrices = row_length * bytes_per_entry + factor_per_dof * std::pow(dofs / reference_dofs, factor_growth);
     const double kept     = dofs * sizeof(double) * vectors_per_node * contact_nodes;
     const double of_nodes = kept <= largest_part_of_attachment_modes * available_memory() ? kept : 0.;
     return program + of_nodes + dofs * (matrices + sizeof(double) * vectors_per_mode * n_modes);
@@ -106,18 +122,17 @@ namespace Squeal
           contact.insert(face.nodes.begin(), face.nodes.end());
           contact_faces.push_back(face);
         }
+    double row_lengths = 0.;
+    for (const Mesh::Cell &cell : mesh.cells)
+      row_lengths += row_length(cell.shape, degree);
     const bool adds_nodes = degree > mesh.degree;
     return {double(mesh.cells.size()), 3. * (mesh.points.size() + (adds_nodes ? n_added_nodes(mesh.cells) : 0)),
-            double(contact.size() + (adds_nodes ? n_added_nodes(contact_faces) : 0))};
+            double(contact.size() + (adds_nodes ? n_added_nodes(contact_faces) : 0)), row_lengths / mesh.cells.size()};
   }
 
-  void check_memory(const ProblemSize &size,
-                    const unsigned int degree,
-                    const double       n_modes,
-                    const std::string &where,
-                    const MPI_Comm     communicator)
+  void check_memory(const ProblemSize &size, const double n_modes, const std::string &where, const MPI_Comm communicator)
   {
-    const double needed = size.memory(degree, n_modes), available = available_memory(communicator);
+    const double needed = size.memory(n_modes), available = available_memory(communicator);
     if (!(needed > available))
       return;
     throw MeshError(text("The scene has about ", size.cells, " cells and ", size.dofs, " dofs, which need about ", needed / 1e9,

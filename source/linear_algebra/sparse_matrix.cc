@@ -146,11 +146,12 @@ namespace Squeal
   {}
 
   SparseMatrix::SparseMatrix(const RowMap &rows, const RowMap &columns, SparseRows by_number)
-    : local(std::move(by_number))
-    , row_map(rows)
+    : row_map(rows)
     , column_map(columns)
   {
+    local.swap(by_number); // Eigen 3.4 copies what is moved
     local.makeCompressed();
+    local.data().squeeze();
     if (is_alone(rows.communicator()))
       return;
     const int        n_own = columns.n_local();
@@ -264,7 +265,9 @@ namespace Squeal
 
   std::shared_ptr<SparseMatrix> moduli(const SparseMatrix &A)
   {
-    return std::make_shared<SparseMatrix>(A.rows(), A.columns(), SparseRows(local_rows(A).cwiseAbs()));
+    SparseRows rows = local_rows(A);
+    rows.coeffs()   = rows.coeffs().abs();
+    return std::make_shared<SparseMatrix>(A.rows(), A.columns(), std::move(rows));
   }
 
   std::shared_ptr<SparseMatrix> scale_rows(const SparseMatrix &A, const std::function<double(int number)> &f)

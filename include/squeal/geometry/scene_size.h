@@ -15,11 +15,11 @@ namespace Squeal
   struct ProblemSize
   {
     double cells, dofs, contact_nodes;
+    double row_length = 65.; ///< entries of K per dof
 
-    /// Memory that the scene takes until its modes are computed [byte]: the program itself, matrices and factors per dof, columns of K_c^-1
-    /// A per contact node where they are kept, and modes. Fitted to runs of 32 000 to 139 000 dofs, for which it is within a twentieth
-    /// (scripts/measure_scaling.py).
-    double memory(unsigned int degree, double n_modes) const;
+    /// Memory that the scene takes until its modes are computed [byte]: the program itself, matrices per entry, factors per dof, columns of
+    /// K_c^-1 A per contact node where they are kept, and modes.
+    double memory(double n_modes) const;
   };
 
   /// Of the supplied plan, from the parameters alone.
@@ -32,11 +32,7 @@ namespace Squeal
   ProblemSize expected_size(const Mesh &mesh, unsigned int degree);
 
   /// Throws MeshError with these numbers if the memory exceeds what is available on the machines of the processes.
-  void check_memory(const ProblemSize &size,
-                    unsigned int       degree,
-                    double             n_modes,
-                    const std::string &where,
-                    MPI_Comm           communicator = MPI_COMM_SELF);
+  void check_memory(const ProblemSize &size, double n_modes, const std::string &where, MPI_Comm communicator = MPI_COMM_SELF);
 
   /// Whether at least half of the disc's lateral surface is round about z, n·(e_z × x) ≈ 0. Throws MeshError, naming @p where, where
   /// clearly more of it is round about another axis, which the second moments of the surface give.

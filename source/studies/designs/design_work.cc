@@ -48,7 +48,7 @@ namespace Squeal
       const unsigned int degree = degree_of(run.parameters.discretization.element);
       // The basis of a family is there twice when it grows
       const double bytes_of_basis = has_families ? 2. * sizeof(double) * usual_family_basis * scene.model->free_map().n() : 0.;
-      const double bytes          = bytes_of_basis + expected_size(scene.mesh, degree).memory(degree, run.parameters.solvers.maximum_modes);
+      const double bytes          = bytes_of_basis + expected_size(scene.mesh, degree).memory(run.parameters.solvers.maximum_modes);
       const double by_cores       = std::min<double>(n_usable_cores(), static_cast<double>(std::thread::hardware_concurrency()) / n_here);
       const double by_memory      = available_memory() / bytes / n_here;
       return static_cast<unsigned int>(std::max(1., std::floor(std::min(by_cores, by_memory))));

@@ -136,11 +136,10 @@ namespace Squeal
     run.measure("pins mass [kg]", pins);
 
     // Memory
-    const unsigned int degree = degree_of(parameters.discretization.element);
-    ProblemSize        size   = expected_size(mesh, degree);
+    ProblemSize size = expected_size(mesh, degree_of(parameters.discretization.element));
     if (parameters.solves_by(ComplexSolver::residual_iteration))
       size.contact_nodes = 0.; // no attachment modes
-    const double bytes = size.memory(degree, typical_modes);
+    const double bytes = size.memory(typical_modes);
     run.progress.note(text("    expected: ", size.dofs, " dofs, ", bytes / 1e9, " GB of memory; ", available_memory(run.communicator) / 1e9,
                            " GB are available"));
     run.measure("expected memory [byte]", bytes);
@@ -154,6 +153,6 @@ namespace Squeal
                     " pairs of nodes of different bodies coincide outside of disc_contact and pin_contact, the first one of ", contact.body,
                     " and ", contact.other, " at (", contact.place[0], ", ", contact.place[1], ", ", contact.place[2],
                     ") m: the bodies touch there, but nothing couples them"));
-    check_memory(size, degree, typical_modes, parameters.geometry.path(), run.communicator);
+    check_memory(size, typical_modes, parameters.geometry.path(), run.communicator);
   }
 } // namespace Squeal
