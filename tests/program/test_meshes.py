@@ -6,7 +6,7 @@ import re
 
 from blocks import BLOCKS, HEXAHEDRA, SURFACES, VOLUMES
 from hex_mesh import PARAMETERS, disc_with_pads
-from program import ProgramTest, eigenvalues
+from program import ProgramTest, eigenvalues, read_table
 from tet_mesh import BRAKE, brake, clutch
 
 
@@ -308,6 +308,22 @@ class Tetrahedra(ProgramTest):
                 (nothing, ["second order", "quadratic"], "Discretization/Element=trilinear")):
             with self.subTest(mentions):
                 self.dry_run_refused(mentions, *overrides, file=self.write_brake(spoiled(change), "spoiled"))
+
+    def test_energy_of_contact_springs(self):
+        """The sensitivity of a frequency to the stiffness is half of the share of the springs' energy."""
+        def rows(stiffness):
+            pairs = "Contact/Pairs={0}: 1, {2!r}; {1}: 1, {2!r}".format("disc_top / pad_outer_face", "disc_bottom / pad_inner_face", stiffness)
+            results = self.run_scene(f"out_{stiffness}", pairs, "Operation/Friction coefficient=0", file=self.write_brake(brake()))
+            return read_table(results / "complex_modes.csv")
+
+        change = 1e-3
+        modes, stiffer = rows(1e10), rows((1 + change) * 1e10)
+        self.assertEqual(len(modes), len(stiffer))
+        shares = [float(row["strain energy in contact springs [%]"]) / 100 for row in modes]
+        self.assertGreater(max(shares), 0.05)
+        for row, other, share in zip(modes, stiffer, shares):
+            self.assertAlmostEqual(sum(float(value) for name, value in row.items() if name.startswith("strain energy")), 100, places=6)
+            self.assertAlmostEqual(float(other["frequency [Hz]"]) / float(row["frequency [Hz]"]) - 1, share * change / 2, delta=1e-3 * change)
 
     def test_notes(self):
         fine = brake(n_parts=60, n_rings=8, pad_parts=2)

@@ -39,17 +39,19 @@ namespace Squeal
     std::vector<std::string>               names;
     std::map<std::string, Eigen::VectorXd> of_part;
     Eigen::VectorXd                        all = Eigen::VectorXd::Zero(modes.lambda.size());
+    const auto                             add = [&](const std::string &name, const double stiffness, const SparseMatrix &matrix) {
+      const Eigen::VectorXd energy = stiffness * energies(matrix, shapes);
+      const auto [entry, is_new]   = of_part.emplace(name, energy);
+      if (is_new)
+        names.push_back(name);
+      else
+        entry->second += energy;
+      all += energy;
+    };
     for (const Term &term : scene.elastic.terms)
-      {
-        const std::string     name   = part_of(term, scene.model->volume_names(), materials);
-        const Eigen::VectorXd energy = term.coefficient.at(scene.elastic.values) * energies(*term.matrix, shapes);
-        const auto [entry, is_new]   = of_part.emplace(name, energy);
-        if (is_new)
-          names.push_back(name);
-        else
-          entry->second += energy;
-        all += energy;
-      }
+      add(part_of(term, scene.model->volume_names(), materials), term.coefficient.at(scene.elastic.values), *term.matrix);
+    for (const ContactSpring &spring : linearisation.contact.springs)
+      add("contact springs", spring.stiffness, *spring.matrix);
     Columns<int> columns;
     for (const std::string &name : names)
       {
