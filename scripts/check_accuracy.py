@@ -78,7 +78,7 @@ def main():
     print(f"  {'':<44} modes   f [%]       xi [points]")
     print_largest("all", found)
     print_largest("converged", converged)
-    print_largest("converged, outside of clusters", [pair for pair in converged if pair[0]["in a cluster [-]"] == "0"])
+    print_largest("converged, outside of clusters", [pair for pair in converged if pair[0]["counterpart on the coarser mesh"] == "by shape"])
     n_over = sum(error(pair)[0] > float(pair[0][ESTIMATED_FREQUENCY]) or error(pair)[1] > float(pair[0][ESTIMATED_DIVERGENCE])
                  for pair in converged)
     print(f"  errors larger than estimated: {n_over} of {len(converged)}")

@@ -63,7 +63,7 @@ def checks(results, pages):
         if name in counts:
             found.append((name, str(counts[name])))
     if "largest estimated error of a frequency by the mesh [-]" not in quantities:
-        found.append(("error of the mesh", "not estimated; set Accuracy = 1 % does"))
+        found.append(("error of the mesh", "not estimated; set Accuracy = 1 % or Discretization/Coarser mesh"))
     return found
 
 

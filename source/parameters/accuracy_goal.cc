@@ -55,6 +55,9 @@ namespace Squeal
     /// Part of the band by which that on the coarser mesh is longer, over the accuracy asked for, and at least [-].
     constexpr double margin_of_coarser_band = 2., least_band_margin = 0.02;
 
+    /// The same for a given coarser mesh, whose accuracy is not known [-].
+    constexpr double margin_of_given_mesh = 0.05;
+
     /// The shorter one of thin-plate bending waves, 2π (D / ρhω²)^¼, and Rayleigh's waves on the faces at the end of the band [m].
     double shortest_wave(const Parameters &parameters)
     {
@@ -87,6 +90,7 @@ namespace Squeal
     {
       Parameters result                  = given;
       result.discretization.element      = mesh.element;
+      result.discretization.coarser_mesh = "";
       result.geometry                    = meshed(given, mesh);
       result.solvers.complex_solver      = ComplexSolver::residual_iteration;
       result.solvers.iteration_tolerance = tolerance;
@@ -101,6 +105,8 @@ namespace Squeal
 
   double error_by_difference(const AccuracyGoal goal)
   {
+    if (goal == AccuracyGoal::as_given)
+      return 1.;
     return level(goal).mesh.element == Element::quadratic ? 1. / 3. : 2. / 3.;
   }
 
@@ -112,8 +118,43 @@ namespace Squeal
     return with(given, asked.mesh, asked.tolerance);
   }
 
+  namespace
+  {
+    std::vector<std::string> split(const std::string &text, const char separator = ',')
+    {
+      std::vector<std::string> names = dealii::Utilities::split_string_list(text, separator);
+      names.erase(std::remove(names.begin(), names.end(), ""), names.end());
+      return names;
+    }
+
+    Parameters with_given_coarser_mesh(const Parameters &given)
+    {
+      const std::string where = "parameter Discretization/Coarser mesh", &mesh = given.discretization.coarser_mesh;
+      Parameters        result = given;
+      const auto        set    = [&](const std::string &name, const std::string &value) {
+        result.set("Geometry/" + name, where, [&](const std::string &) { return value; });
+      };
+      result.discretization.coarser_mesh = "";
+      result.discretization.maximum_frequency *= 1. + margin_of_given_mesh;
+      if (given.discretization.coarser_mesh_is_file())
+        set("File", mesh);
+      else
+        for (const std::string &entry : split(mesh))
+          {
+            const std::vector<std::string> words = split(entry, '=');
+            if (words.size() != 2)
+              throw ParameterError("`" + entry + "` is not of the form NAME = VALUE", where,
+                                   "give parameters of the section Geometry with their values, separated by commas, or the name of a file");
+            set(words[0], words[1]);
+          }
+      return result;
+    }
+  } // namespace
+
   Parameters with_coarser_mesh(const Parameters &given)
   {
+    if (given.goal == AccuracyGoal::as_given)
+      return with_given_coarser_mesh(given);
     const Level &asked  = level(given.goal);
     Parameters   result = with(given, asked.coarser, asked.tolerance);
     result.discretization.maximum_frequency *= 1. + std::max(margin_of_coarser_band * asked.limits.frequency, least_band_margin);
@@ -122,13 +163,6 @@ namespace Squeal
 
   namespace
   {
-    std::vector<std::string> split(const std::string &text)
-    {
-      std::vector<std::string> names = dealii::Utilities::split_string_list(text, ',');
-      names.erase(std::remove(names.begin(), names.end(), ""), names.end());
-      return names;
-    }
-
     /// Names of an enumeration, separated by commas.
     template <typename Enum>
     void add_list(Declarations &declarations, const std::string &name, std::vector<Enum> &values, const std::string &documentation)

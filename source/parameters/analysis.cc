@@ -10,6 +10,11 @@ namespace Squeal
     declarations.add("Element", element,
                      "Hexahedra. trilinear: 8 nodes; too stiff in bending. incompatible modes: 8 nodes and quadratic displacements inside "
                      "each element (Wilson, Taylor), which bend: a system of the same size. quadratic: 27 nodes, on curved boundaries.");
+    declarations.add(
+      "Coarser mesh", coarser_mesh,
+      "A second mesh that shows the error of the mesh, mode by mode, as the difference between both: parameters of the "
+      "section Geometry with the values of the coarser mesh, such as disc_size = 0.019, pad_size = 0.012; or a file "
+      "(.geo, .msh). The difference covers the error if elements are about twice as large. Accuracy chooses a coarser mesh of its own. Empty: no error is estimated.");
 
     declarations.enter("Band");
     declarations.add("Maximum frequency", maximum_frequency, "Hz",

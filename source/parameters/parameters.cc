@@ -172,7 +172,7 @@ namespace Squeal
       "Accuracy", goal,
       "How accurate frequencies shall be; divergence rates in percentage points to a tenth of that. Chooses elements, mesh, solver and "
       "tolerances in place of those below; Study = stability estimates what is achieved, mode by mode, with a second, coarser mesh. as "
-      "given: parameters below hold, and no error of the mesh is estimated.");
+      "given: parameters below hold, and the error of the mesh is estimated only with Discretization/Coarser mesh.");
     geometry.declare(declarations);
     materials.declare(declarations);
     discretization.declare(declarations);
@@ -344,6 +344,8 @@ namespace Squeal
     search.check();
     if (study->check != nullptr)
       study->check(*this);
+    if (goal == AccuracyGoal::as_given && !discretization.coarser_mesh.empty())
+      with_coarser_mesh(*this).check();
     check_damping_in_band();
   }
 } // namespace Squeal

@@ -80,6 +80,20 @@ TEST(AccuracyGoal, MeshesFollowTheScene)
   EXPECT_THROW(with_goal(own), Error);
 }
 
+TEST(CoarserMesh, SetsParametersOfTheGeometry)
+{
+  Parameters fine;
+  fine.discretization.coarser_mesh = "Element size = 0.02, Disc layers = 1";
+  const Parameters coarse          = with_coarser_mesh(fine);
+  EXPECT_EQ(coarse.geometry.element_size, 0.02);
+  EXPECT_EQ(coarse.geometry.disc_layers, 1u);
+  EXPECT_GT(coarse.discretization.maximum_frequency, fine.discretization.maximum_frequency);
+  EXPECT_TRUE(coarse.discretization.coarser_mesh.empty());
+  EXPECT_EQ(error_by_difference(fine.goal), 1.);
+  fine.discretization.coarser_mesh = "disc_pad.geo";
+  EXPECT_EQ(with_coarser_mesh(fine).geometry.file, "disc_pad.geo");
+}
+
 TEST(MeshFamily, ScalesElementsLayersAndPinFaces)
 {
   // 11.5 mm; 19 nodes, k = 2; 4 and 3 layers

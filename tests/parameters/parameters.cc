@@ -168,10 +168,10 @@ TEST(Declarations, SayWhatEveryKindAccepts)
         free_texts.push_back(parameter.path);
     }
   EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Materials/Volumes", "Mounts/Elastic mounts", "Mounts/Dashpots",
-                                                  "Mounts/Added masses", "Contact/Pairs", "Contact/Tied", "Steady sliding/Loads",
-                                                  "Steady sliding/Gaps", "Damping/Modal damping ratio", "Reduction/Bases",
-                                                  "Reduction/Component modes", "Accuracy study/Elements", "Accuracy study/Outlines",
-                                                  "Accuracy study/Bases", "Designs/Variables", "Designs/File"}));
+                                                  "Mounts/Added masses", "Discretization/Coarser mesh", "Contact/Pairs", "Contact/Tied",
+                                                  "Steady sliding/Loads", "Steady sliding/Gaps", "Damping/Modal damping ratio",
+                                                  "Reduction/Bases", "Reduction/Component modes", "Accuracy study/Elements",
+                                                  "Accuracy study/Outlines", "Accuracy study/Bases", "Designs/Variables", "Designs/File"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)

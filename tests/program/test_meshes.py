@@ -325,6 +325,24 @@ class Tetrahedra(ProgramTest):
             self.assertAlmostEqual(sum(float(value) for name, value in row.items() if name.startswith("strain energy")), 100, places=6)
             self.assertAlmostEqual(float(other["frequency [Hz]"]) / float(row["frequency [Hz]"]) - 1, share * change / 2, delta=1e-3 * change)
 
+    def test_difference_from_a_coarser_mesh(self):
+        """Estimated errors are the differences between two runs, where the counterpart is alone."""
+        coarse, fine = (self.write_brake(brake(n_parts), f"brake_{n_parts}") for n_parts in (12, 16))
+        found, expected = (read_table(self.run_scene(f"out_{file}", *overrides, file=file) / "complex_modes.csv")
+                           for file, overrides in ((fine, ["Discretization/Coarser mesh=brake_12.msh"]), (coarse, ["Band/Maximum frequency=5250"])))
+        frequencies = [float(row["frequency [Hz]"]) for row in expected]
+        n_alone = 0
+        for row in found:
+            frequency, error = (row[name] for name in ("frequency [Hz]", "estimated frequency error by the mesh [%]"))
+            self.assertEqual(row["counterpart on the coarser mesh"] == "none", error == "")
+            if row["counterpart on the coarser mesh"] == "by shape":
+                n_alone += 1
+                differences = [100 * abs(other / float(frequency) - 1) for other in frequencies]
+                self.assertLess(min(abs(difference - float(error)) for difference in differences), 1e-6)
+        self.assertGreater(n_alone, len(found) / 2)
+        self.assertNotIn("converged [-]", found[0])
+        self.run_scene("again", file=self.folder / f"out_{fine}" / "parameters.prm")
+
     def test_notes(self):
         fine = brake(n_parts=60, n_rings=8, pad_parts=2)
         for mesh, note in ((brake().moved(lambda x, y, z: (x, y, z + 0.002), lambda volume: volume.startswith("pad_outer")), "up to 0.002 m"),

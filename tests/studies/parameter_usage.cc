@@ -62,6 +62,8 @@ namespace
       for (const char *section : {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Search/", "Sensitivity/", "Sweep/"})
         if (std::find(sections.begin(), sections.end(), section) == sections.end())
           beginnings.emplace_back(section);
+      if (!run.empty() && run.front().rfind("Study=", 0) == 0) // no stability study
+        beginnings.emplace_back("Discretization/Coarser mesh");
       for (const Paths &some : unused)
         beginnings = joined(beginnings, some);
       std::set<std::string> paths;

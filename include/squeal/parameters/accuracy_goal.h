@@ -57,7 +57,7 @@ namespace Squeal
   AccuracyLimits limits_of(AccuracyGoal goal);
 
   /// Error of a goal's mesh over its difference from the coarser one that goes with it [-], somewhat more than what the default scene shows
-  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones.
+  /// (doc/accuracy.md): 2/3 for elements with eight nodes, 1/3 for quadratic ones. Without a goal 1: the difference itself.
   double error_by_difference(AccuracyGoal goal);
 
   /**
@@ -68,7 +68,7 @@ namespace Squeal
    */
   Parameters with_goal(const Parameters &given);
 
-  /// The same scene on the coarser mesh that the error of a goal is estimated with, in a band that reaches somewhat further, since
-  /// frequencies on coarse meshes are higher. There must be a goal.
+  /// The same scene on the coarser mesh of a goal or, without one, on the coarser mesh that is given, in a band that reaches somewhat
+  /// further, since frequencies on coarse meshes are higher. One of the two must be there. Throws ParameterError.
   Parameters with_coarser_mesh(const Parameters &given);
 } // namespace Squeal

@@ -14,6 +14,14 @@ namespace Squeal
     Element element           = Element::trilinear;
     double  maximum_frequency = 5000.; ///< upper end of the band [Hz]
 
+    /// Parameters of `Geometry` with the values of a coarser mesh, "disc_size = 0.012, ...", or its file; empty: no coarser mesh.
+    std::string coarser_mesh;
+
+    bool coarser_mesh_is_file() const
+    {
+      return !coarser_mesh.empty() && coarser_mesh.find('=') == std::string::npos;
+    }
+
     void declare(Declarations &declarations);
 
     /// Throws ParameterError.

@@ -30,6 +30,29 @@ def goals(runs):
             yield Number(f"Accuracy = {goal} %: {what}", text, value)
 
 
+# By row of complex_modes.csv: found frequency error and those estimated with elements 2 and 1.3 times as large [%]
+BRAKE = {7: ("0.0011", "0.0002", "0.0099"), 8: ("0.356", "1.23", "0.320"), 10: ("0.540", "3.30", "0.647"), 12: ("1.09", "5.01", "1.09"),
+         17: ("0.169", "0.963", "0.194")}
+BRAKE_DIVERGENCE = ("0.0045", "0.028", "0.0028")  # of the last of them [points]
+
+
+@entry("accuracy", "Disc brake: difference from coarser meshes and distance from a finer mesh")
+def brake(runs):
+    shapes, coarser = "Output/Mode shapes=none", "Discretization/Coarser mesh=disc_size = {}, pad_size = {}".format
+    fine = runs("brake_fine", "brake.prm", shapes, "Geometry/disc_size=0.0063", "Geometry/pad_size=0.004").table("complex_modes.csv")
+    twice, slightly = (runs(f"brake_{disc}", "brake.prm", shapes, coarser(disc, pad)).table("complex_modes.csv")
+                       for disc, pad in ((0.019, 0.012), (0.0125, 0.0078)))
+    estimated = "estimated frequency error by the mesh [%]"
+    for row, quoted in BRAKE.items():
+        found = 100 * abs(twice[row]["frequency [Hz]"] / fine[row]["frequency [Hz]"] - 1)
+        for what, text, value in zip(("found", "2 times", "1.3 times"), quoted, (found, twice[row][estimated], slightly[row][estimated])):
+            yield Number(f"{fine[row]['label']}, {what} [%]", text, value)
+    found = abs(twice[17]["divergence rate [%]"] - fine[17]["divergence rate [%]"])
+    estimated = "estimated divergence rate error by the mesh [%]"
+    for what, text, value in zip(("found", "2 times", "1.3 times"), BRAKE_DIVERGENCE, (found, twice[17][estimated], slightly[17][estimated])):
+        yield Number(f"{fine[17]['label']}, divergence rate, {what} [points]", text, value)
+
+
 # Of full order by element and mesh factor: dofs, largest and rms frequency errors [%], largest divergence error [points]
 DEFAULT_SCENE = {("trilinear", 1): ("8838", "9.17", "5.96", "0.134"),
                  ("trilinear", 1.5): ("21480", "4.25", "2.92", "0.0865"),

@@ -78,19 +78,27 @@ namespace Squeal
       return Table(columns, boost::irange<int>(0, friction.labels.size()));
     }
 
-    /// Columns that estimated errors of the mesh add to complex_table(): those, whether they are within @p limits, and the verdict.
-    Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyLimits &limits)
+    /// Columns that estimated errors of the mesh add to complex_table(): those, with a goal whether they are within its limits, and the
+    /// verdict.
+    Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyGoal goal)
     {
       const auto known = [&errors](const double DiscretisationError::*error) {
         return [&errors, error](const int j) {
           return errors[j].has_counterpart ? std::make_optional(100. * (errors[j].*error)) : std::nullopt;
         };
       };
-      return {{"estimated frequency error by the mesh", "%", known(&DiscretisationError::frequency), 1, true},
-              {"estimated divergence rate error by the mesh", "%", known(&DiscretisationError::divergence), 1, true},
-              {"in a cluster", "-", [&errors](const int j) { return errors[j].in_cluster; }},
-              {"converged", "-", [&errors, limits](const int j) { return errors[j].is_within(limits.frequency, limits.divergence); }},
-              {"verdict", "", [&errors](const int j) { return to_string(errors[j].verdict); }}};
+      const auto counterpart = [&errors](const int j) {
+        return !errors[j].has_counterpart ? "none" : errors[j].in_cluster ? "in a cluster" : "by shape";
+      };
+      Columns<int> columns = {{"estimated frequency error by the mesh", "%", known(&DiscretisationError::frequency), 1, true},
+                              {"estimated divergence rate error by the mesh", "%", known(&DiscretisationError::divergence), 1, true},
+                              {"counterpart on the coarser mesh", "", counterpart}};
+      if (goal != AccuracyGoal::as_given)
+        columns.push_back({"converged", "-", [&errors, limits = limits_of(goal)](const int j) {
+                             return errors[j].is_within(limits.frequency, limits.divergence);
+                           }});
+      columns.push_back({"verdict", "", [&errors](const int j) { return to_string(errors[j].verdict); }});
+      return columns;
     }
 
     /// The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest
@@ -311,7 +319,7 @@ namespace Squeal
   } // namespace
 
   /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, about equal shares of the load
-  /// or about steady sliding, with their tables and mode shapes; with an accuracy asked for, their errors by the mesh. A dry run makes,
+  /// or about steady sliding, with their tables and mode shapes; with an accuracy asked for or a coarser mesh, their errors by the mesh. A dry run makes,
   /// checks and counts the mesh, and writes nothing.
   static void run_stability_study(Scene &scene, Run &run)
   {
@@ -350,7 +358,7 @@ namespace Squeal
       write_sliding_tables(scene, *sliding, operation, run);
     run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation),
                                                    strain_energy_columns(linearisation, friction.modes, parameters.materials),
-                                                   coarser ? mesh_error_columns(errors, limits_of(parameters.goal)) : Columns<int>()));
+                                                   coarser ? mesh_error_columns(errors, parameters.goal) : Columns<int>()));
     run.store_table("real_modes", real_table(frictionless));
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
     if (!friction.modes.real_values.empty())
@@ -367,7 +375,8 @@ namespace Squeal
     run.finish();
   }
 
-  extern const Study stability_study{"stability",
-                                     run_stability_study,
-                                     {"Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
+  extern const Study stability_study{
+    "stability",
+    run_stability_study,
+    {"Discretization/Coarser mesh", "Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
 } // namespace Squeal

@@ -151,7 +151,7 @@ namespace Squeal
 
   std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run)
   {
-    if (run.parameters.goal == AccuracyGoal::as_given)
+    if (run.parameters.goal == AccuracyGoal::as_given && run.parameters.discretization.coarser_mesh.empty())
       return {};
     run.progress.begin("Coarser mesh");
     const Parameters        parameters = with_coarser_mesh(run.parameters);
@@ -184,34 +184,43 @@ namespace Squeal
 
   void report_mesh_errors(const std::vector<DiscretisationError> &errors, const FrictionModes &friction, Run &run)
   {
-    const AccuracyLimits limits    = limits_of(run.parameters.goal);
-    double               frequency = 0., divergence = 0.;
-    long                 n_converged = 0, n_lost = 0, n_in_cluster = 0;
-    const auto           count = [&](const Verdict verdict) {
+    double     frequency = 0., divergence = 0.;
+    long       n_lost = 0, n_in_cluster = 0;
+    const auto count = [&](const Verdict verdict) {
       return std::count_if(errors.begin(), errors.end(), [verdict](const DiscretisationError &error) { return error.verdict == verdict; });
     };
     for (const DiscretisationError &error : errors)
       {
         frequency  = std::max(frequency, error.frequency);
         divergence = std::max(divergence, error.divergence);
-        n_converged += error.is_within(limits.frequency, limits.divergence);
         n_lost += !error.has_counterpart;
         n_in_cluster += error.in_cluster;
       }
     run.measure("largest estimated error of a frequency by the mesh [-]", frequency);
     run.measure("largest estimated error of a divergence rate by the mesh [-]", divergence);
-    run.count("modes converged on the mesh", n_converged);
     run.count("modes without counterpart on the coarser mesh", n_lost);
     run.count("modes in clusters whose members the mesh decides", n_in_cluster);
     for (const Verdict verdict : {Verdict::unstable, Verdict::stable, Verdict::undecided})
       run.count("modes " + to_string(verdict) + " with the error of the mesh", count(verdict));
-    run.progress.note(text("  accuracy: ", to_string(run.parameters.goal),
-                           " asked for; estimated by a coarser mesh, frequencies are within ", decimal_text(100. * frequency),
-                           " % and divergence rates within ", decimal_text(100. * divergence), " percentage points",
+    const bool has_goal = run.parameters.goal != AccuracyGoal::as_given;
+    run.progress.note(text(has_goal ? text("  accuracy: ", to_string(run.parameters.goal), " asked for; estimated by a coarser mesh") :
+                                      "  error of the mesh: difference from the coarser mesh, not extrapolated",
+                           ", frequencies are within ", decimal_text(100. * frequency), " % and divergence rates within ",
+                           decimal_text(100. * divergence), " percentage points",
                            n_lost > 0 ? text(", ", n_lost, n_lost == 1 ? " mode" : " modes", " without counterpart left out") : ""));
+    std::string converged;
+    if (has_goal)
+      {
+        const AccuracyLimits limits = limits_of(run.parameters.goal);
+        const auto           n      = std::count_if(errors.begin(), errors.end(), [&](const DiscretisationError &error) {
+          return error.is_within(limits.frequency, limits.divergence);
+        });
+        run.count("modes converged on the mesh", n);
+        converged = text("; ", n, " of ", errors.size(), " converged");
+        warn_of_unconverged(errors, friction, limits, run);
+      }
     run.progress.note(text("  with the error of the mesh: ", count(Verdict::unstable), " modes unstable, ", count(Verdict::stable),
-                           " stable, ", count(Verdict::undecided), " undecided; ", n_converged, " of ", errors.size(), " converged"));
-    warn_of_unconverged(errors, friction, limits, run);
+                           " stable, ", count(Verdict::undecided), " undecided", converged));
   }
 
   std::string mode_title(const ModeLabel &label, const std::complex<double> &lambda)

@@ -66,6 +66,8 @@ namespace Squeal
   {
     Parameters repeated    = parameters;
     repeated.geometry.file = copy_of(parameters.geometry.path()).name;
+    if (parameters.discretization.coarser_mesh_is_file())
+      repeated.discretization.coarser_mesh = with_coarser_mesh(parameters).geometry.path();
     if (const std::string designs = designs_file(parameters); !designs.empty())
       {
         repeated.designs.file = "designs/given.csv";

@@ -16,7 +16,7 @@ namespace Squeal
     ModesAtPoints modes;
   };
 
-  /// Solves the scene on the coarser mesh that goes with the accuracy asked for, as a step of the run; nothing where none is asked for.
+  /// Solves the scene on the coarser mesh of the accuracy asked for, or on the given one, as a step of the run; nothing without either.
   std::optional<CoarserSolution> solve_on_coarser_mesh(Run &run);
 
   /// Errors of all modes, see discretisation_errors().
@@ -25,8 +25,8 @@ namespace Squeal
                                                const FrictionModes     &friction,
                                                AccuracyGoal             goal);
 
-  /// Says what accuracy is reached, counts the verdicts that include the error of the mesh, and warns of unstable modes that are not
-  /// converged.
+  /// Prints the accuracy that is reached, counts the verdicts that include the error of the mesh, and warns of unstable modes that are not
+  /// converged to the accuracy asked for, if any.
   void report_mesh_errors(const std::vector<DiscretisationError> &errors, const FrictionModes &friction, Run &run);
 
   /// Where the energy of every growing mode comes from, by numbers of the modes.
