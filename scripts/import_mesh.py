@@ -169,14 +169,17 @@ class Import:
         return "\n".join(lines + [f"  left out: {what}" for what in self.left])
 
     def materials(self, unit):
-        """Volume -> E, nu, rho in SI, of volumes all of whose elements have the same, in units that are known."""
+        """Volume -> constants, rho, axes in SI, of volumes all of whose elements have the same, in units that are known."""
         found, (stress, density) = {}, STRESS_AND_DENSITY.get(unit, (0.0, 0.0))
         for name in self.volumes:
             known = {self.mesh.materials.get(number) for number, volume in self.volume_of.items() if volume == name}
-            if len(known) == 1 and (material := known.pop()) and PLAUSIBLE_DENSITY[0] <= material[2] * density <= PLAUSIBLE_DENSITY[1]:
-                found[name] = material[0] * stress, material[1], material[2] * density
+            if len(known) == 1 and (material := known.pop()) and PLAUSIBLE_DENSITY[0] <= material[1] * density <= PLAUSIBLE_DENSITY[1]:
+                constants, rho, axes = material
+                is_modulus = (1, 0) if axes is None else (1, 1, 1, 0, 0, 0, 1, 1, 1)
+                found[name] = tuple(x * stress if scaled else x for x, scaled in zip(constants, is_modulus)), rho * density, axes
             elif self.mesh.materials:
-                self.left.append(f"material of {name}: not one that is isotropic, at one temperature, with a density in N, mm, t, s or SI")
+                self.left.append(f"material of {name}: not one that is isotropic or of engineering constants in straight axes or cylindrical ones about z, "
+                                 "at one temperature, with a density in N, mm, t, s or SI")
         return found
 
 
@@ -195,11 +198,17 @@ def parameter_file(mesh_file, result, materials, contact, mounts):
         text += section("Contact", f"# Surfaces of the disc: {names(result.is_on_disc)}; of other bodies: {names(lambda name: not result.is_on_disc(name))}",
                         "# set Pairs = surface of the disc / surface of another body: friction factor; ...")
     disc = next(filter(is_of_disc, result.volumes))
-    if disc in materials:
+    isotropic = {name: (*constants, rho) for name, (constants, rho, axes) in materials.items() if axes is None}
+    if disc in isotropic:
         text += section("Disc material", *(f"set {name} = {value:.10g}" for name, value in
-                                           zip(("Young modulus", "Poisson ratio", "Density"), materials[disc])))
-    if others := {name: values for name, values in materials.items() if not is_of_disc(name) or values != materials.get(disc)}:
-        text += section("Materials", "set Volumes = " + "; ".join(f"{name}: " + ", ".join(f"{x:.10g}" for x in values) for name, values in others.items()))
+                                           zip(("Young modulus", "Poisson ratio", "Density"), isotropic[disc])))
+    lists = {"Volumes": {name: values for name, values in isotropic.items() if not is_of_disc(name) or values != isotropic.get(disc)},
+             "Orthotropic": {name: (*constants, rho) for name, (constants, rho, axes) in materials.items() if axes is not None},
+             "Axes": {name: axes for name, (_, _, axes) in materials.items() if axes}}
+    if any(lists.values()):
+        text += section("Materials", *(f"set {parameter} = " + "; ".join(f"{name}: " + ", ".join(f"{x:.10g}" for x in values)
+                                                                         for name, values in entries.items())
+                                       for parameter, entries in lists.items() if entries))
     if mounts:
         text += section("Mounts", "set Elastic mounts = " + "; ".join(mounts))
     elif "disc_bore" not in result.surfaces:

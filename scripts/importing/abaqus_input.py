@@ -16,15 +16,28 @@ def split(line):
     return [word.strip() for word in words]
 
 
+def axes_of(options, rows):
+    """A vector along axis 1 and one in the plane of axes 1 and 2, () of cylindrical axes about z, None of others."""
+    points, angles = [float(word or 0) for word in rows[0]], [float(word or 0) for row in rows[1:] for word in row[1:]]
+    a, b, c = ((points + [0.0] * 9)[i:i + 3] for i in (0, 3, 6))
+    if options.get("DEFINITION", "COORDINATES") == "COORDINATES" and not any(angles):
+        if options.get("SYSTEM", "RECTANGULAR") == "RECTANGULAR":
+            return tuple(x - origin for point in (a, b) for x, origin in zip(point, c))
+        if options["SYSTEM"] == "CYLINDRICAL" and not any((*a[:2], *b[:2])):
+            return ()
+    return None
+
+
 class AbaqusInput:
     """points: label -> coordinates; elements: label -> (shape, labels of nodes); element_sets, node_sets: name -> labels;
-    surfaces: name -> [(label of an element, number of its face from 0)]; materials: label of an element -> (E, nu, rho), as they stand there,
-    or None if that is not all; dropped: what was not read. Names are in capitals, as Abaqus takes them."""
+    surfaces: name -> [(label of an element, number of its face from 0)]; materials: label of an element -> (constants, rho, axes), as they stand
+    there, or None if that is not all; constants: E, nu, or nine engineering constants; axes: of axes_of(); dropped: what was not read. Names are in capitals, as Abaqus takes them."""
 
     def __init__(self, path):
         self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
         self.surfaces, self.materials, self.dropped = {}, {}, []
         self._path, self._sections, self._properties, self._material = path, [], {}, None
+        self._axes = {None: (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)}
         self._parts, self._instance, self._of_part = 0, "", set()
         self._read()
         for label, (_, nodes) in self.elements.items():
@@ -36,9 +49,11 @@ class AbaqusInput:
         faces = {name: [face for entry in entries for face in self._faces(name, *entry)] for name, entries in self.surfaces.items()}
         self.surfaces = {name: members for name, members in faces.items() if None not in members}
         self.dropped += [f"surface {name}, which has edges, or faces of elements that are not read" for name in faces if name not in self.surfaces]
-        for elements, material in self._sections:
+        for elements, material, orientation in self._sections:
             properties = self._properties.get(material, {})
-            value = (properties["E"], properties["nu"], properties["rho"]) if len(properties) == 3 else None
+            is_isotropic = len(properties.get("constants", ())) == 2
+            axes = None if is_isotropic else self._axes.get(orientation)
+            value = (properties["constants"], properties["rho"], axes) if len(properties) == 2 and (is_isotropic or axes is not None) else None
             for label in self._known(self.element_sets, elements, "*SOLID SECTION"):
                 self.materials[label] = value if self.materials.get(label, value) == value else None
 
@@ -118,14 +133,18 @@ class AbaqusInput:
         elif keyword == "SURFACE":
             self.dropped.append(f"surface {options['NAME']}, which is neither of faces nor of nodes")
         elif keyword == "SOLID SECTION":
-            self._sections.append((options["ELSET"], options.get("MATERIAL")))
+            self._sections.append((options["ELSET"], options.get("MATERIAL"), options.get("ORIENTATION")))
+        elif keyword == "ORIENTATION":
+            self._axes[options["NAME"]] = axes_of(options, rows)
         elif keyword == "MATERIAL":
             if options["NAME"] in self._properties:
                 raise ValueError(f"{options['NAME']} is there twice")
             self._material = options["NAME"]
             self._properties[self._material] = {}
         elif keyword == "ELASTIC" and options.get("TYPE", "ISOTROPIC") in ("ISOTROPIC", "ISO") and len(rows) == 1:
-            self._properties[self._material].update(E=float(rows[0][0]), nu=float(rows[0][1]))
+            self._properties[self._material].update(constants=(float(rows[0][0]), float(rows[0][1])))
+        elif keyword == "ELASTIC" and options.get("TYPE") == "ENGINEERING CONSTANTS" and len(rows) == 2:
+            self._properties[self._material].update(constants=tuple(float(word) for word in [*rows[0][:8], rows[1][0]]))
         elif keyword == "DENSITY" and len(rows) == 1:
             self._properties[self._material].update(rho=float(rows[0][0]))
 

@@ -17,7 +17,7 @@ GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 
 
 class ForeignMesh:
     """points (n x 3); elements: [(shape, nodes)], shells and what is not read among them; element_sets, node_sets: name -> numbers; faces: name ->
-    tuples of nodes; materials: number of an element -> (E, nu, rho); dropped: what was not understood."""
+    tuples of nodes; materials: number of an element -> as of AbaqusInput; dropped: what was not understood."""
 
     def __init__(self):
         self.points, self.elements, self.dropped = np.empty((0, 3)), [], []

@@ -236,18 +236,17 @@ namespace Squeal
         const std::string &name      = mesh.volume_names[volume];
         const Material     material  = materials.of(name);
         const double       frequency = hertz(largest_circular_frequency), edge = longest_edges[volume];
-        const double       wave = std::sqrt(material.young_modulus / (2. * (1. + material.poisson_ratio) * material.density)) / frequency;
+        const double       wave = std::sqrt(material.least_wave_modulus() / material.density) / frequency;
         if (wave * degree >= edge)
           continue;
-        throw ParameterError(text("shear waves of ", frequency, " Hz are ", wave, " m long in ", name, ", whose elements measure up to ",
-                                  edge, " m: the mesh does not resolve the modes of the band"),
+        throw ParameterError(text(material.orthotropy ? "the slowest waves of " : "shear waves of ", frequency, " Hz are ", wave,
+                                  " m long in ", name, ", whose elements measure up to ", edge,
+                                  " m: the mesh does not resolve the modes of the band"),
                              "parameter Band/Maximum frequency",
                              text("lower it below ", wave * degree / edge * frequency,
                                   " Hz, choose smaller elements, or correct the modulus and "
                                   "density in ",
-                                  materials.has_own(name) ? "Materials/Volumes" :
-                                  is_of_disc(name)        ? "Disc material" :
-                                                            "Pin material"));
+                                  materials.section_of(name)));
       }
   }
 } // namespace Squeal

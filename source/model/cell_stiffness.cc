@@ -51,6 +51,21 @@ namespace Squeal
         }
     }
 
+    /// C : ∇φ.
+    Tensor<2, 3> stress_of(const ElasticLaw::Stiffness &C, const Displacement &displacement)
+    {
+      const unsigned int *columns = voigt[displacement.component];
+      double              stress[6];
+      for (unsigned int m = 0; m < 6; ++m)
+        stress[m] = C(m, columns[0]) * displacement.gradient[0] + C(m, columns[1]) * displacement.gradient[1] +
+                    C(m, columns[2]) * displacement.gradient[2];
+      Tensor<2, 3> result;
+      for (unsigned int a = 0; a < 3; ++a)
+        for (unsigned int b = 0; b < 3; ++b)
+          result[a][b] = stress[voigt[a][b]];
+      return result;
+    }
+
     /// Eliminates the last unknowns: the Schur complement of a positive definite matrix.
     void condense(const FullMatrix<double> &full, FullMatrix<double> &condensed)
     {
@@ -71,9 +86,8 @@ namespace Squeal
     }
   } // namespace
 
-  void add_stiffness(const ElementValues &values, const Element element, const double poisson_ratio, FullMatrix<double> &stiffness)
+  void add_stiffness(const ElementValues &values, const Element element, const ElasticLaw &law, FullMatrix<double> &stiffness)
   {
-    const double              G = 1. / (2. * (1. + poisson_ratio)), lame = 2. * G * poisson_ratio / (1. - 2. * poisson_ratio);
     const bool                has_modes = element == Element::incompatible_modes && values.element().shape == Shape::hexahedron;
     const unsigned int        n         = stiffness.m() + (has_modes ? n_modes : 0);
     const Tensor<2, 3>        at_centre = has_modes ? centre_gradients(values) : Tensor<2, 3>();
@@ -88,18 +102,13 @@ namespace Squeal
             displacements.push_back({c, values.gradient(i, q)});
         if (has_modes)
           add_incompatible_modes(values, q, at_centre, displacements);
+        const ElasticLaw::Stiffness C = law.at(values.point(q)) * values.JxW(q);
         for (unsigned int i = 0; i < n; ++i)
-          for (unsigned int j = 0; j <= i; ++j)
-            {
-              // For φ_i = N_i e_a, φ_j = N_j e_b:
-              // 2 ε:ε = δ_ab ∇N_i·∇N_j + ∂_b N_i ∂_a N_j and div div = ∂_a N_i ∂_b N_j
-              const auto &[a, grad_i] = displacements[i];
-              const auto &[b, grad_j] = displacements[j];
-              double k                = G * grad_i[b] * grad_j[a] + lame * grad_i[a] * grad_j[b];
-              if (a == b)
-                k += G * (grad_i * grad_j);
-              K(i, j) += k * values.JxW(q);
-            }
+          {
+            const Tensor<2, 3> stress = stress_of(C, displacements[i]);
+            for (unsigned int j = 0; j <= i; ++j)
+              K(i, j) += stress[displacements[j].component] * displacements[j].gradient;
+          }
       }
     for (unsigned int i = 0; i < n; ++i)
       for (unsigned int j = 0; j < i; ++j)

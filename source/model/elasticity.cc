@@ -56,29 +56,6 @@ namespace Squeal
       return result;
     }
 
-    /// Terms of a volume: stiffness and mass at unit coefficient, once more as its damping.
-    void add_volume(BodyTerms &bodies, const Model &model, const unsigned int volume, const Material &material)
-    {
-      const std::string    &name      = model.volume_names()[volume];
-      const ElementIntegral stiffness = [&](const ElementValues &values, FullMatrix<double> &K) {
-        check_orientation(values, name);
-        add_stiffness(values, model.element(), material.poisson_ratio, K);
-      };
-      const ElementIntegral mass = [](const ElementValues &values, FullMatrix<double> &M) {
-        add_in_each_direction(values, M,
-                              [&values](const auto i, const auto j, const auto q) { return values.value(i, q) * values.value(j, q); });
-      };
-      const auto  matrices = assemble(model, cells_of_volume(model, volume), {stiffness, mass});
-      const auto &K = matrices[0], &M = matrices[1];
-
-      const std::string young = BodyParameter::young_modulus(name), density = BodyParameter::density(name),
-                        alpha = BodyParameter::rayleigh_alpha(name), beta = BodyParameter::rayleigh_beta(name);
-      bodies.terms.push_back(sparse_term("stiffness, " + name, 0, {1., {{young, 1}}}, K));
-      bodies.terms.push_back(sparse_term("mass, " + name, 2, {1., {{density, 1}}}, M));
-      bodies.terms.push_back(sparse_term("damping by stiffness, " + name, 1, {1., {{beta, 1}, {young, 1}}}, K));
-      bodies.terms.push_back(sparse_term("damping by mass, " + name, 1, {1., {{alpha, 1}, {density, 1}}}, M));
-    }
-
     /// K_e of a mounted surface in a direction.
     Matrix mount_matrix(const Model &model, const std::string &surface, const int direction)
     {
@@ -161,11 +138,34 @@ namespace Squeal
     return result;
   }
 
+  std::vector<Term> volume_terms(const Model &model, const unsigned int volume, const Material &material)
+  {
+    const ElasticLaw      law(material);
+    const std::string    &name      = model.volume_names()[volume];
+    const ElementIntegral stiffness = [&](const ElementValues &values, FullMatrix<double> &K) {
+      check_orientation(values, name);
+      add_stiffness(values, model.element(), law, K);
+    };
+    const ElementIntegral mass = [](const ElementValues &values, FullMatrix<double> &M) {
+      add_in_each_direction(values, M,
+                            [&values](const auto i, const auto j, const auto q) { return values.value(i, q) * values.value(j, q); });
+    };
+    const auto  matrices = assemble(model, cells_of_volume(model, volume), {stiffness, mass});
+    const auto &K = matrices[0], &M = matrices[1];
+
+    const std::string young = BodyParameter::young_modulus(name), density = BodyParameter::density(name),
+                      alpha = BodyParameter::rayleigh_alpha(name), beta = BodyParameter::rayleigh_beta(name);
+    return {sparse_term("stiffness, " + name, 0, {1., {{young, 1}}}, K), sparse_term("mass, " + name, 2, {1., {{density, 1}}}, M),
+            sparse_term("damping by stiffness, " + name, 1, {1., {{beta, 1}, {young, 1}}}, K),
+            sparse_term("damping by mass, " + name, 1, {1., {{alpha, 1}, {density, 1}}}, M)};
+  }
+
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials)
   {
     BodyTerms bodies{{}, body_values(model, materials)};
     for (unsigned int volume = 0; volume < model.volume_names().size(); ++volume)
-      add_volume(bodies, model, volume, materials.of(model.volume_names()[volume]));
+      for (Term &term : volume_terms(model, volume, materials.of(model.volume_names()[volume])))
+        bodies.terms.push_back(std::move(term));
     std::map<std::pair<std::string, int>, Matrix> matrices; // springs and dashpots of a surface share theirs
     for (const MountParameter &mount : mount_parameters(materials))
       {

@@ -62,11 +62,11 @@ namespace Squeal
     double shortest_wave(const Parameters &parameters)
     {
       constexpr double rayleigh  = 0.9; // of the speed of shear waves
-      const Material  &disc      = parameters.materials.disc;
+      const Material   disc      = parameters.materials.of("disc");
       const double     frequency = parameters.discretization.maximum_frequency, omega = circular_frequency(frequency);
-      const double     nu = disc.poisson_ratio, h = parameters.geometry.disc_thickness;
+      const double     nu = disc.mean_poisson_ratio(), h = parameters.geometry.disc_thickness;
       const double     plate_speed = std::sqrt(disc.young_modulus / (12. * (1. - nu * nu) * disc.density)); // √(D / ρh) / h
-      const double     shear_speed = std::sqrt(disc.young_modulus / (2. * (1. + nu) * disc.density));
+      const double     shear_speed = std::sqrt(disc.least_wave_modulus() / disc.density);
       return std::min(2. * M_PI * std::sqrt(plate_speed * h / omega), rayleigh * shear_speed / frequency);
     }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 namespace Squeal
@@ -32,6 +33,26 @@ namespace Squeal
                                     "volume",
                                     {3, 5}};
 
+    const ListFormat orthotropic_list = {"Materials/Orthotropic",
+                                         "not the orthotropic material of a volume",
+                                         "volume: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, density, alpha, beta; volume: ... [Pa, Pa, "
+                                         "Pa, -, -, -, Pa, Pa, Pa, kg/m^3, 1/s, s], or without alpha and beta",
+                                         "volume",
+                                         {10, 12}};
+
+    const ListFormat axes_list = {"Materials/Axes",
+                                  "not the axes of a volume",
+                                  "volume: x, y, z of a vector along axis 1, x, y, z of another one in the plane of axes 1 and 2; "
+                                  "volume: ...",
+                                  "volume",
+                                  {6}};
+
+    /// Least determinant of the compliance over the product of its diagonal; ν = 0.4999 of an isotropic material leaves 4.5e-4.
+    constexpr double least_determinant = 4e-4;
+
+    /// Sine of the angle between two vectors below which they count as parallel.
+    constexpr double least_sine = 1e-6;
+
     void declare_material(Declarations &declarations, const std::string &section, Material &material)
     {
       declarations.enter(section);
@@ -48,16 +69,69 @@ namespace Squeal
                        {0.});
     }
 
+    /// The compliance of an orthotropic material is positive definite.
+    void check_constants(const std::string &where, const Material &material)
+    {
+      const Orthotropy &o  = *material.orthotropy;
+      const double      E1 = material.young_modulus, nu12 = material.poisson_ratio;
+      const auto        refuse = [&](const std::string &what, const std::string &change) { throw ParameterError(what, where, change); };
+      for (const auto &[name, value] : {std::pair("E1", E1), {"E2", o.E2}, {"E3", o.E3}, {"G12", o.G12}, {"G13", o.G13}, {"G23", o.G23}})
+        if (!(value > 0.))
+          refuse(text(name, " is ", exact_text(value), " Pa"), "give positive moduli");
+      const std::string convention  = "nu12 = -eps2/eps1 under stress along axis 1, so that nu12/E1 = nu21/E2: exchange nu_ij and nu_ji if "
+                                      "they are those of another convention";
+      const auto        check_ratio = [&](const char *axes, const double nu, const double E_i, const double E_j) {
+        if (!(nu * nu < E_i / E_j))
+          refuse(text("the strain energy is not positive: nu", axes, "^2 is ", nu * nu, ", not below E", axes[0], "/E", axes[1], " = ",
+                             E_i / E_j),
+                        convention);
+      };
+      check_ratio("12", nu12, E1, o.E2);
+      check_ratio("13", o.nu13, E1, o.E3);
+      check_ratio("23", o.nu23, o.E2, o.E3);
+      const double determinant = 1. - nu12 * nu12 * o.E2 / E1 - o.nu13 * o.nu13 * o.E3 / E1 - o.nu23 * o.nu23 * o.E3 / o.E2 -
+                                 2. * nu12 * o.nu13 * o.nu23 * o.E3 / E1;
+      if (!(determinant >= least_determinant))
+        refuse(text("the strain energy is not positive, or the material almost incompressible: 1 - nu12^2 E2/E1 - nu13^2 E3/E1 - nu23^2 "
+                    "E3/E2 - 2 nu12 nu13 nu23 E3/E1 is ",
+                    determinant, ", not at least ", least_determinant),
+               "give smaller Poisson's ratios; " + convention);
+    }
+
+    void check_axes(const MaterialAxes &axes)
+    {
+      const auto       &v     = axes.vectors;
+      const double      cross = std::hypot(v[1] * v[5] - v[2] * v[4], v[2] * v[3] - v[0] * v[5], v[0] * v[4] - v[1] * v[3]);
+      const double      sizes = std::hypot(v[0], v[1], v[2]) * std::hypot(v[3], v[4], v[5]);
+      const std::string where = "parameter Materials/Axes, volume " + legible(axes.volume);
+      if (!(sizes > 0.))
+        throw ParameterError("a vector is zero", where, "give two vectors with a length");
+      if (!(cross > least_sine * sizes))
+        throw ParameterError("the two vectors are parallel", where, "give two vectors that span the plane of axes 1 and 2");
+    }
+
+    std::function<double &(VolumeMaterial &)> orthotropic_number(double Orthotropy::*number)
+    {
+      return [number](VolumeMaterial &material) -> double & {
+        if (!material.orthotropy)
+          material.orthotropy.emplace();
+        return *material.orthotropy.*number;
+      };
+    }
+
     void check_material(const std::string &section, const Material &material)
     {
       const auto require = [&](const bool is_fine, const std::string &what, const char *name, const char *change) {
         if (!is_fine)
           throw ParameterError(what, "parameter " + section + "/" + name, change);
       };
+      if (material.orthotropy)
+        check_constants("parameter " + section, material);
       require(material.young_modulus > 0., "Young's modulus is " + exact_text(material.young_modulus) + " Pa", "Young modulus",
               "give a positive value");
-      require(material.poisson_ratio > -1. && material.poisson_ratio <= 0.4999, "Poisson's ratio is " + exact_text(material.poisson_ratio),
-              "Poisson ratio", "give a value above -1 and up to 0.4999 (the stiffness of an incompressible material is infinite)");
+      require(material.orthotropy || (material.poisson_ratio > -1. && material.poisson_ratio <= 0.4999),
+              "Poisson's ratio is " + exact_text(material.poisson_ratio), "Poisson ratio",
+              "give a value above -1 and up to 0.4999 (the stiffness of an incompressible material is infinite)");
       require(material.density > 0., "the density is " + exact_text(material.density) + " kg/m^3", "Density", "give a positive value");
       require(material.rayleigh_alpha >= 0. && std::isfinite(material.rayleigh_alpha),
               "the damping in proportion to the mass is " + exact_text(material.rayleigh_alpha) + " 1/s", "Rayleigh alpha",
@@ -71,6 +145,26 @@ namespace Squeal
   bool Material::is_damped() const
   {
     return rayleigh_alpha != 0. || rayleigh_beta != 0.;
+  }
+
+  bool Material::has_fixed_axes() const
+  {
+    return orthotropy && orthotropy->axes;
+  }
+
+  double Material::least_wave_modulus() const
+  {
+    if (orthotropy)
+      return std::min({young_modulus, orthotropy->E2, orthotropy->E3, orthotropy->G12, orthotropy->G13, orthotropy->G23});
+    return young_modulus / (2. * (1. + poisson_ratio));
+  }
+
+  double Material::mean_poisson_ratio() const
+  {
+    if (!orthotropy)
+      return poisson_ratio;
+    const double E1 = young_modulus, E2 = orthotropy->E2, E3 = orthotropy->E3;
+    return ((poisson_ratio + orthotropy->nu13) / E1 + orthotropy->nu23 / E2) / (1. / E1 + 1. / E2 + 1. / E3);
   }
 
   void MaterialParameters::declare(Declarations &declarations)
@@ -87,6 +181,25 @@ namespace Squeal
                  {&VolumeMaterial::young_modulus, &VolumeMaterial::poisson_ratio, &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha,
                   &VolumeMaterial::rayleigh_beta},
                  &VolumeMaterial::volume);
+    declare_list(declarations, "Orthotropic", orthotropic,
+                 "Volumes of orthotropic materials, such as brake linings, as a list `volume: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, "
+                 "density, Rayleigh alpha, Rayleigh beta; ...`; without the last two they are not damped. Axes: 1 radial, 2 tangential, 3 "
+                 "axial about the z axis, or those of Axes. nu12 = -eps2/eps1 under stress along axis 1, and so on: nu_ij/E_i = nu_ji/E_j. "
+                 "Units: Pa, none, Pa, kg/m^3, 1/s, s.",
+                 orthotropic_list,
+                 {&VolumeMaterial::young_modulus, orthotropic_number(&Orthotropy::E2), orthotropic_number(&Orthotropy::E3),
+                  &VolumeMaterial::poisson_ratio, orthotropic_number(&Orthotropy::nu13), orthotropic_number(&Orthotropy::nu23),
+                  orthotropic_number(&Orthotropy::G12), orthotropic_number(&Orthotropy::G13), orthotropic_number(&Orthotropy::G23),
+                  &VolumeMaterial::density, &VolumeMaterial::rayleigh_alpha, &VolumeMaterial::rayleigh_beta},
+                 &VolumeMaterial::volume);
+    std::vector<std::function<double &(MaterialAxes &)>> components;
+    for (std::size_t i = 0; i < 6; ++i)
+      components.emplace_back([i](MaterialAxes &entry) -> double & { return entry.vectors[i]; });
+    declare_list(
+      declarations, "Axes", axes,
+      "Fixed axes of orthotropic volumes as a list `volume: x, y, z, x, y, z; ...`: a vector along axis 1 and another one in the "
+      "plane of axes 1 and 2, of any length. Units: none.",
+      axes_list, components, &MaterialAxes::volume);
 
     declarations.enter("Mounts");
     declare_list(declarations, "Elastic mounts", mounts,
@@ -107,6 +220,18 @@ namespace Squeal
   {
     for (const auto &[section, material] : all())
       check_material(section, material);
+    const auto names = [](const std::string &volume) { return [volume](const auto &entry) { return entry.volume == volume; }; };
+    for (const VolumeMaterial &own : orthotropic)
+      if (std::any_of(volumes.begin(), volumes.end(), names(own.volume)))
+        throw ParameterError("volume " + in_quotes(own.volume) + " has two materials", "parameter Materials/Orthotropic",
+                             "name it here or in Materials/Volumes");
+    for (const MaterialAxes &entry : axes)
+      {
+        if (std::none_of(orthotropic.begin(), orthotropic.end(), names(entry.volume)))
+          throw ParameterError("volume " + in_quotes(entry.volume) + " has axes, but no orthotropic material", "parameter Materials/Axes",
+                               "give its constants in Materials/Orthotropic, or leave its axes out");
+        check_axes(entry);
+      }
     const auto check_mounts = [](const std::vector<Mount> &list, const std::string &name, const std::string &quantity, const char *unit) {
       for (const Mount &mount : list)
         for (const double value : {mount.radial, mount.tangential, mount.axial})
@@ -128,15 +253,33 @@ namespace Squeal
 
   Material MaterialParameters::of(const std::string &volume) const
   {
-    for (const VolumeMaterial &own : volumes)
-      if (own.volume == volume)
-        return own;
+    for (const auto *list : {&volumes, &orthotropic})
+      for (const VolumeMaterial &own : *list)
+        if (own.volume == volume)
+          {
+            Material result = own;
+            for (const MaterialAxes &entry : axes)
+              if (result.orthotropy && entry.volume == volume)
+                result.orthotropy->axes = entry.vectors;
+            return result;
+          }
     return is_of_disc(volume) ? disc : pin;
+  }
+
+  std::string MaterialParameters::section_of(const std::string &volume) const
+  {
+    return of(volume).orthotropy ? "Materials/Orthotropic" :
+           has_own(volume)       ? "Materials/Volumes" :
+           is_of_disc(volume)    ? "Disc material" :
+                                   "Pin material";
   }
 
   bool MaterialParameters::has_own(const std::string &volume) const
   {
-    return std::any_of(volumes.begin(), volumes.end(), [&](const VolumeMaterial &own) { return own.volume == volume; });
+    const auto is_in = [&](const std::vector<VolumeMaterial> &list) {
+      return std::any_of(list.begin(), list.end(), [&](const VolumeMaterial &own) { return own.volume == volume; });
+    };
+    return is_in(volumes) || is_in(orthotropic);
   }
 
   bool MaterialParameters::is_damped() const
@@ -148,16 +291,18 @@ namespace Squeal
   std::vector<Material *> MaterialParameters::each()
   {
     std::vector<Material *> result = {&disc, &pin};
-    for (VolumeMaterial &own : volumes)
-      result.push_back(&own);
+    for (auto *list : {&volumes, &orthotropic})
+      for (VolumeMaterial &own : *list)
+        result.push_back(&own);
     return result;
   }
 
   std::vector<std::pair<std::string, Material>> MaterialParameters::all() const
   {
     std::vector<std::pair<std::string, Material>> result = {{"Disc material", disc}, {"Pin material", pin}};
-    for (const VolumeMaterial &own : volumes)
-      result.emplace_back("Materials/Volumes, " + own.volume, own);
+    for (const auto *list : {&volumes, &orthotropic})
+      for (const VolumeMaterial &own : *list)
+        result.emplace_back(section_of(own.volume) + ", " + own.volume, of(own.volume));
     return result;
   }
 

@@ -81,6 +81,12 @@ TEST(WaveResolution, RefusesElementsLongerThanAShearWave)
     limit *= 1.1;
   EXPECT_FALSE(refused(MaterialParameters(), 1, limit));
   // Nodes of quadratic elements are twice as dense
+  // Orthotropic: the same with a shear modulus that is as small
+  MaterialParameters soft_in_shear;
+  soft_in_shear.orthotropic = {
+    {{1.9e9, 0.25, 3070., 0., 0., Orthotropy{1.9e9, 1.9e9, 0.25, 0.25, 1e9, soft_pins.pin.least_wave_modulus(), 1e9}}, "pin_top_1"}};
+  EXPECT_TRUE(refused(soft_in_shear, 1, limit));
+  EXPECT_FALSE(refused(soft_in_shear, 1, limit / 1.1));
   EXPECT_FALSE(refused(soft_pins, 2, limit));
   EXPECT_TRUE(refused(soft_pins, 2, 2. * limit));
 }

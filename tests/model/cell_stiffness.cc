@@ -35,7 +35,7 @@ namespace
     ElementValues values(model);
     values.reinit(model.cells().front());
     FullMatrix<double> K(3 * values.n_nodes());
-    add_stiffness(values, element, poisson_ratio, K);
+    add_stiffness(values, element, ElasticLaw(Material{1., poisson_ratio, 1.}), K);
 
     std::vector<double> u;
     for (unsigned int i = 0; i < values.n_nodes(); ++i)

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 
 using namespace Squeal;
 using namespace Squeal::Testing;
@@ -167,22 +168,26 @@ TEST(Declarations, SayWhatEveryKindAccepts)
       if (parameter.accepted.empty())
         free_texts.push_back(parameter.path);
     }
-  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File", "Materials/Volumes", "Mounts/Elastic mounts", "Mounts/Dashpots",
-                                                  "Mounts/Added masses", "Discretization/Coarser mesh", "Contact/Pairs", "Contact/Tied",
-                                                  "Steady sliding/Loads", "Steady sliding/Gaps", "Damping/Modal damping ratio",
-                                                  "Reduction/Bases", "Reduction/Component modes", "Accuracy study/Elements",
-                                                  "Accuracy study/Outlines", "Accuracy study/Bases", "Designs/Variables", "Designs/File"}));
+  EXPECT_EQ(
+    free_texts,
+    (std::vector<std::string>{
+      "Geometry/File",           "Materials/Volumes",       "Materials/Orthotropic",       "Materials/Axes",    "Mounts/Elastic mounts",
+      "Mounts/Dashpots",         "Mounts/Added masses",     "Discretization/Coarser mesh", "Contact/Pairs",     "Contact/Tied",
+      "Steady sliding/Loads",    "Steady sliding/Gaps",     "Damping/Modal damping ratio", "Reduction/Bases",   "Reduction/Component modes",
+      "Accuracy study/Elements", "Accuracy study/Outlines", "Accuracy study/Bases",        "Designs/Variables", "Designs/File"}));
 }
 
 TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
 {
-  const Parameters p =
-    read("", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 12345678.9, 3; disc_rim: 0, 7e9, 0",
-              "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
-              "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7",
-              "Materials/Volumes=pin_top_1: 1.23456789e9, 0.3, 3000; pin_bottom_2: 2e9, 0.25, 3070",
-              "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02", "Output/Mode shapes=unstable",
-              "Linear algebra/Factorization=MUMPS"});
+  const Parameters p = read(
+    "", {"Operation/Radial dissipation=consistent", "Mounts/Elastic mounts=disc_bore: 1, 12345678.9, 3; disc_rim: 0, 7e9, 0",
+         "Geometry/Bottom pin radii=0.2", "Geometry/Bottom pin angles=0.3333333333333333", "Complex modes/Tolerance=2e-10",
+         "Geometry/Element size=0.0123456789", "Pin material/Rayleigh beta=1.2345678e-7",
+         "Materials/Volumes=pin_top_1: 1.23456789e9, 0.3, 3000; pin_bottom_2: 2e9, 0.25, 3070",
+         "Materials/Orthotropic=pad: 2e9, 2e9, 5e8, 0.2, 0.1, 0.1, 8e8, 3e8, 3.3e8, 2600, 0, 1.5e-7; disc: 2e11, 1e11, 1e11, 0.3, 0.3, "
+         "0.2, 5e10, 6e10, 7e10, 7200",
+         "Materials/Axes=pad: 1, 0.123456789, 0, 0, 1, -3", "Damping/Modal damping ratio=100: 0.0123456789, 2500.5: 0.02",
+         "Output/Mode shapes=unstable", "Linear algebra/Factorization=MUMPS"});
   const Parameters back = read(printed(p));
   EXPECT_NE(printed(p), printed(Parameters()));
   EXPECT_EQ(printed(back), printed(p));
@@ -193,6 +198,15 @@ TEST(ParameterFiles, WhatIsPrintedReadsBackTheSame)
   EXPECT_EQ(back.materials.of("pin_top_1").young_modulus, 1.23456789e9);
   EXPECT_EQ(back.materials.of("pin_bottom_2").rayleigh_beta, 0.);
   EXPECT_EQ(back.materials.of("pin_bottom_1").rayleigh_beta, 1.2345678e-7);
+  const Material pad = back.materials.of("pad"), disc = back.materials.of("disc");
+  EXPECT_EQ(pad.orthotropy->nu23, 0.1);
+  EXPECT_EQ(pad.orthotropy->G23, 3.3e8);
+  EXPECT_EQ(pad.rayleigh_beta, 1.5e-7);
+  EXPECT_EQ(*pad.orthotropy->axes, (std::array<double, 6>{{1., 0.123456789, 0., 0., 1., -3.}}));
+  EXPECT_EQ(disc.density, 7200.);
+  EXPECT_FALSE(disc.orthotropy->axes);
+  EXPECT_EQ(pad.least_wave_modulus(), 3e8);
+  EXPECT_NEAR(pad.mean_poisson_ratio(), 0.2 / 3., 1e-15);
   ASSERT_EQ(back.damping.modal_ratios.size(), 2u);
   EXPECT_EQ(back.damping.modal_ratios[0].ratio, 0.0123456789);
   EXPECT_EQ(back.damping.modal_ratios[1].frequency, 2500.5);
@@ -211,7 +225,8 @@ TEST(ParameterFiles, ZeroHasNoSign)
 TEST(ParameterChecks, RefuseWithNameAndReason)
 {
   const std::string damped = "Operation/Radial dissipation=consistent";
-  const std::string pins = "Materials/Volumes", mounts = "Mounts/Elastic mounts", ratios = "Damping/Modal damping ratio";
+  const std::string pins = "Materials/Volumes", orthotropic = "Materials/Orthotropic", mounts = "Mounts/Elastic mounts",
+                    ratios = "Damping/Modal damping ratio";
   expect_refused({{"Band/Maximum frequency=0", {"give a positive frequency"}},
                   {"Output/Animation frames=-1", {"-1"}},
                   {"Disc material/Young modulus=0", {"positive"}},
@@ -220,6 +235,15 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                   {"Disc material/Rayleigh alpha=-1", {"-1"}},
                   {pins + "=pin_top_1: 2e9, 0.25", {"is not the material of a volume"}},
                   {pins + "=pin_top_1: 2e9, 0.5, 3000", {", pin_top_1/Poisson ratio", "incompressible"}},
+                  {orthotropic + "=pad: 2e9, 2e9, 5e8", {"is not the orthotropic material of a volume", "E1, E2, E3, nu12"}},
+                  {orthotropic + "=pad: 2e9, 0, 5e8, 0.2, 0.1, 0.1, 8e8, 3e8, 3e8, 2600", {"E2 is 0 Pa", ", pad", "positive"}},
+                  {orthotropic + "=pad: 2e9, 2e9, 5e8, 0.2, 0.1, 0.1, 8e8, 3e8, -1, 2600", {"G23 is -1 Pa"}},
+                  {orthotropic + "=pad: 1e9, 4e9, 4e9, 0.5, 0, 0, 1e9, 1e9, 1e9, 2600", {"nu12^2 is 0.25, not below E1/E2", "nu21"}},
+                  {orthotropic + "=pad: 1e9, 1e9, 4e9, 0, 0.6, 0, 1e9, 1e9, 1e9, 2600", {"nu13^2", "E1/E3"}},
+                  {orthotropic + "=pad: 4e9, 4e9, 1e9, 0, 0, 2.1, 1e9, 1e9, 1e9, 2600", {"nu23^2", "E2/E3"}},
+                  {orthotropic + "=pad: 1e9, 1e9, 1e9, 0.5, 0.5, 0.5, 1e9, 1e9, 1e9, 2600", {"incompressible", "2 nu12 nu13 nu23"}},
+                  {orthotropic + "=pad: 1e9, 1e9, 1e9, 0.2, 0.2, 0.2, 1e9, 1e9, 1e9, 0", {"the density is 0"}},
+                  {"Materials/Axes=pad: 1, 0, 0, 0, 1, 0", {"`pad` has axes, but no orthotropic material"}},
                   {"Contact/Pairs=disc_top", {"`disc_top` is not a pair of surfaces"}},
                   {"Contact/Pairs=top / pad: 0", {"is not a positive number"}},
                   {"Contact/Pairs=top / top", {"would rub itself"}},
@@ -238,6 +262,13 @@ TEST(ParameterChecks, RefuseWithNameAndReason)
                   {ratios + "=1000: 1", {"the damping ratio 1 at 1000 Hz is not in [0, 1)"}},
                   {ratios + "=-1: 0.01", {"not a finite value >= 0"}},
                   {ratios + "=2000: 0.01, 1000: 0.02", {"does not exceed the one before it, 2000 Hz"}}});
+  const std::string lining = "pad: 2e9, 2e9, 5e8, 0.2, 0.1, 0.1, 8e8, 3e8, 3e8, 2600", given = orthotropic + "=" + lining;
+  expect_mentions(refusal("", {pins + "=pad: 2e9, 0.25, 2600", given}), {"`pad` has two materials", orthotropic, pins});
+  for (const auto &[axes, reason] : std::map<std::string, std::string>{{"pad: 1, 2, 0, -2, -4, 0", "parallel"},
+                                                                       {"pad: 0, 0, 0, 0, 1, 0", "zero"},
+                                                                       {"pad: 1, 0", "not the axes of a volume"}})
+    expect_mentions(refusal("", {given, "Materials/Axes=" + axes}), {reason, "Materials/Axes"});
+  EXPECT_EQ(refusal("", {given, "Materials/Axes=pad: 1, 2, 0, 0, 3, 1"}), "accepted");
   // Without dissipation neither matters
   for (const std::string name : {"Operation/Rotation speed", "Operation/Load per side"})
     {

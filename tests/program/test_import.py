@@ -153,6 +153,22 @@ class Import(ProgramTest):
             self.assertIn(left or "with the materials of disc, pin_top", self.imported("variant.inp", "variant.msh", "--unit", "mm", *self.ABAQUS))
             self.assertEqual(len(meshio.read(self.folder / "variant.msh").cells[0].data), len(self.mesh.faces))
 
+    def test_engineering_constants(self):
+        """In the axes of an orientation, in x, y and z without one; others are left out."""
+        constants = "*ELASTIC, TYPE=ENGINEERING CONSTANTS\n2000., 1500., 500., 0.2, 0.1, 0.15, 800., 300.\n250."
+        text = abaqus(self.mesh).replace("*ELASTIC\n2000., 0.1", constants)
+        for orientation, is_about_z in (("\n0., 0., 0., 0., 0., 1.\n3, 0.", True), ("\n0., 0., 0., 1., 0., 0.", False)):
+            self.write("variant.inp", text.replace("ELSET=PAD_T,", "ELSET=PAD_T, ORIENTATION=O,") + f"*ORIENTATION, NAME=O, SYSTEM=CYLINDRICAL{orientation}\n")
+            (self.folder / "variant.prm").unlink(missing_ok=True)
+            said = self.imported("variant.inp", "variant.msh", "--unit", "mm", *self.ABAQUS)
+            self.assertEqual("material of pin_top" in said, not is_about_z)
+            stub = (self.folder / "variant.prm").read_text(encoding="utf-8")
+            values = "2000000000, 1500000000, 500000000, 0.2, 0.1, 0.15, 800000000, 300000000, 250000000, 2500"
+            self.assertIn("pin_bottom: " + values, stub)
+            self.assertEqual("pin_top: " + values in stub, is_about_z)
+            self.assertIn("set Axes = pin_bottom: 1, 0, 0, 0, 1, 0\n", stub)
+            self.assertIn("kg", self.call("variant.prm", "--dry-run", "--set", "Mounts/Elastic mounts=disc_bore: 0, 7.8e10, 1.88e10").stdout)
+
     def test_names_from_a_file(self):
         names = {"unit": "mm", "volumes": {"disc": "ROTOR", "pin_top": ["PAD_T"], "pin_bottom": ["PAD_B"]}, "surfaces": {**SURFACES, "pin_clamp": ["BACKS"]}}
         yaml = "\n".join(f"{key}: {json.dumps(value)}" for key, value in names.items())

@@ -83,6 +83,10 @@ class Refusals(ProgramTest):
         self.scene_refused(["no volume `pin_top_3`", pins, "pin_top_1, pin_top_2, pin_bottom_1"], f"{pins}=pin_top_3: 2e9, 0.25, 3000")
         self.scene_refused(["`pin_top_1: 2e9` is not the material", pins, "volume: Young modulus"], f"{pins}=pin_top_1: 2e9")
 
+    def test_orthotropic_volume(self):
+        self.scene_refused(["no volume `pin_top_3`", "Materials/Orthotropic", "pin_top_1, pin_top_2, pin_bottom_1"],
+                           "Materials/Orthotropic=pin_top_3: 2e9, 2e9, 5e8, 0.2, 0.1, 0.1, 8e8, 3e8, 3e8, 2600")
+
     def test_loads_of_pins(self):
         per_pin, loads = "Steady sliding/Control=load per pin", "Steady sliding/Loads"
         self.sliding_refused(["no pin `pin_left`", loads, "pin_bottom_2"], per_pin, f"{loads}=pin_left: 500")

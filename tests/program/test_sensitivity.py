@@ -170,6 +170,26 @@ class Sensitivity(ProgramTest):
         names = self.check_modes([*RICH, modal(RATIOS)], paths)
         self.assertEqual({name for name in names if "ratio: " in name}, set(ratios))
 
+    def test_orthotropic_pin(self):
+        """Every constant of a pin compared with complete runs; with E1 all moduli change."""
+        numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), (2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9)))
+
+        def scene(**changed):
+            return ["Materials/Orthotropic=pin_top_1: " + ", ".join(map(repr, ({**numbers, **changed}).values())) + ", 3070, 10, 1e-7",
+                    "Materials/Axes=pin_top_1: 1, 0.2, 0, 0, 1, 0.3", "Pin material/Rayleigh beta=2e-8"]
+
+        folder = self.run_scene("orthotropic", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
+                                "Sensitivity/Largest number of modes=3", *scene())
+        rows = [row for row in read_table(folder / "sensitivities.csv") if row["parameter"].startswith("Materials/Orthotropic:/")]
+        self.assertEqual({row["only of"] for row in rows}, {"pin_top_1"})
+        for name in numbers:
+            of_path = [row for row in rows if row["parameter"].rsplit("/", 1)[1].split()[0] == name]
+            self.assertGreaterEqual(len(of_path), 2)
+            scaled = [key for key in numbers if name == "E1" and not key.startswith("nu")] or [name]
+            around = {side: self.eigenvalues_at(*scene(**{key: numbers[key] * (1 + side * STEP) for key in scaled})) for side in (-1, 1)}
+            for row in of_path:
+                self.compare(row, around, numbers[name] * STEP)
+
     def test_identities(self):
         """The unit of force changes nothing, all pins together are the pins, and percentages are what they say."""
         folder = self.run_scene("plain", STUDY, NO_THRESHOLDS, "Sensitivity/Tolerance=1e-8")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <squeal/model/elastic_law.h>
 #include <squeal/model/element_values.h>
 
 #include <deal.II/lac/full_matrix.h>
@@ -7,7 +8,7 @@
 namespace Squeal
 {
   /**
-   * Adds the stiffness of one cell at Young's modulus 1, K_ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV.
+   * Adds the stiffness of one cell over Young's modulus, K_ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV.
    *
    * Hexahedra with incompatible modes (E. L. Wilson, R. L. Taylor et al. 1973; R. L. Taylor, P. J. Beresford, E. L. Wilson 1976)
    * have in each cell nine displacements more, (1 − ξ_a²) e_b with ξ in [−1, 1]³, which neighbours do not share:
@@ -18,5 +19,5 @@ namespace Squeal
    * ∇(1 − ξ_a²) := (det J₀ / det J) J₀⁻ᵀ ∇_ξ (1 − ξ_a²), their mean over the cell vanishes: states of constant strain are exact in
    * hexahedra of any shape. They have no mass. Other cells have no such modes.
    */
-  void add_stiffness(const ElementValues &values, Element element, double poisson_ratio, dealii::FullMatrix<double> &stiffness);
+  void add_stiffness(const ElementValues &values, Element element, const ElasticLaw &law, dealii::FullMatrix<double> &stiffness);
 } // namespace Squeal

@@ -16,7 +16,7 @@ namespace Squeal
   /// Names of the parameters of body_terms() and add_rotation().
   namespace BodyParameter
   {
-    std::string young_modulus(const std::string &volume);  ///< E [Pa]
+    std::string young_modulus(const std::string &volume);  ///< E [Pa]; if orthotropic E_1, with which all moduli grow in proportion
     std::string density(const std::string &volume);        ///< ρ [kg/m³]
     std::string rayleigh_alpha(const std::string &volume); ///< α [1/s]
     std::string rayleigh_beta(const std::string &volume);  ///< β [s]
@@ -42,7 +42,7 @@ namespace Squeal
    * Terms of every volume and mount on the free dofs, sparse and symmetric, at unit coefficients; E, ρ, α and β are
    * parameters of each volume, such as "density, pin_top_1":
    *
-   *   E K_b,   K_b,ij = ∫ 2 G ε(φ_i):ε(φ_j) + Λ div φ_i div φ_j dV for E = 1
+   *   E K_b,   K_b,ij = ∫ ε(φ_i) : C/E : ε(φ_j) dV; C/E depends on Poisson's ratios, and on ratios of moduli if orthotropic
    *   k K_e,   K_e,ij = ∫_mount (e·φ_i) (e·φ_j) dA, e the radial, tangential or axial direction about the z axis, k [N/m³]
    *   λ c K_e of dashpots, c [N s/m³];  λ² m ∫ φ_i · φ_j dA of masses, m [kg/m²]
    *   λ β E K_b + λ α ρ M_b
@@ -53,6 +53,9 @@ namespace Squeal
    * Throws MeshError if a mounted surface does not exist or an element is inverted.
    */
   BodyTerms body_terms(const Model &model, const MaterialParameters &materials);
+
+  /// Those of a volume: stiffness, mass, damping by stiffness and by mass.
+  std::vector<Term> volume_terms(const Model &model, unsigned int volume, const Material &material);
 
   /// Values of the parameters of body_terms(), but for stiffnesses of zero.
   ParameterValues body_values(const Model &model, const MaterialParameters &materials);

@@ -2,21 +2,44 @@
 
 #include <squeal/parameters/declarations.h>
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace Squeal
 {
-  /// Isotropic linear elasticity with Rayleigh damping α M + β K.
+  /// Engineering constants besides E_1 and ν_12, where ν_ij = −ε_j/ε_i under stress along axis i and ν_ij/E_i = ν_ji/E_j.
+  struct Orthotropy
+  {
+    double E2 = 0., E3 = 0.;             ///< [Pa]
+    double nu13 = 0., nu23 = 0.;         ///< [-]
+    double G12 = 0., G13 = 0., G23 = 0.; ///< [Pa]
+
+    /// A vector along axis 1 and another one in the plane of axes 1 and 2; none: 1 radial, 2 tangential, 3 axial about the z axis.
+    std::optional<std::array<double, 6>> axes = {};
+  };
+
+  /// Linear elasticity with Rayleigh damping α M + β K.
   struct Material
   {
-    double young_modulus  = 0.; ///< E [Pa]
-    double poisson_ratio  = 0.; ///< ν [-]
+    double young_modulus  = 0.; ///< E [Pa]; E_1 if orthotropic
+    double poisson_ratio  = 0.; ///< ν [-]; ν_12 if orthotropic
     double density        = 0.; ///< ρ [kg/m³]
     double rayleigh_alpha = 0.; ///< α [1/s]
     double rayleigh_beta  = 0.; ///< β [s]
 
+    std::optional<Orthotropy> orthotropy = {}; ///< none: isotropic
+
     bool is_damped() const;
+
+    bool has_fixed_axes() const;
+
+    /// The least of the shear moduli and of Young's moduli if orthotropic, else G: ρ c² of the slowest wave along an axis, or less [Pa].
+    double least_wave_modulus() const;
+
+    /// Mean of Poisson's ratios, weighted so that it is 1/2 where the material is incompressible; ν if isotropic.
+    double mean_poisson_ratio() const;
   };
 
   /// Springs or dashpots between a named surface and the ground, per area [N/m³] or [N s/m³]. Their directions are those of the disc's axis
@@ -39,6 +62,13 @@ namespace Squeal
     std::string volume;
   };
 
+  /// Directions of an orthotropic material, as in Orthotropy::axes.
+  struct MaterialAxes
+  {
+    std::string           volume;
+    std::array<double, 6> vectors = {};
+  };
+
   /// Whether a volume of this name is one of the disc: `disc`, or `disc_` with more.
   bool is_of_disc(const std::string &volume);
 
@@ -55,6 +85,8 @@ namespace Squeal
     Material                    disc = {210e9, 0.3, 7850.};
     Material                    pin  = {1.90e9, 0.25, 3070.};
     std::vector<VolumeMaterial> volumes;                                        ///< of those that differ
+    std::vector<VolumeMaterial> orthotropic;                                    ///< their axes are in the list below
+    std::vector<MaterialAxes>   axes;                                           ///< of those that are not cylindrical
     std::vector<Mount>          mounts = {{"disc_bore", 0., 7.80e10, 1.88e10}}; ///< springs
     std::vector<Mount>          dashpots;
     std::vector<SurfaceMass>    masses;
@@ -69,9 +101,12 @@ namespace Squeal
 
     bool has_own(const std::string &volume) const;
 
+    /// The parameter that sets the material of a volume: "Materials/Orthotropic", "Pin material", ...
+    std::string section_of(const std::string &volume) const;
+
     bool is_damped() const;
 
-    /// All of them, to be changed.
+    /// All of them, to be changed: those of the disc and of the pins, of volumes, orthotropic ones.
     std::vector<Material *> each();
 
     /// All materials, each with the section and the volume that set it.

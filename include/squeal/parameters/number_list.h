@@ -5,6 +5,7 @@
 
 #include <boost/algorithm/string/join.hpp>
 
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -50,25 +51,26 @@ namespace Squeal
   /// The entries of a list, empty ones left out. Throws ParameterError, also where a name is given twice.
   std::vector<ListEntry> parse_list(const std::string &text, const ListFormat &format);
 
-  /// Declares a list of values, whose @p numbers, and @p key if there is one, stand in an entry; numbers left out are zero.
+  /// Declares a list of values, whose @p numbers (members, or functions that return them) and @p key stand in an entry; numbers left out
+  /// are zero.
   template <typename Value>
-  void declare_list(Declarations                       &declarations,
-                    const std::string                  &name,
-                    std::vector<Value>                 &values,
-                    const std::string                  &documentation,
-                    const ListFormat                   &format,
-                    const std::vector<double Value::*> &numbers,
+  void declare_list(Declarations                                        &declarations,
+                    const std::string                                   &name,
+                    std::vector<Value>                                  &values,
+                    const std::string                                   &documentation,
+                    const ListFormat                                    &format,
+                    const std::vector<std::function<double &(Value &)>> &numbers,
                     std::string Value::*key = nullptr)
   {
     declarations.add_text(
       name, documentation,
       [=, &values] {
         std::vector<std::string> entries;
-        for (const Value &value : values)
+        for (Value &value : values)
           {
             std::vector<std::string> texts;
-            for (const auto number : numbers)
-              texts.push_back(exact_text(value.*number));
+            for (const auto &number : numbers)
+              texts.push_back(exact_text(number(value)));
             entries.push_back((key ? value.*key + ": " : "") + boost::algorithm::join(texts, format.between_numbers + std::string(" ")));
           }
         return boost::algorithm::join(entries, format.separator + std::string(" "));
@@ -81,7 +83,7 @@ namespace Squeal
             if (key)
               values.back().*key = entry.key;
             for (std::size_t i = 0; i < entry.numbers.size(); ++i)
-              values.back().*numbers[i] = entry.numbers[i];
+              numbers[i](values.back()) = entry.numbers[i];
           }
       });
   }

@@ -36,6 +36,9 @@ namespace Squeal
     std::ostringstream presences;
     for (Material *material : design.materials.each())
       {
+        if (Orthotropy *o = material->orthotropy ? &*material->orthotropy : nullptr)
+          for (double *modulus : {&o->E2, &o->E3, &o->G12, &o->G13, &o->G23})
+            *modulus /= material->young_modulus;
         material->young_modulus = material->density = 1.;
         for (double *damping : {&material->rayleigh_alpha, &material->rayleigh_beta})
           {

@@ -1,4 +1,5 @@
 #include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
 #include <squeal/bases/reduced_basis.h>
 #include <squeal/estimates/mode_groups.h>
 #include <squeal/estimates/reduction_errors.h>

@@ -7,7 +7,8 @@ namespace Squeal
 {
   namespace
   {
-    /// Step of Poisson's ratio beside its distance from the ends of its range: the error of a central difference is about the square of it.
+    /// Step of Poisson's ratio over its distance from the ends of its range, and of other constants over their size: the error of a central
+    /// difference is about its square.
     constexpr double relative_step = 1e-4;
 
     /// A number of a material that the terms contain as a factor.
@@ -24,40 +25,83 @@ namespace Squeal
                                                {"Rayleigh alpha", "1/s", &Material::rayleigh_alpha, BodyParameter::rayleigh_alpha, false},
                                                {"Rayleigh beta", "s", &Material::rayleigh_beta, BodyParameter::rayleigh_beta, false}};
 
+    /// A constant of an orthotropic material that is no factor of the terms. E1 is one: with it all moduli change in proportion.
+    struct OrthotropicConstant
+    {
+      const char *name;
+      double Orthotropy::*value; ///< null: ν_12
+      bool                is_ratio = false;
+    };
+
+    const OrthotropicConstant orthotropic_constants[] = {
+      {"E2", &Orthotropy::E2},           {"E3", &Orthotropy::E3},   {"nu12", nullptr, true},   {"nu13", &Orthotropy::nu13, true},
+      {"nu23", &Orthotropy::nu23, true}, {"G12", &Orthotropy::G12}, {"G13", &Orthotropy::G13}, {"G23", &Orthotropy::G23}};
+
     SensitivityParameter of_material(const std::string              &section,
                                      const Material                 &material,
                                      const MaterialNumber           &number,
                                      const std::vector<std::string> &volumes,
                                      const std::string              &single = "")
     {
-      SensitivityParameter result{section + "/" + number.name, single, number.unit, material.*number.value, {}, {}};
+      const bool           is_scale = material.orthotropy && number.value == &Material::young_modulus;
+      SensitivityParameter result{
+        section + "/" + (is_scale ? "E1 with all moduli in proportion" : number.name), single, number.unit, material.*number.value, {}, {}};
       for (const std::string &volume : volumes)
         result.body_rates[number.parameter(volume)] = {1.};
       return result;
     }
 
-    /// (X(ν + h) − X(ν − h)) / 2h of the stiffness of some volumes with a material, and of their damping by stiffness.
+    /// (X(c + h) − X(c − h)) / 2h of the stiffness of some volumes with a material and one of its constants, and of their damping by
+    /// stiffness.
+    SensitivityParameter of_constant(SensitivityParameter                       result,
+                                     const Scene                               &scene,
+                                     const Material                            &material,
+                                     const std::function<double &(Material &)> &constant,
+                                     const double                               h,
+                                     const std::vector<std::string>            &volumes)
+    {
+      Material less = material, more = material;
+      result.value = constant(less);
+      constant(less) -= h;
+      constant(more) += h;
+      for (unsigned int v = 0; v < scene.model->volume_names().size(); ++v)
+        if (const std::string &volume = scene.model->volume_names()[v]; std::count(volumes.begin(), volumes.end(), volume) > 0)
+          {
+            const std::vector<Term> before = volume_terms(*scene.model, v, less), after = volume_terms(*scene.model, v, more);
+            for (std::size_t k = 0; k < after.size(); ++k)
+              if (after[k].coefficient.contains(BodyParameter::young_modulus(volume)))
+                {
+                  result.derivative.push_back(after[k]);
+                  result.derivative.back().matrix = add(0.5 / h, *after[k].matrix, -0.5 / h, *before[k].matrix);
+                }
+          }
+      return result;
+    }
+
     SensitivityParameter of_poisson_ratio(const std::string              &section,
                                           const Scene                    &scene,
-                                          const MaterialParameters       &materials,
-                                          const std::size_t               material,
+                                          const Material                 &material,
                                           const std::vector<std::string> &volumes,
                                           const std::string              &single = "")
     {
-      MaterialParameters less = materials, more = materials;
-      const double       nu = less.each()[material]->poisson_ratio, h = relative_step * std::min(0.5 - nu, 1. + nu);
-      less.each()[material]->poisson_ratio -= h;
-      more.each()[material]->poisson_ratio += h;
-      SensitivityParameter    result{section + "/Poisson ratio", single, "-", nu, {}, {}};
-      const std::vector<Term> before = body_terms(*scene.model, less).terms, after = body_terms(*scene.model, more).terms;
-      for (std::size_t k = 0; k < after.size(); ++k)
-        for (const std::string &volume : volumes)
-          if (after[k].coefficient.contains(BodyParameter::young_modulus(volume)))
-            {
-              result.derivative.push_back(after[k]);
-              result.derivative.back().matrix = add(0.5 / h, *after[k].matrix, -0.5 / h, *before[k].matrix);
-            }
-      return result;
+      const double h = relative_step * std::min(0.5 - material.poisson_ratio, 1. + material.poisson_ratio);
+      return of_constant(
+        {section + "/Poisson ratio", single, "-", 0., {}, {}}, scene, material,
+        [](Material &changed) -> double & { return changed.poisson_ratio; }, h, volumes);
+    }
+
+    SensitivityParameter of_orthotropic_constant(const Scene               &scene,
+                                                 const Material            &material,
+                                                 const OrthotropicConstant &number,
+                                                 const std::string         &volume)
+    {
+      const auto constant = [&number](Material &changed) -> double & {
+        return number.value ? *changed.orthotropy.*number.value : changed.poisson_ratio;
+      };
+      Material     copy = material;
+      const double h    = relative_step * (number.is_ratio ? 1. : constant(copy));
+      return of_constant({std::string("Materials/Orthotropic:/") + number.name, volume, number.is_ratio ? "-" : "Pa", 0., {}, {}}, scene,
+                         material, constant, h, {volume});
     }
 
     /// Largest motion of a node by a step, over the radius of the disc.
@@ -125,15 +169,18 @@ namespace Squeal
         {
           for (const MaterialNumber &number : material_numbers)
             result.push_back(of_material(sections[m], materials.of(shared[m].front()), number, shared[m]));
-          result.push_back(of_poisson_ratio(sections[m], scene, materials, m, shared[m]));
+          result.push_back(of_poisson_ratio(sections[m], scene, materials.of(shared[m].front()), shared[m]));
         }
     for (const std::string &volume : single)
       for (const MaterialNumber &number : material_numbers)
         if (const bool has_own = materials.has_own(volume); has_own || number.of_single_pins)
-          result.push_back(of_material(has_own ? "Materials/Volumes:" : "Pin material", materials.of(volume), number, {volume}, volume));
-    for (std::size_t v = 0; v < materials.volumes.size(); ++v)
-      result.push_back(
-        of_poisson_ratio("Materials/Volumes:", scene, materials, 2 + v, {materials.volumes[v].volume}, materials.volumes[v].volume));
+          result.push_back(
+            of_material(materials.section_of(volume) + (has_own ? ":" : ""), materials.of(volume), number, {volume}, volume));
+    for (const VolumeMaterial &own : materials.volumes)
+      result.push_back(of_poisson_ratio("Materials/Volumes:", scene, own, {own.volume}, own.volume));
+    for (const VolumeMaterial &own : materials.orthotropic)
+      for (const OrthotropicConstant &number : orthotropic_constants)
+        result.push_back(of_orthotropic_constant(scene, materials.of(own.volume), number, own.volume));
 
     for (const MountParameter &mount : mount_parameters(materials))
       result.push_back({mount.path, "", mount.unit, mount.value, {{mount.name, {1.}}}, {}});

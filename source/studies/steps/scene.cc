@@ -19,9 +19,9 @@ namespace Squeal
     void warn_of_locking(Run &run)
     {
       for (const auto &[section, material] : run.parameters.materials.all())
-        if (run.parameters.discretization.element == Element::trilinear && material.poisson_ratio >= locking_poisson_ratio)
-          run.progress.note(text("  note: trilinear elements lock at ", section, "/Poisson ratio = ", material.poisson_ratio, ": from ",
-                                 locking_poisson_ratio,
+        if (run.parameters.discretization.element == Element::trilinear && material.mean_poisson_ratio() >= locking_poisson_ratio)
+          run.progress.note(text("  note: trilinear elements lock at ", section, material.orthotropy ? ", mean " : "/",
+                                 "Poisson ratio = ", material.mean_poisson_ratio(), ": from ", locking_poisson_ratio,
                                  " on bending frequencies are more than 1 % too high, growth rates less accurate "
                                  "still; set Discretization/Element = incompatible modes"));
     }
@@ -60,10 +60,11 @@ namespace Squeal
       geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
     scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator, parameters.contact);
     const MeshQuality quality = check_mesh(scene.mesh);
-    for (const VolumeMaterial &own : parameters.materials.volumes)
-      if (std::count(scene.mesh.volume_names.begin(), scene.mesh.volume_names.end(), own.volume) == 0)
-        throw ParameterError("there is no volume `" + own.volume + "`", "parameter Materials/Volumes",
-                             "name one of " + boost::algorithm::join(scene.mesh.volume_names, ", "));
+    for (const auto *list : {&parameters.materials.volumes, &parameters.materials.orthotropic})
+      for (const VolumeMaterial &own : *list)
+        if (std::count(scene.mesh.volume_names.begin(), scene.mesh.volume_names.end(), own.volume) == 0)
+          throw ParameterError("there is no volume `" + own.volume + "`", "parameter " + parameters.materials.section_of(own.volume),
+                               "name one of " + boost::algorithm::join(scene.mesh.volume_names, ", "));
     run.count("elements", scene.mesh.cells.size());
     run.measure("worst scaled Jacobian [-]", quality.worst_scaled_jacobian);
     run.progress.finish(

@@ -28,14 +28,15 @@ namespace Squeal
       std::vector<std::string> names;
       double                   inner_radius = std::numeric_limits<double>::infinity(), outer_radius = 0.; ///< of nodes about z [m]
       double                   height = 0., contact_area = 0., volume = 0.; ///< extent along z [m]; [m²]; [m³]
-      double                   mass      = 0.;                              ///< of one of them [kg]
-      double                   bar_speed = 0.;                              ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+      double                   mass           = 0.;                         ///< of one of them [kg]
+      double                   bar_speed      = 0.;                         ///< of longitudinal waves in a bar, √(E/ρ) [m/s]
+      bool                     is_orthotropic = false;                      ///< the bar lies along axis 1
 
       bool is_like(const Body &other) const
       {
         const auto close = [](const double x, const double y) { return std::abs(x - y) <= alike * std::max(std::abs(x), std::abs(y)); };
         return close(height, other.height) && close(contact_area, other.contact_area) && close(volume, other.volume) &&
-               close(mass, other.mass) && close(bar_speed, other.bar_speed);
+               close(mass, other.mass) && close(bar_speed, other.bar_speed) && is_orthotropic == other.is_orthotropic;
       }
     };
 
@@ -76,6 +77,7 @@ namespace Squeal
           body.height             = dealii::BoundingBox<3>(points[b]).side_length(2);
           body.mass               = body.volume * material.density;
           body.bar_speed          = bar_speed(material);
+          body.is_orthotropic     = material.orthotropy.has_value();
           auto same = std::find_if(result.begin() + !result.empty(), result.end(), [&](const Body &other) { return other.is_like(body); });
           if (same == result.end())
             same = result.insert(same, body);
@@ -105,7 +107,7 @@ namespace Squeal
 
     std::string describe(const Body &body, const bool is_disc)
     {
-      const std::string waves = text("bar waves ", body.bar_speed, " m/s");
+      const std::string waves = text("bar waves ", body.is_orthotropic ? "along axis 1 " : "", body.bar_speed, " m/s");
       if (is_disc)
         return text("    disc: radii ", body.inner_radius, " and ", body.outer_radius, " m about z, ", body.height, " m thick, ",
                     body.volume, " m^3, ", body.mass, " kg; ", waves);
@@ -147,6 +149,11 @@ namespace Squeal
     // Doubts
     if (!is_round_about_z(mesh, parameters.geometry.path()))
       run.warn("the disc is not round about the z axis, about which it turns");
+    for (const MaterialAxes &axes : parameters.materials.axes)
+      if (is_of_disc(axes.volume))
+        run.warn("the axes of " + axes.volume +
+                 " in Materials/Axes do not turn with the disc; without an entry they are radial, tangential "
+                 "and axial");
     warn_of_units(bodies, parameters.materials, run);
     if (const UnnamedContact contact = find_unnamed_contact(mesh); contact.n_nodes > 0)
       run.warn(text(contact.n_nodes,

@@ -32,7 +32,7 @@ namespace Squeal
 
   /// Every continuous parameter but those of the geometry that the scene depends on: materials of the disc and of the pins, of each pin by
   /// itself Young's modulus and density, mounts, stiffnesses of the contact, ratios of modal damping, friction coefficient, load, rotation speed, friction slope.
-  /// Assembles the bodies with neighbouring Poisson's ratios.
+  /// Assembles volumes with neighbouring Poisson's ratios and constants of orthotropic materials.
   std::vector<SensitivityParameter> sensitivity_parameters(const Scene &scene, const Parameters &parameters);
 
   /// Lengths and angles of the built-in geometry: differences of the terms of the bodies on meshes whose nodes have moved a little to either
