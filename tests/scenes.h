@@ -204,7 +204,7 @@ namespace Squeal::Testing
       : mesh(mesh)
       , operation(operation)
       , model(mesh, element, communicator)
-      , interface(contact_nodes(model, ContactParameters().pairs, operation.rotation, 1e-6).interface)
+      , interface(contact_nodes(model, ContactParameters().pairs, operation, 1e-6).interface)
       , contact(contact_operators(model, interface))
       , system(assemble(model, materials))
       , damping{radial_dissipation(interface, equal_load_shares(model, interface, operation), operation), {}}

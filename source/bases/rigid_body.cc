@@ -83,9 +83,13 @@ namespace Squeal
     return result;
   }
 
-  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system)
+  std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, const unsigned int component)
   {
-    const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, 0), system);
+    const bool is_clamped = std::any_of(model.nodes().begin(), model.nodes().end(),
+                                        [&](const Node &node) { return node.component == component && node.dofs[0] < 0; });
+    if (largest_of_processes(model.communicator(), is_clamped) > 0.)
+      return {};
+    const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, component), system);
     const double hidden             = unresolved_square(*system.stiffness, *system.mass);
     const int    n_free = std::count_if(eigenvalues.begin(), eigenvalues.end(), [hidden](const double value) { return !(value > hidden); });
     if (n_free == 0)
@@ -166,7 +170,7 @@ namespace Squeal
                                 const double               largest_circular_frequency,
                                 const FactorizationLibrary library)
   {
-    return {system.stiffness,           system.mass, free_disc_motions(model, system),
+    return {system.stiffness,           system.mass, free_motions(model, system, 0),
             largest_circular_frequency, library,     "stiffness of disc and pins without contact"};
   }
 

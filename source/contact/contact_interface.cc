@@ -22,8 +22,8 @@ namespace Squeal
     /// Direction cosine of a normal up to which it is a rounding error of the coordinates [-].
     constexpr double not_inclined = 1e-12;
 
-    /// Nodes closer to the axis, compared with the outermost one, have no sliding direction but that of rounding errors [-].
-    constexpr double smallest_axis_distance = 1e-8;
+    /// Sliding velocity, compared with the largest one, up to which its direction is that of rounding errors [-].
+    constexpr double smallest_lever = 1e-8;
 
     /// A face with its nodes, to be sent.
     struct SentFace
@@ -108,8 +108,8 @@ namespace Squeal
       return text("(", p[0], ", ", p[1], ", ", p[2], ") m");
     }
 
-    /// n, t, b of a contact node; @p outermost is the largest distance of one from the axis [m].
-    void set_frame(ContactNode &node, Eigen::Vector3d normal, const double outermost, const Rotation rotation)
+    /// n, t, b of a contact node with its lever; @p longest is the largest lever [m].
+    void set_frame(ContactNode &node, Eigen::Vector3d normal, const double longest, const SlidingVelocity &velocity)
     {
       normal *= 1. / normal.norm();
       for (double &cosine : normal)
@@ -117,15 +117,15 @@ namespace Squeal
           cosine = 0.;
       node.normal = (1. / normal.norm()) * normal;
 
-      const double r = node.axis_distance();
-      if (!(r > smallest_axis_distance * outermost))
-        throw MeshError("a contact node lies on the disc's axis, where nothing slides", "surface disc_contact",
-                        "move the pins away from the axis");
-      const Eigen::Vector3d e_theta = Eigen::Vector3d(-node.position[1], node.position[0], 0.) / (rotation == Rotation::negative ? -r : r);
-      const Eigen::Vector3d sliding = e_theta - e_theta.dot(node.normal) * node.normal;
+      const std::string where = "parameter Operation/Sliding direction, contact node at " + place(node.position);
+      if (!(node.lever > smallest_lever * longest && std::isfinite(node.lever)))
+        throw MeshError("nothing slides at a contact node: the velocity of the disc is zero or undefined there", where,
+                        "move the bodies away from there, which may be the disc's axis, or change the velocity");
+      const Eigen::Vector3d along   = velocity(node.position) / node.lever;
+      const Eigen::Vector3d sliding = along - along.dot(node.normal) * node.normal;
       if (!(sliding.norm() > 1e-6))
-        throw MeshError("the sliding direction is normal to the contact face", "contact node at " + place(node.position),
-                        "contact faces must not be perpendicular to the circumferential direction");
+        throw MeshError("the velocity of the disc is normal to the contact face", where,
+                        "change the velocity, or let contact faces lie along it");
       node.sliding = (1. / sliding.norm()) * sliding;
       node.radial  = node.normal.cross(node.sliding);
     }
@@ -138,7 +138,7 @@ namespace Squeal
             throw MeshError("a contact node is tied to another body",
                             "contact node at " + place(node.position) + ", parameter Contact/Tied",
                             "keep tied and contact faces apart, with at least one layer of elements between them");
-          else if (partner.dofs[0] < 0)
+          else if (partner.is_clamped())
             throw MeshError("a node of disc_contact and pin_contact is clamped by pin_clamp", "contact node at " + place(node.position),
                             "keep pin_clamp and the contact surfaces apart, with at least one layer of elements between them");
     }
@@ -237,11 +237,12 @@ namespace Squeal
       return result;
     }
 
-    FoundContact nodes_of_pair(const Model &model, const ContactPair &pair, const Rotation rotation, const double tolerance)
+    FoundContact nodes_of_pair(const Model &model, const ContactPair &pair, const SlidingVelocity &velocity, const double tolerance)
     {
       const ContactSurface disc = contact_surface(model, pair.disc), pins = contact_surface(model, pair.pin);
-      const auto           of_disc   = partners(disc, pins, tolerance);
-      double               outermost = 0.;
+      const auto           of_disc = partners(disc, pins, tolerance);
+      const bool           turns   = velocity.turns_about_z();
+      double               longest = 0.;
       FoundContact         result;
       try
         {
@@ -251,15 +252,19 @@ namespace Squeal
         {
           throw MeshError(error.reason, "surfaces " + pair.disc + " and " + pair.pin, error.change);
         }
-      for (const ContactNode &node : result.interface)
-        outermost = std::max(outermost, node.axis_distance());
+      for (ContactNode &node : result.interface)
+        {
+          node.lever = velocity.lever(node.position);
+          node.turns = turns;
+          longest    = std::max(longest, node.lever);
+        }
       for (ContactNode &node : result.interface)
         {
           node.pin       = node.pin_node.component;
           node.friction  = pair.friction_factor;
           node.stiffness = pair.normal_stiffness;
           refuse_clamped(node);
-          set_frame(node, node.normal, outermost, rotation);
+          set_frame(node, node.normal, longest, velocity);
         }
       for (std::string &note : result.notes)
         note = pair.disc + " / " + pair.pin + ": " + note;
@@ -267,13 +272,16 @@ namespace Squeal
     }
   } // namespace
 
-  FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const Rotation rotation, const double tolerance)
+  FoundContact contact_nodes(const Model                    &model,
+                             const std::vector<ContactPair> &pairs,
+                             const SlidingVelocity          &velocity,
+                             const double                    tolerance)
   {
     FoundContact           result;
     std::set<std::int64_t> known;
     for (const ContactPair &pair : pairs)
       {
-        FoundContact found = nodes_of_pair(model, pair, rotation, tolerance);
+        FoundContact found = nodes_of_pair(model, pair, velocity, tolerance);
         for (ContactNode &node : found.interface)
           node.pair = static_cast<unsigned int>(&pair - pairs.data());
         for (const ContactNode &node : found.interface)
@@ -298,7 +306,7 @@ namespace Squeal
       {
         const bool   is_consistent = operation.radial_dissipation == RadialDissipation::consistent;
         const double factor        = is_consistent ? operation.friction_coefficient * interface[c].friction : 1.;
-        c_b[c]                     = factor * std::abs(reactions[c]) / (operation.rotation_speed * interface[c].axis_distance());
+        c_b[c]                     = factor * std::abs(reactions[c]) / (operation.rotation_speed * interface[c].lever);
       }
     return c_b;
   }

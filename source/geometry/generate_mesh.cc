@@ -195,7 +195,7 @@ namespace Squeal
           require(pair.master, "Contact/Tied");
         }
       for (const std::string &name : mounted)
-        require(name, "Mounts/Elastic mounts or Mounts/Dashpots");
+        require(name, "Mounts/Elastic mounts, Mounts/Dashpots or Steady sliding/Pressed faces");
     }
 
     /// Puts the faces of surfaces that rub on disc_contact and pin_contact as well.

@@ -256,7 +256,7 @@ namespace Squeal
     // Clamped dofs follow their backplate
     for (std::size_t i = 0; i < values.size(); ++i)
       for (int d = 0; d < 3; ++d)
-        if (const Node &node = stage.mesh.nodes[i]; node.dofs[d] < 0 && node.masters.empty())
+        if (const Node &node = stage.mesh.nodes[i]; node.is_clamped())
           values[i][d] = state.backplates[node.component][d];
     write(stage, "sliding_state", {}, {vector_field("displacement", values, [](const double u) { return u; })});
 

@@ -1,4 +1,6 @@
+#include <squeal/base/exceptions.h>
 #include <squeal/parameters/operation.h>
+#include <squeal/parameters/sliding_velocity.h>
 
 namespace Squeal
 {
@@ -6,8 +8,16 @@ namespace Squeal
   {
     declarations.enter("Operation");
     declarations.add("Friction coefficient", friction_coefficient, "none", "Coulomb's coefficient mu.", {0., 10.});
-    declarations.add("Rotation", rotation, "Sense of rotation about the z axis: the disc slides along +e_theta or -e_theta.");
-    declarations.add("Rotation speed", rotation_speed, "rad/s", "Angular speed of the disc.", {0.});
+    declarations.add(
+      "Rotation", rotation,
+      "Sense of rotation: the disc moves with the velocity v of Sliding direction times the rotation speed, or with its opposite.");
+    declarations.add("Rotation speed", rotation_speed, "rad/s",
+                     "Angular speed Omega of the disc, by which the velocity v of Sliding direction is multiplied.", {0.});
+    declarations.add(
+      "Sliding direction", sliding_direction,
+      "Velocity v of the disc relative to the other bodies for a rotation speed of 1 rad/s, three expressions in x, y, z [m] "
+      "between commas, in which pi and functions of muParser may occur: -y, x, 0 is rotation about the z axis, 1, 0, 0 a rail "
+      "along x. t is the direction of its tangential part, the sliding speed w_0 is Omega |v|. Units: m.");
     declarations.add("Gyroscopic forces", rotating_disc,
                      "Whether the equations of motion of the disc contain its rotation, seen from the fixed frame: gyroscopic forces and "
                      "convective stiffness.");
@@ -23,6 +33,15 @@ namespace Squeal
                      "Slope dmu/dw of the friction coefficient at the sliding speed w_0; damps along the sliding direction with c_t = "
                      "slope R_n0 per node, so that a falling slope destabilises.",
                      {-10., 10.});
+  }
+
+  void OperationParameters::check() const
+  {
+    if (!SlidingVelocity(*this).turns_about_z() && rotating_disc)
+      throw ParameterError("gyroscopic forces are those of a disc that turns about the z axis, but the disc moves along " +
+                             sliding_direction,
+                           "parameters Operation/Gyroscopic forces and Sliding direction",
+                           "set Operation/Gyroscopic forces = false, or leave Operation/Sliding direction at -y, x, 0");
   }
 
   bool OperationParameters::has_contact_damping() const

@@ -284,7 +284,8 @@ namespace Squeal
 
   bool Parameters::uses_load_per_side() const
   {
-    return needs_steady_sliding() ? sliding.control == BackplateControl::load_per_side : has_contact_damping();
+    const bool by_side = sliding.control == BackplateControl::load_per_side || sliding.control == BackplateControl::pressure;
+    return needs_steady_sliding() ? by_side : has_contact_damping();
   }
 
   void Parameters::check_contact_state() const
@@ -335,6 +336,7 @@ namespace Squeal
     contact.check();
     materials.check();
     discretization.check();
+    operation.check();
     check_contact_state();
     damping.check();
     reduction.check();

@@ -3,6 +3,12 @@
 #include <squeal/parameters/number_list.h>
 #include <squeal/parameters/sliding.h>
 
+#include <deal.II/base/utilities.h>
+
+#include <boost/algorithm/string/join.hpp>
+
+#include <algorithm>
+
 namespace Squeal
 {
   namespace
@@ -22,9 +28,11 @@ namespace Squeal
                      "State about which the system is linearised: equal load, every contact node is closed and carries the same share "
                      "of the load of its side; steady sliding, the quasi-static solution with unilateral contact and friction, in "
                      "which nodes may lift off. All other parameters of this section belong to steady sliding.");
-    declarations.add("Control", control,
-                     "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
-                     "displacement, the travel of every backplate; load per pin, a force on each pin.");
+    declarations.add(
+      "Control", control,
+      "What is given: load per side, the force Operation/Load per side on the rigid backplate of each side; "
+      "displacement, the travel of every backplate; load per pin, a force on each pin; pressure, that on Pressed faces: bodies are "
+      "held by their mounts alone, and may tilt and bend.");
     declarations.add("Displacement", displacement, "m",
                      "Travel of each backplate towards the disc, along the axis (a shoe on a rim: along its mean contact normal), from "
                      "where a pin without gap touches the disc, for Control = displacement.",
@@ -33,11 +41,18 @@ namespace Squeal
                  "Forces on the pins for Control = load per pin, as a list `pin: load; ...`; a pin that is not listed gets an equal "
                  "share of Operation/Load per side, a shoe on a rim all of it. Units: N.",
                  load_list, {&PinLoad::load}, &PinLoad::pin);
+    declarations.add_text(
+      "Pressed faces",
+      "Surfaces on which a uniform pressure acts for Control = pressure, separated by commas, such as pad_outer_back, pad_inner_back. The "
+      "resultant on each is Operation/Load per side: the pressure is that load over the area of a flat face, over the size of the mean "
+      "normal times the area of a curved one.",
+      [this] { return boost::algorithm::join(pressed_faces, ", "); },
+      [this](const std::string &text) { pressed_faces = dealii::Utilities::split_string_list(text, ','); });
     declare_list(
       declarations, "Gaps", gaps,
       "Initial gaps of pins (height tolerance, wear), as a list `pin: gap; pin: gap, sliding taper, radial taper; ...`, "
       "along the travel of the backplate, positive where the pin does not touch. The gap grows by the tapers per distance from the "
-      "centre of the face along the sliding direction and outwards (a shoe on a rim: along the axis). Units: m, none, none.",
+      "centre of the face along the sliding direction and outwards (a shoe on a rim: along the axis; where the disc does not turn about z: along b). Units: m, none, none.",
       gap_list, {&PinGap::gap, &PinGap::sliding_taper, &PinGap::radial_taper}, &PinGap::pin);
   }
 
@@ -50,6 +65,13 @@ namespace Squeal
     if (control == BackplateControl::displacement && !(displacement > 0.) && gaps.empty())
       throw ParameterError("the backplates do not move", "parameter Steady sliding/Displacement",
                            "give a positive travel, or set Steady sliding/Control = load per side");
+    if ((control == BackplateControl::pressure) == pressed_faces.empty())
+      throw ParameterError(
+        pressed_faces.empty() ? "no face is pressed" : "pressed faces are given, but `" + to_string(control) + "` is prescribed",
+        "parameter Steady sliding/Pressed faces", "name the backs of the bodies and set Steady sliding/Control = pressure, or neither");
+    for (const std::string &face : pressed_faces)
+      if (std::count(pressed_faces.begin(), pressed_faces.end(), face) > 1)
+        throw ParameterError("the surface " + face + " is named twice", "parameter Steady sliding/Pressed faces", "name each face once");
     if (control != BackplateControl::load_per_pin && !pin_loads.empty())
       throw ParameterError("loads of single pins are given, but `" + to_string(control) + "` is prescribed",
                            "parameter Steady sliding/Loads", "set Steady sliding/Control = load per pin, or remove the loads");

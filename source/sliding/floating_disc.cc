@@ -1,33 +1,40 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/bases/rigid_body.h>
+#include <squeal/linear_algebra/communication.h>
 #include <squeal/sliding/floating_disc.h>
 
 #include <Eigen/QR>
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace Squeal
 {
   namespace
   {
-    /// Energy of turning outside of the free motions of the disc, up to which it is one of them: rounding errors of M-orthonormal vectors.
+    /// Energy of the sliding motion outside of the free motions of the disc, up to which it is one of them: rounding errors of M-orthonormal vectors.
     constexpr double free_to_turn = 1e-6;
-    /// Slip of the contact by a free motion, over that by turning of equal modal mass, on which friction does no work.
+    /// Slip of the contact by a free motion, and force of a pressure on it over its size, over the largest displacement, that are rounding.
     constexpr double no_slip = 1e-6;
     /// Smallest over largest singular value of the gaps of all motions, up to which one changes no gap: rounding leaves 1e-15.
     constexpr double unchanged_gaps = 1e-8;
     /// Difference over sum of the loads on a floating disc, up to which they are equal: decimal numbers are off by rounding.
     constexpr double equal_loads = 1e-10;
 
-    /// Motion of the disc that turns it about its axis, n × 1, of unit modal mass.
-    MultiVector turning_motion(const Model &model, const SecondOrderSystem &system)
+    /// Motion of the disc with the sliding velocity, n × 1, of unit modal mass.
+    MultiVector sliding_motion(const Model &model, const SecondOrderSystem &system, const SlidingVelocity &velocity)
     {
-      const MultiVector motions = rigid_motions(model, 0), turning = view(motions, 5, 1);
-      return turning * DenseMatrix::Constant(1, 1, 1. / std::sqrt(column_products(turning, *system.mass * turning)[0]));
+      const auto rigid = velocity.rigid_motion();
+      if (!rigid)
+        throw SolverError("the disc moves freely, and its sliding velocity is no rigid-body motion, the force of which a drive could take",
+                          "steady sliding, parameter Operation/Sliding direction", "hold the disc by a mount (Mounts/Elastic mounts)");
+      const MultiVector motion = rigid_motions(model, 0) * DenseMatrix(*rigid);
+      return motion * DenseMatrix::Constant(1, 1, 1. / std::sqrt(column_products(motion, *system.mass * motion)[0]));
     }
 
-    /// Free motions @p N of the disc but @p turning, whose moment the drive takes even where it changes gaps, as on a polygon for a rim.
+    /// Free motions @p N of the disc but the sliding one, @p turning, whose moment the drive takes even where it changes gaps, as on a polygon for a rim.
     std::optional<MultiVector> without_turning(const MultiVector &N, const MultiVector &turning, const SecondOrderSystem &system)
     {
       const DenseMatrix part = gram(N, *system.mass * turning);
@@ -39,10 +46,36 @@ namespace Squeal
       return N * DenseMatrix(Q.rightCols(N.n_columns() - 1));
     }
 
-    /// Throws SolverError if forces do work on a motion @p y that changes no gap.
-    void refuse_unbalanced(const Eigen::VectorXd &y, const std::vector<double> &forces)
+    /// Throws SolverError if friction or a pressure acts on @p motions of a body, which leave the gaps as they are.
+    void refuse_forces_on(const MultiVector      &motions,
+                          const ContactOperators &contact,
+                          const std::string      &body,
+                          const double            mu,
+                          const MultiVector      *pressing)
     {
-      const Eigen::VectorXd work         = y.cwiseProduct(as_column(forces));
+      const std::vector<double> slips = column_norms(*contact.tangential * motions);
+      for (int j = 0; j < motions.n_columns(); ++j)
+        {
+          const MultiVector motion = view(motions, j, 1);
+          const double      size   = largest_of_processes(motion.communicator(), max_norm(motion.local()));
+          const double      slip   = slips[j] / (size * std::sqrt(contact.tangential->rows().n()));
+          const double      force  = pressing ? std::abs(gram(motion, *pressing)(0, 0)) / (size * column_norms(*pressing)[0]) : 0.;
+          if ((mu > 0. && slip > no_slip) || force > no_slip)
+            throw SolverError(text("nothing holds ", body == PhysicalNames::disc ? "the disc" : body, " in its plane against the ",
+                                   mu > 0. && slip > no_slip ? "friction forces" : "pressure"),
+                              "steady sliding",
+                              "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
+                              "state = equal load");
+        }
+    }
+
+    /// Throws SolverError if loads, or friction, whose work is @p of_contact for unit reactions, do work on a motion @p y that changes no gap.
+    void refuse_unbalanced(const Eigen::VectorXd &y, const Eigen::VectorXd &forces, const DenseMatrix &of_contact)
+    {
+      if (max_norm(of_contact.transpose() * y) > no_slip * max_norm(of_contact.cwiseAbs().transpose() * y.cwiseAbs()))
+        throw SolverError("nothing holds the disc and the bodies on it against friction: they can tilt together", "steady sliding",
+                          "hold the disc against tilting (Mounts/Elastic mounts)");
+      const Eigen::VectorXd work         = y.cwiseProduct(forces);
       const double          sum_of_sizes = work.lpNorm<1>();
       if (sum_of_sizes > 0. && std::abs(work.sum()) / sum_of_sizes > equal_loads)
         throw SolverError("the disc floats between its backplates, and the loads on them are not in balance", "steady sliding",
@@ -50,48 +83,59 @@ namespace Squeal
     }
   } // namespace
 
-  std::optional<MultiVector> balanced_disc_motions(const Model             &model,
-                                                   const ContactOperators  &contact,
-                                                   const SecondOrderSystem &system,
-                                                   const InertiaRelief     &response,
-                                                   const double             mu)
+  std::optional<MultiVector> balanced_motions(const Model                                   &model,
+                                              const ContactOperators                        &contact,
+                                              const SecondOrderSystem                       &system,
+                                              const std::vector<std::optional<MultiVector>> &free,
+                                              const OperationParameters                     &operation,
+                                              const MultiVector                             *pressing)
   {
-    const MultiVector *N = response.rigid_body_modes();
-    if (!N)
-      return {};
-    const MultiVector turning = turning_motion(model, system);
-    const auto        others  = without_turning(*N, turning, system);
-    if (!others)
-      return {};
-    const auto [pressing, sliding] = contact_motions(*contact.normal, *others);
-    if (sliding && mu > 0.)
+    std::vector<MultiVector> result;
+    for (std::size_t body = 0; body < free.size(); ++body)
       {
-        const double by_turning = column_norms(*contact.tangential * turning)[0];
-        for (const double by_motion : column_norms(*contact.tangential * *sliding))
-          if (by_motion / by_turning > no_slip)
-            throw SolverError("nothing holds the disc in its plane against the friction forces", "steady sliding",
-                              "add a mount with radial or tangential stiffness (Mounts/Elastic mounts), or set Steady sliding/Contact "
-                              "state = equal load");
+        const std::string &name   = model.component_names()[body];
+        auto               others = free[body];
+        if (others && body == 0)
+          others = without_turning(*others, sliding_motion(model, system, operation), system);
+        if (!others)
+          continue;
+        if (body > 0 && !(pressing && max_norm(gram(rigid_motions(model, body), *pressing)) > 0.))
+          throw SolverError("nothing holds " + name + ", and no pressure acts on it", "steady sliding",
+                            "hold it by Mounts/Elastic mounts or pin_clamp, or name its back in Steady sliding/Pressed faces");
+        const auto [balanced, unchanged] = contact_motions(*contact.normal, *others);
+        if (unchanged)
+          refuse_forces_on(*unchanged, contact, name, operation.friction_coefficient, pressing);
+        if (balanced)
+          result.push_back(*balanced);
       }
-    return pressing;
+    if (result.empty())
+      return {};
+    return join_all(result);
   }
 
   void hold_undetermined_motion(ContactProblem &problem, const int n_plates)
   {
-    const Eigen::RowVectorXd sizes = problem.motions.colwise().norm();
-    const auto [values, V]         = singular_values(problem.motions * sizes.cwiseInverse().asDiagonal()); // descending
-    const int n                    = sizes.size();
-    if (static_cast<int>(values.size()) == n && values.back() / values.front() > unchanged_gaps)
-      return;
-    const Eigen::VectorXd y = V.col(n - 1);
-    refuse_unbalanced(y.cwiseQuotient(sizes.transpose()), problem.forces);
+    std::vector<int> free(problem.motions.cols());
+    std::iota(free.begin(), free.end(), 0);
+    while (static_cast<int>(free.size()) > n_plates)
+      {
+        const DenseMatrix        B     = problem.motions(Eigen::all, free);
+        const Eigen::RowVectorXd sizes = B.colwise().norm();
+        const auto [values, V]         = singular_values(B * sizes.cwiseInverse().asDiagonal()); // descending
+        const int n                    = sizes.size();
+        if (static_cast<int>(values.size()) == n && values.back() / values.front() > unchanged_gaps)
+          return;
+        const Eigen::VectorXd y = V.col(n - 1), forces = as_column(problem.forces)(free, 0);
+        refuse_unbalanced(y.cwiseQuotient(sizes.transpose()), forces, problem.balance(free, Eigen::all));
 
-    Eigen::Index held;
-    y.tail(n - n_plates).cwiseAbs().maxCoeff(&held);
-    held += n_plates;
-    // The row of its balance becomes z = 0: it follows from the others
-    problem.motions.col(held).setZero();
-    problem.balance.row(held).setZero();
-    problem.held.push_back(static_cast<int>(held));
+        Eigen::Index held;
+        y.tail(n - n_plates).cwiseAbs().maxCoeff(&held);
+        held += n_plates;
+        // The row of its balance becomes z = 0: it follows from the others
+        problem.motions.col(free[held]).setZero();
+        problem.balance.row(free[held]).setZero();
+        problem.held.push_back(free[held]);
+        free.erase(free.begin() + held);
+      }
   }
 } // namespace Squeal

@@ -6,6 +6,7 @@
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/sliding/floating_disc.h>
+#include <squeal/sliding/pressed_faces.h>
 #include <squeal/sliding/steady_sliding.h>
 
 #include <Eigen/Geometry>
@@ -34,14 +35,16 @@ namespace Squeal
       return centres;
     }
 
-    /// Distances of a node from the centre of its face, along t and outwards, or along the axis where a rim is rubbed [m].
+    /// Distances of a node from the centre of its face [m]: along t and outwards, along the axis where a rim is rubbed, along b where the disc
+    /// does not turn about z.
     std::pair<double, double> offsets(const ContactNode &node, const Eigen::Vector3d &centre, const Travel &travel)
     {
-      return {node.sliding.dot(node.position - centre),
-              travel.side == 0 ? node.position[2] - centre[2] : node.axis_distance() - std::hypot(centre[0], centre[1])};
+      return {node.sliding.dot(node.position - centre), !node.turns      ? node.radial.dot(node.position - centre) :
+                                                        travel.side == 0 ? node.position[2] - centre[2] :
+                                                                           node.axis_distance() - std::hypot(centre[0], centre[1])};
     }
 
-    /// Travel and backplate of each component, and the load on each backplate; none where the travel is given.
+    /// Travel and backplate of each component, and the load on each backplate; none where the travel is given or nothing moves.
     struct Backplates
     {
       std::vector<Travel> travels;
@@ -59,7 +62,7 @@ namespace Squeal
       Backplates result{travels(model, interface), {}, {}, 0};
       result.of_pin = backplate_numbers(result.travels, per_pin);
       result.n      = 1 + *std::max_element(result.of_pin.begin(), result.of_pin.end());
-      if (parameters.control == BackplateControl::displacement)
+      if (parameters.control == BackplateControl::displacement || parameters.control == BackplateControl::pressure)
         return result;
       result.loads.assign(result.n, operation.load_per_side);
       if (!per_pin)
@@ -80,11 +83,13 @@ namespace Squeal
       return result;
     }
 
-    /// The problem condensed to the contact nodes; @p motions of the disc, where there are any, follow those of the backplates.
+    /// The problem condensed to the contact nodes; free @p motions, where there are any, follow those of the backplates. @p pressing: forces of a
+    /// pressure, null without one.
     ContactProblem contact_problem(const SlidingModel               &sliding,
                                    const Backplates                 &plates,
                                    const Eigen::VectorXd            &gaps,
                                    const std::optional<MultiVector> &motions,
+                                   const std::optional<MultiVector> &pressing,
                                    const double                      displacement,
                                    const double                      mu)
     {
@@ -107,6 +112,8 @@ namespace Squeal
               problem.balance(plates.of_pin[node.pin], c) = travel.force(node, mu);
             }
         }
+      if (pressing) // P_n K⁻¹ f_p from the normal attachment modes
+        Eigen::Map<Eigen::VectorXd>(problem.initial_gap.data(), n_c) += gram(sliding.normal, *pressing);
       if (motions)
         {
           const DenseMatrix B_n = replicate(P_n * *motions), B_t = replicate(*sliding.contact.tangential * *motions);
@@ -114,7 +121,9 @@ namespace Squeal
           // −L = (P_n + μ P_t) N: work of the contact forces on the motion
           problem.motions.rightCols(n_z - n_plates)  = B_n;
           problem.balance.bottomRows(n_z - n_plates) = -(B_n + mu * B_t).transpose();
-          if (moves)
+          if (pressing)
+            Eigen::Map<Eigen::VectorXd>(problem.forces.data(), n_z).tail(n_z - n_plates) = gram(*motions, *pressing);
+          if (moves || pressing)
             hold_undetermined_motion(problem, n_plates);
         }
       return problem;
@@ -124,19 +133,25 @@ namespace Squeal
     struct CondensedSliding
     {
       Backplates                 plates;
-      Eigen::VectorXd            gaps;    ///< along the travel [m]
-      std::optional<MultiVector> motions; ///< of the disc
+      Eigen::VectorXd            gaps;     ///< along the travel [m]
+      std::optional<MultiVector> motions;  ///< of free bodies
+      std::optional<MultiVector> pressing; ///< f_p
       ContactProblem             problem;
     };
 
     CondensedSliding condensed(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters)
     {
-      const auto &[model, interface, contact, system, response, Psi_n, Psi_t] = sliding;
-      const double          mu                                                = operation.friction_coefficient;
-      const Backplates      plates                                            = backplates(model, interface, operation, parameters);
-      const Eigen::VectorXd gaps                                              = initial_gaps(model, interface, parameters);
-      const auto            motions                                           = balanced_disc_motions(model, contact, system, response, mu);
-      return {plates, gaps, motions, contact_problem(sliding, plates, gaps, motions, parameters.displacement, mu)};
+      const Model               &model     = sliding.model;
+      const ContactInterface    &interface = sliding.interface;
+      const Backplates           plates    = backplates(model, interface, operation, parameters);
+      const Eigen::VectorXd      gaps      = initial_gaps(model, interface, parameters);
+      std::optional<MultiVector> pressing;
+      if (parameters.control == BackplateControl::pressure)
+        pressing = pressing_forces(model, interface, parameters, operation.load_per_side);
+      const auto motions =
+        balanced_motions(model, sliding.contact, sliding.system, sliding.free_motions, operation, pressing ? &*pressing : nullptr);
+      return {plates, gaps, motions, pressing,
+              contact_problem(sliding, plates, gaps, motions, pressing, parameters.displacement, operation.friction_coefficient)};
     }
 
     /// u with the displacement of the backplates of the pins.
@@ -150,12 +165,14 @@ namespace Squeal
     }
 
     /// Everything once more from the displacements @p u of the full model.
-    SlidingCertificate certificate(const SlidingModel    &sliding,
-                                   const Backplates      &plates,
-                                   const Eigen::VectorXd &gaps,
-                                   const SlidingState    &state,
-                                   const double           mu)
+    SlidingCertificate certificate(const SlidingModel        &sliding,
+                                   const Backplates          &plates,
+                                   const Eigen::VectorXd     &gaps,
+                                   const SlidingState        &state,
+                                   const MultiVector         *pressing,
+                                   const OperationParameters &operation)
     {
+      const double            mu        = operation.friction_coefficient;
       const ContactInterface &interface = sliding.interface;
       const SparseMatrix     &P_n = *sliding.contact.normal, &P_t = *sliding.contact.tangential, &K = *sliding.system.stiffness;
       const MultiVector      &u         = *state.displacement;
@@ -166,6 +183,8 @@ namespace Squeal
       MultiVector  forces      = transpose_times(P_n, r);
       const double normal_size = column_norms(forces)[0];
       forces.local() += mu * transpose_times(P_t, r).local();
+      if (pressing)
+        forces += *pressing;
       if (const MultiVector *N = sliding.response.rigid_body_modes()) // the moment that the drive takes
         multiply_add(-1., *sliding.system.mass * *N, gram(*N, forces), 1., forces);
       MultiVector rest = K * u;
@@ -173,7 +192,7 @@ namespace Squeal
       result.residual = normal_size > 0. ? column_norms(rest)[0] / normal_size : 0.;
 
       Eigen::VectorXd loads = Eigen::VectorXd::Zero(plates.n), gap = replicate(P_n * u).col(0);
-      const double    travel = max_norm(gap);
+      const double    travel = pressing ? largest_of_processes(u.communicator(), max_norm(u.local())) : max_norm(gap);
       double          arm    = 0.;
       for (std::size_t c = 0; c < interface.size(); ++c)
         {
@@ -185,7 +204,7 @@ namespace Squeal
             gap[c] += reactions[c] / (node.stiffness * node.area);
           arm = std::max(arm, node.axis_distance());
         }
-      const double load = loads.maxCoeff();
+      const double load = pressing ? operation.load_per_side : loads.maxCoeff();
       if (!plates.loads.empty())
         result.load = max_norm((loads - as_column(plates.loads)).cwiseQuotient(as_column(plates.loads)));
       result.tension         = reactions.maxCoeff() / load;
@@ -201,6 +220,24 @@ namespace Squeal
           result.moment_balance       = std::max(result.moment_balance, max_norm(error.tail(3)) / (load * arm));
         }
       return result;
+    }
+    std::vector<std::optional<MultiVector>> motions_of_bodies(const Model &model, const SecondOrderSystem &system)
+    {
+      std::vector<std::optional<MultiVector>> result;
+      for (unsigned int body = 0; body < model.component_names().size(); ++body)
+        result.push_back(free_motions(model, system, body));
+      return result;
+    }
+
+    std::optional<MultiVector> all_motions(const std::vector<std::optional<MultiVector>> &of_bodies)
+    {
+      std::vector<MultiVector> result;
+      for (const auto &motions : of_bodies)
+        if (motions)
+          result.push_back(*motions);
+      if (result.empty())
+        return {};
+      return join_all(result);
     }
   } // namespace
 
@@ -237,6 +274,8 @@ namespace Squeal
     for (const auto &extent : extents)
       heights.push_back(largest_of_processes(model.communicator(), extent.max()[0]) +
                         largest_of_processes(model.communicator(), -extent.min()[0]));
+    if (parameters.control == BackplateControl::pressure)
+      pressing_forces(model, interface, parameters, operation.load_per_side); // refuses faces that cannot be pressed
     for (const PinLoad &load : parameters.pin_loads)
       pin_number(model.component_names(), load.pin, "Steady sliding/Loads");
 
@@ -270,18 +309,22 @@ namespace Squeal
     , interface(interface)
     , contact(contact)
     , system(system)
-    , response(static_response(model, system, largest_circular_frequency, library))
+    , free_motions(motions_of_bodies(model, system))
+    , response(system.stiffness,
+               system.mass,
+               all_motions(free_motions),
+               largest_circular_frequency,
+               library,
+               "stiffness of disc and pins without contact")
     , normal(attachment_modes(response, *contact.normal))
     , tangential(attachment_modes(response, *contact.tangential))
   {}
 
   SlidingState steady_sliding(const SlidingModel &sliding, const OperationParameters &operation, const SlidingParameters &parameters)
   {
-    const auto &[model, interface, contact, system, response, Psi_n, Psi_t] = sliding;
-    check_sliding(model, interface, operation, parameters);
-    const double mu                             = operation.friction_coefficient;
-    const auto [plates, gaps, motions, problem] = condensed(sliding, operation, parameters);
-    const ContactSolution solution              = solve_contact(problem);
+    check_sliding(sliding.model, sliding.interface, operation, parameters);
+    const auto [plates, gaps, motions, pressing, problem] = condensed(sliding, operation, parameters);
+    const ContactSolution solution                        = solve_contact(problem);
 
     SlidingState state;
     state.reactions  = solution.reactions;
@@ -296,14 +339,16 @@ namespace Squeal
       }
 
     const DenseMatrix r = as_column(state.reactions);
-    MultiVector       u = Psi_n * r;
-    multiply_add(mu, Psi_t, r, 1., u);
+    MultiVector       u = sliding.normal * r;
+    multiply_add(operation.friction_coefficient, sliding.tangential, r, 1., u);
+    if (pressing)
+      u += sliding.response.solve(*pressing);
     if (motions)
       multiply_add(1., *motions, as_column(solution.motions).tail(motions->n_columns()), 1., u);
     state.displacement = std::make_shared<MultiVector>(u);
     state.total_displacement =
       std::make_shared<MultiVector>(with_backplates(sliding, u, backplate_displacements(plates.travels, state.approach)));
-    state.certificate = certificate(sliding, plates, gaps, state, mu);
+    state.certificate = certificate(sliding, plates, gaps, state, pressing ? &*pressing : nullptr, operation);
     return state;
   }
 
@@ -329,15 +374,16 @@ namespace Squeal
                                        const SlidingState        &state,
                                        const OperationParameters &operation)
   {
-    const auto centres    = face_centres(model, interface);
-    const auto directions = travels(model, interface);
-    const auto c_b        = radial_dissipation(interface, state.reactions, operation),
-               c_t        = sliding_dissipation(interface, state.reactions, operation);
+    const auto            centres    = face_centres(model, interface);
+    const auto            directions = travels(model, interface);
+    const SlidingVelocity velocity(operation);
+    const auto            c_b = radial_dissipation(interface, state.reactions, operation),
+               c_t            = sliding_dissipation(interface, state.reactions, operation);
     std::vector<PinContact> result;
     for (unsigned int pin = 1; pin < model.component_names().size(); ++pin)
       {
         PinContact entry{model.component_names()[pin], directions[pin].side, 0, 0, 0., 0., 0., 0., 0., 0., 0., state.approach[pin], 0.};
-        double     axis_distance = 0.;
+        double     lever = 0.;
         for (std::size_t c = 0; c < interface.size(); ++c)
           if (const ContactNode &node = interface[c]; node.pin == pin)
             {
@@ -348,7 +394,7 @@ namespace Squeal
               entry.load += force;
               entry.sliding_offset += force * along;
               entry.radial_offset += force * outwards;
-              axis_distance += force * node.axis_distance();
+              lever += force * node.lever;
               entry.largest_pressure = std::max(entry.largest_pressure, force / node.area);
               entry.radial_damping += c_b[c];
               entry.sliding_damping += c_t[c];
@@ -360,11 +406,11 @@ namespace Squeal
           {
             entry.sliding_offset /= entry.load;
             entry.radial_offset /= entry.load;
-            axis_distance /= entry.load;
+            lever /= entry.load;
           }
         else
-          axis_distance = std::hypot(centres[pin][0], centres[pin][1]);
-        entry.sliding_speed = operation.rotation_speed * axis_distance;
+          lever = velocity.lever(centres[pin]);
+        entry.sliding_speed = operation.rotation_speed * lever;
         result.push_back(entry);
       }
     return result;

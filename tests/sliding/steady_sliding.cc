@@ -412,7 +412,7 @@ TEST(ContactMotions, OfALevelDisc)
 {
   // Three motions press the pins, three slide past them, whatever the basis in which they are given
   const Scene s(four_pins(), mounted({}), operating());
-  const auto  N = free_disc_motions(s.model, s.system);
+  const auto  N = free_motions(s.model, s.system, 0);
   ASSERT_TRUE(N);
   ASSERT_EQ(N->n_columns(), 6);
   std::mt19937                           generator(1);
@@ -430,7 +430,7 @@ TEST(ContactMotions, OfALevelDisc)
     }
 
   // If it only turns, nothing but rounding is left along the normals
-  const auto turning = free_disc_motions(s.model, assemble(s.model, mounted({{"disc_bore", 1e10, 0., 1e10}})));
+  const auto turning = free_motions(s.model, assemble(s.model, mounted({{"disc_bore", 1e10, 0., 1e10}})), 0);
   ASSERT_TRUE(turning);
   ASSERT_EQ(turning->n_columns(), 1);
   const auto motions = contact_motions(*s.contact.normal, *turning);

@@ -97,17 +97,18 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
 TEST(ParameterUsage, OfEveryStudy)
 {
   const std::string dissipation = "Operation/Radial dissipation=consistent", steady = "Steady sliding/Contact state=steady sliding";
-  const Paths       no_sliding = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Gaps"};
-  const Paths       undamped   = {"Operation/Load", "Operation/Rotation speed"};
-  const Paths       krylov     = {"Complex modes/Iteration", "Complex modes/Maximum"};
-  const Paths       no_shapes  = {"Output/", "Complex modes/Iteration"};
-  const Paths       reduced    = {"Output/", "Complex modes/"};
-  const Paths       no_map     = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
-  const Paths       no_sweep   = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
-  const Paths       no_bases   = {"Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"};
-  const Paths       design     = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
-  const Paths       own_meshes = {"Discretization/Element", "Geometry/Outlines"};
-  const Paths       one_mu     = {"Operation/Friction coefficient"};
+  const Paths no_sliding = {"Steady sliding/Control", "Steady sliding/Displacement", "Steady sliding/Loads", "Steady sliding/Pressed faces",
+                            "Steady sliding/Gaps"};
+  const Paths undamped   = {"Operation/Load", "Operation/Rotation speed"};
+  const Paths krylov     = {"Complex modes/Iteration", "Complex modes/Maximum"};
+  const Paths no_shapes  = {"Output/", "Complex modes/Iteration"};
+  const Paths reduced    = {"Output/", "Complex modes/"};
+  const Paths no_map     = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
+  const Paths no_sweep   = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
+  const Paths no_bases   = {"Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"};
+  const Paths design     = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
+  const Paths own_meshes = {"Discretization/Element", "Geometry/Outlines"};
+  const Paths one_mu     = {"Operation/Friction coefficient"};
 
   const std::vector<Usage> table = {
     {{}, {}, {no_sliding, undamped, krylov}},

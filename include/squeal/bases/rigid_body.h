@@ -22,9 +22,9 @@ namespace Squeal
   /// The six rigid-body motions of the disc with the pins following where the contact makes them, in coupled coordinates, n × 6.
   MultiVector rigid_disc_motions(const Model &model, const CoupledSystem &system);
 
-  /// Rigid-body motions of the uncoupled disc that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if they hold
-  /// it.
-  std::optional<MultiVector> free_disc_motions(const Model &model, const SecondOrderSystem &system);
+  /// Rigid-body motions of an uncoupled body that its mounts leave free (up to rounding errors of K), M-orthonormal; nothing if they hold
+  /// it, or it has clamped nodes.
+  std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, unsigned int component);
 
   /// Combinations of rigid-body motions, M-orthonormal as these are, by what they do to the contact nodes.
   struct ContactMotions

@@ -3,6 +3,7 @@
 #include <squeal/model/model.h>
 #include <squeal/parameters/contact.h>
 #include <squeal/parameters/operation.h>
+#include <squeal/parameters/sliding_velocity.h>
 
 #include <Eigen/Core>
 
@@ -32,6 +33,8 @@ namespace Squeal
     Eigen::Vector3d normal;    ///< n: outward unit normal of the disc
     Eigen::Vector3d sliding;   ///< t: direction in which the disc moves relative to the pin
     Eigen::Vector3d radial;    ///< b = n × t
+    double          lever;     ///< |v| = w_0 / Ω [m]: the distance from the axis where the disc turns about z
+    bool            turns;     ///< whether the disc turns about z
     double          area;      ///< share of the contact area [m²]
     double          friction;  ///< of the pair of surfaces: factor of the friction coefficient [-]
     unsigned int    pair;      ///< number of the pair of surfaces
@@ -67,16 +70,16 @@ namespace Squeal
   /**
    * The contact nodes of pairs of surfaces: pairs of nodes where every node of the pins has one of the disc within @p tolerance [m] and every node of
    * the disc one of the pins, else by mortar(). The normal of a pair is the area average over the disc's contact faces that meet there,
-   * that of another node the average over the pin's; t is the direction of ±e_θ in the tangent plane.
+   * that of another node the average over the pin's; t is the direction of the velocity in the tangent plane.
    *
-   * Throws MeshError if a contact node is clamped, and as mortar() does.
+   * Throws MeshError if a contact node is clamped, or the velocity there is zero, not finite or normal to the face, and as mortar() does.
    */
-  FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, Rotation rotation, double tolerance);
+  FoundContact contact_nodes(const Model &model, const std::vector<ContactPair> &pairs, const SlidingVelocity &velocity, double tolerance);
 
   /**
    * Viscous contact damping of each node [N s/m] in a state with reactions R_n0:
    *
-   *   along b  c_b = μ |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω r;  zeros for `none`
+   *   along b  c_b = μ |R_n0| / w_0 (consistent) or |R_n0| / w_0 (published), w_0 = Ω |v|;  zeros for `none`
    *   along t  c_t = |R_n0| dμ/dw / f, for rows f t·(u_D − u_P) of P_t, f the friction factor of the pair
    */
   std::vector<double> radial_dissipation(const ContactInterface    &interface,

@@ -39,6 +39,11 @@ namespace Squeal
     bool                      is_own;    ///< every node is that of one process, which has the rows of its dofs
     std::vector<WeightedDofs> masters;   ///< of a tied node: u = Σ weight u of these; empty for others
 
+    bool is_clamped() const
+    {
+      return dofs[0] < 0 && masters.empty();
+    }
+
     /// Calls visit(dof, weight) for each free dof of which the displacement along axis @p direction is the weighted sum.
     template <typename Visit>
     void for_each_dof(const unsigned int direction, const Visit &visit) const

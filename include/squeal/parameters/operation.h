@@ -3,9 +3,11 @@
 #include <squeal/base/enum_table.h>
 #include <squeal/parameters/declarations.h>
 
+#include <string>
+
 namespace Squeal
 {
-  /// Sense in which the disc turns about e_z: the sliding direction is t = ±e_θ.
+  /// Sign of the sliding velocity: the sense in which the disc turns about e_z.
   enum class Rotation
   {
     positive,
@@ -34,13 +36,17 @@ namespace Squeal
   {
     double            friction_coefficient = 0.4; ///< μ [-]
     Rotation          rotation             = Rotation::positive;
-    double            rotation_speed       = 4.;    ///< Ω [rad/s]
-    double            load_per_side        = 1000.; ///< [N]
+    std::string       sliding_direction    = "-y, x, 0"; ///< velocity v of the disc per rotation speed [m], see SlidingVelocity
+    double            rotation_speed       = 4.;         ///< Ω [rad/s]
+    double            load_per_side        = 1000.;      ///< [N]
     RadialDissipation radial_dissipation   = RadialDissipation::none;
     double            friction_slope       = 0.;    ///< dμ/dw at w_0 [s/m]
     bool              rotating_disc        = false; ///< whether the equations of motion contain the rotation
 
     void declare(Declarations &declarations);
+
+    /// Throws ParameterError if the sliding direction cannot be understood or does not go with gyroscopic forces.
+    void check() const;
 
     /// Whether the contact damps or excites by the speed of sliding.
     bool has_contact_damping() const;

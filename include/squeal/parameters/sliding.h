@@ -19,18 +19,20 @@ namespace Squeal
   inline constexpr EnumName<ContactState> enum_table<ContactState>[] = {{ContactState::equal_load, "equal load"},
                                                                         {ContactState::steady_sliding, "steady sliding"}};
 
-  /// What is prescribed at the rigid backplates, which move along their travel (contact/travel.h).
+  /// What is prescribed: at rigid backplates, which move along their travel (contact/travel.h), or a pressure on faces of the bodies.
   enum class BackplateControl
   {
     load_per_side, ///< one backplate for each side, pressed with a given force
     displacement,  ///< one backplate for each side, at a given displacement
-    load_per_pin   ///< every pin has an actuator of its own
+    load_per_pin,  ///< every pin has an actuator of its own
+    pressure       ///< no rigid backplate: a pressure on faces, which may tilt and bend
   };
 
   template <>
   inline constexpr EnumName<BackplateControl> enum_table<BackplateControl>[] = {{BackplateControl::load_per_side, "load per side"},
                                                                                 {BackplateControl::displacement, "displacement"},
-                                                                                {BackplateControl::load_per_pin, "load per pin"}};
+                                                                                {BackplateControl::load_per_pin, "load per pin"},
+                                                                                {BackplateControl::pressure, "pressure"}};
 
   /**
    * Gap between the face of an unloaded pin and the disc, measured along the
@@ -39,7 +41,7 @@ namespace Squeal
    *   gap + sliding taper · s_t + radial taper · s_r
    *
    * with the distances s_t along t and s_r outwards from the centre of the face;
-   * s_r is along the axis where the travel is not.
+   * s_r is along the axis where the travel is not, along b where the disc does not turn about z.
    */
   struct PinGap
   {
@@ -64,6 +66,8 @@ namespace Squeal
     double               displacement = 0.; ///< of each backplate towards the disc [m]
     std::vector<PinLoad> pin_loads;         ///< of pins that do not carry an equal share of the load of their side
     std::vector<PinGap>  gaps;              ///< of pins that do not touch the disc at first
+
+    std::vector<std::string> pressed_faces; ///< each with the load per side, where the control is pressure
 
     void declare(Declarations &declarations);
 

@@ -9,23 +9,26 @@
 namespace Squeal
 {
   /**
-   * Motions of the disc that its mounts leave free and the reactions can balance,
-   * n × k, M-orthonormal; nothing if there are none. Turning about the axis does
-   * not count, whose moment the drive takes, nor do those that leave the gaps as they are.
+   * Of the @p free motions of each body, M-orthonormal, those that the reactions can balance,
+   * n × k; nothing if there are none. The sliding motion itself
+   * does not count, whose force or moment the drive takes, nor do those that leave the gaps as they are.
    *
-   * Throws SolverError if friction (@p mu > 0) acts on one of the latter.
+   * @param pressing forces on the bodies, n × 1 [N]; null: none, and only the disc may be free
+   *
+   * Throws SolverError if friction or @p pressing acts on one of the latter, another body than the disc is free and not pressed, or the sliding
+   * velocity of a disc that moves freely is no rigid-body motion.
    */
-  std::optional<MultiVector> balanced_disc_motions(const Model             &model,
-                                                   const ContactOperators  &contact,
-                                                   const SecondOrderSystem &system,
-                                                   const InertiaRelief     &response,
-                                                   double                   mu);
+  std::optional<MultiVector> balanced_motions(const Model                                   &model,
+                                              const ContactOperators                        &contact,
+                                              const SecondOrderSystem                       &system,
+                                              const std::vector<std::optional<MultiVector>> &free,
+                                              const OperationParameters                     &operation,
+                                              const MultiVector                             *pressing);
 
   /**
    * A disc that floats between two loaded backplates is in balance wherever it
    * is along its axis, if the loads are: B y = 0 for a motion y of all. Then
-   * one free motion of the disc, numbered from @p n_plates, is held instead of
-   * balanced. Decided by the singular values of B with columns of unit norm, so that
+   * one free motion, numbered from @p n_plates, is held instead of balanced, and so on while one remains. Decided by the singular values of B with columns of unit norm, so that
    * the units of the motions play no part.
    *
    * Throws SolverError if the loads on such a disc are not in balance.

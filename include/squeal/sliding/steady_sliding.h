@@ -16,12 +16,12 @@ namespace Squeal
   /// How well a steady sliding state fulfils its equations, from the displacements of the full model.
   struct SlidingCertificate
   {
-    double residual;        ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n‖ / ‖P_nᵀ r_n‖, all dofs [-]
-    double load;            ///< largest error of a prescribed load, relative; 0 where none is prescribed [-]
-    double tension;         ///< largest r_n over the load of a backplate; ≤ 0 where nothing pulls [-]
-    double overlap;         ///< largest g over the travel of the backplates, g from P_n u [-]
+    double residual; ///< ‖K u − P_nᵀ r_n − μ P_tᵀ r_n − f_p‖ / ‖P_nᵀ r_n‖, all dofs [-]
+    double load;     ///< largest error of the load of a backplate, relative; 0 where none is prescribed [-]
+    double tension;  ///< largest r_n over the load of a backplate; ≤ 0 where nothing pulls [-]
+    double overlap;  ///< largest g over the travel of the backplates or, with pressed faces, the largest displacement; g from P_n u [-]
     double complementarity; ///< largest |r_n g| over load and travel [-]
-    double force_balance;   ///< contact forces and forces of the supports of each component, over the load [-]
+    double force_balance;   ///< contact forces, pressure and forces of the supports of each component, over the load [-]
     double moment_balance;  ///< the same of moments about the origin, over load × largest axis distance [-]
   };
 
@@ -54,12 +54,13 @@ namespace Squeal
                  double                   largest_circular_frequency,
                  FactorizationLibrary     library);
 
-    const Model             &model;
-    const ContactInterface  &interface;
-    const ContactOperators  &contact;
-    const SecondOrderSystem &system;
-    InertiaRelief            response;
-    MultiVector              normal, tangential; ///< attachment modes K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N], n × n_c
+    const Model                            &model;
+    const ContactInterface                 &interface;
+    const ContactOperators                 &contact;
+    const SecondOrderSystem                &system;
+    std::vector<std::optional<MultiVector>> free_motions; ///< rigid-body motions of each body that nothing holds
+    InertiaRelief                           response;
+    MultiVector                             normal, tangential; ///< attachment modes K⁻¹ P_nᵀ and K⁻¹ P_tᵀ [m/N], n × n_c
   };
 
   /**
@@ -73,6 +74,9 @@ namespace Squeal
    * by d; a = −e·n; the gaps of @p parameters are taken along e. Each load is
    * the force on its backplate along e, Σ e·n r_n + Σ e·t r_t. Friction acts
    * along t at every closed node; a drive holds the disc against its moment.
+   *
+   * With BackplateControl::pressure there are no backplates, d = 0, and f_p of pressed_faces.h is added to the forces. Bodies may be free
+   * then: their motions z, N z in u, follow from their balance, Nᵀ (P_nᵀ r_n + P_tᵀ r_t + f_p) = 0.
    *
    * Solved on the contact nodes with the normal and tangential attachment
    * modes, F_nn = P_n K⁻¹ P_nᵀ and F_nt = P_n K⁻¹ P_tᵀ.

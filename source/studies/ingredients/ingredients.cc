@@ -135,7 +135,10 @@ namespace Squeal
          return unless(p.ingredients.trial_damping_ratio > 0., "the scene has none, and Ingredients/Trial damping ratio gives none to try");
        }},
       option("rotation of the disc", rotation, false, ChangeKind::removes, Departure::mesh),
-      option("rotation of the disc", rotation, true, ChangeKind::adds, Departure::mesh),
+      option("rotation of the disc", rotation, true, ChangeKind::adds, Departure::mesh,
+             [](P p, const std::optional<SlidingState> &) {
+               return unless(SlidingVelocity(p.operation).turns_about_z(), "the disc does not turn about the z axis");
+             }),
 
       // ------------------------------------------------------------- discretisation
       option("element", element, Element::trilinear, ChangeKind::speeds, Departure::mesh),

@@ -136,7 +136,7 @@ namespace Squeal
       const Model       model(moved(scene.mesh, motion, change), parameters.discretization.element, run.communicator);
       MovedScene        result{
         body_terms(model, parameters.materials),
-        contact_nodes(model, parameters.contact.pairs, parameters.operation.rotation, parameters.geometry.pairing_tolerance).interface};
+        contact_nodes(model, parameters.contact.pairs, parameters.operation, parameters.geometry.pairing_tolerance).interface};
       if (parameters.operation.rotating_disc)
         add_rotation(result.bodies, model, parameters.operation.angular_velocity());
       for (std::size_t c = 0; c < result.interface.size(); ++c)

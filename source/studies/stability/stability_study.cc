@@ -356,7 +356,7 @@ namespace Squeal
     report(frictionless, friction, errors, run);
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
-    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation.rotation),
+    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation),
                                                    strain_energy_columns(linearisation, friction.modes, parameters.materials),
                                                    coarser ? mesh_error_columns(errors, parameters.goal) : Columns<int>()));
     run.store_table("real_modes", real_table(frictionless));

@@ -140,16 +140,17 @@ namespace Squeal
 
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
                                                              const FrictionModes     &friction,
-                                                             const Rotation           rotation)
+                                                             const SlidingVelocity   &velocity)
   {
     const Scene        &scene  = *frictionless.linearisation.scene;
     const SparseMatrix &T_c    = *frictionless.linearisation.coupled.kernel;
     auto                result = wave_shares(*scene.model, nodal_masses(*scene.model, *scene.system.mass), friction.labels,
                                              T_c * *friction.modes.real_part, T_c * *friction.modes.imaginary_part);
-    if (rotation == Rotation::negative)
-      for (auto &shares : result)
-        if (shares)
-          std::swap(shares->positive, shares->negative);
+    for (auto &shares : result)
+      if (!velocity.turns_about_z())
+        shares.reset();
+      else if (shares && (*velocity.rigid_motion())[5] < 0.)
+        std::swap(shares->positive, shares->negative);
     return result;
   }
 

@@ -51,10 +51,14 @@ namespace Squeal
       const Scene &scene     = *linearisation.scene;
       const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
       run.progress.begin("Component modes");
+      double pins_shift = 0.; // bodies that a mount leaves free
+      for (unsigned int body = 1; body < scene.model->component_names().size(); ++body)
+        if (free_motions(*scene.model, scene.system, body))
+          pins_shift = omega_max / band_per_stabilizing_shift;
       const auto modes = [&](const Component component, const ContactBoundary boundary, const double band, const char *name) {
         const bool            is_disc = component == Component::disc;
         SymmetricModesOptions options =
-          real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : 0.);
+          real_modes_options(run.parameters.solvers, name, is_disc ? stabilizing_shift(*scene.model, scene.system, omega_max) : pins_shift);
         // Pins are alike: every mode of one comes once for each of them, bending modes twice. One by one there are no such clusters.
         options.by_parts = !is_disc;
         run.progress.update(name);

@@ -44,6 +44,7 @@ namespace Squeal
 
         {"Operation/Friction coefficient", no_friction},
         {"Operation/Rotation", no_friction},
+        {"Operation/Sliding direction", no_friction},
         {"Operation/Rotation speed",
          // Tables of the steady sliding state show the sliding speeds
          [](const Parameters &p) { return p.needs_steady_sliding() ? nullptr : no_sliding_speed(p); }},
@@ -62,6 +63,7 @@ namespace Squeal
         {"Steady sliding/Control", no_steady_sliding},
         {"Steady sliding/Displacement", no_steady_sliding},
         {"Steady sliding/Loads", no_steady_sliding},
+        {"Steady sliding/Pressed faces", no_steady_sliding},
         {"Steady sliding/Gaps", no_steady_sliding},
 
         {"Complex modes/Solver", [](const Parameters &p) { return unless(p.has_friction(), "the problem is frictionless"); }},

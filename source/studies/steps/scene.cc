@@ -58,7 +58,12 @@ namespace Squeal
     GeometryParameters geometry = parameters.geometry;
     if (parameters.discretization.element == Element::quadratic)
       geometry.outlines = Outlines::inscribed; // curved edges have the circle's area
-    scene.mesh                = generate_mesh(geometry, parameters.materials.mounted_surfaces(), run.communicator, parameters.contact);
+    std::vector<std::string> surfaces = parameters.materials.mounted_surfaces();
+    if (parameters.needs_steady_sliding())
+      for (const std::string &face : parameters.sliding.pressed_faces)
+        if (face != PhysicalNames::pin_clamp) // a clamp is no mount
+          surfaces.push_back(face);
+    scene.mesh                = generate_mesh(geometry, surfaces, run.communicator, parameters.contact);
     const MeshQuality quality = check_mesh(scene.mesh);
     for (const auto *list : {&parameters.materials.volumes, &parameters.materials.orthotropic})
       for (const VolumeMaterial &own : *list)
@@ -82,7 +87,7 @@ namespace Squeal
     run.progress.begin("Contact");
     scene.model = std::make_unique<Model>(scene.mesh, parameters.discretization.element, run.communicator);
     FoundContact contact =
-      contact_nodes(*scene.model, parameters.contact.pairs, parameters.operation.rotation, parameters.geometry.pairing_tolerance);
+      contact_nodes(*scene.model, parameters.contact.pairs, parameters.operation, parameters.geometry.pairing_tolerance);
     scene.interface = std::move(contact.interface);
     scene.contact   = contact_operators(*scene.model, scene.interface);
     if (parameters.needs_steady_sliding())

@@ -147,7 +147,7 @@ namespace Squeal
     run.measure("expected memory [byte]", bytes);
 
     // Doubts
-    if (!is_round_about_z(mesh, parameters.geometry.path()))
+    if (SlidingVelocity(parameters.operation).turns_about_z() && !is_round_about_z(mesh, parameters.geometry.path()))
       run.warn("the disc is not round about the z axis, about which it turns");
     for (const MaterialAxes &axes : parameters.materials.axes)
       if (is_of_disc(axes.volume))

@@ -187,9 +187,9 @@ namespace Squeal
       if (!operation.has_contact_damping() && !(is_steady && varied == MapParameter::load))
         throw ParameterError("without contact damping nothing depends on the " + to_string(varied), "parameter Sweep/Map parameter",
                              "set Operation/Radial dissipation or Operation/Friction slope, or Sweep/Map parameter = none");
-      if (is_steady && varied == MapParameter::load && parameters.sliding.control != BackplateControl::load_per_side)
-        throw ParameterError("a map over the load needs backplates that are pressed with it", "parameter Steady sliding/Control",
-                             "set it to load per side, or Sweep/Map parameter = none");
+      if (is_steady && varied == MapParameter::load && !parameters.uses_load_per_side())
+        throw ParameterError("a map over the load needs backplates or faces that are pressed with it", "parameter Steady sliding/Control",
+                             "set it to load per side or pressure, or Sweep/Map parameter = none");
     }
 
     /// Friction coefficients of the parameters at which other contact nodes are closed than at any value of the sweep.

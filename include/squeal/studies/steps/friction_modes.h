@@ -75,10 +75,11 @@ namespace Squeal
                            double               tolerance,
                            Run                 &run);
 
-  /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes.
+  /// How each disc mode travels, WaveShares::positive along with the rotation of the disc; nothing for other modes, and where the disc
+  /// does not turn about z.
   std::vector<std::optional<WaveShares>> waves_with_rotation(const FrictionlessModes &frictionless,
                                                              const FrictionModes     &friction,
-                                                             Rotation                 rotation);
+                                                             const SlidingVelocity   &velocity);
 
   /// Field of a complex mode, coupled displacements n × 1, on the uncoupled bodies, with the normal reactions at all pairs of contact
   /// nodes. All processes must call.

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <squeal/parameters/operation.h>
+
+#include <deal.II/base/function_parser.h>
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace Squeal
+{
+  /// Velocity of the disc relative to the other bodies per rotation speed, v(x) [m]: ±e_z × x, or as Operation/Sliding direction says.
+  class SlidingVelocity
+  {
+  public:
+    /// Throws ParameterError if @p expressions are not three expressions in x, y, z.
+    SlidingVelocity(Rotation rotation = Rotation::positive, const std::string &expressions = OperationParameters().sliding_direction);
+    SlidingVelocity(const OperationParameters &operation);
+
+    /// v at a point [m]; components that are not defined there are no finite numbers.
+    Eigen::Vector3d operator()(const Eigen::Vector3d &position) const;
+
+    /// |v| = w_0 / Ω at a point [m].
+    double lever(const Eigen::Vector3d &position) const;
+
+    /// v as a rigid-body motion: displacement along and rotation about x, y, z; nothing if v is none.
+    std::optional<Eigen::Matrix<double, 6, 1>> rigid_motion() const;
+
+    /// Whether v = ±e_z × x.
+    bool turns_about_z() const;
+
+  private:
+    std::shared_ptr<const dealii::FunctionParser<3>> function;
+    double                                           sign;
+  };
+} // namespace Squeal

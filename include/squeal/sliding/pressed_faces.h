@@ -1,0 +1,23 @@
+#pragma once
+
+#include <squeal/contact/contact_interface.h>
+#include <squeal/linear_algebra/multivector.h>
+#include <squeal/parameters/sliding.h>
+
+namespace Squeal
+{
+  /**
+   * Nodal forces of a uniform pressure on each pressed face, n × 1 [N]:
+   *
+   *   f_i = −p ∫ n N_i dA,   p = load / |∫ n dA|
+   *
+   * n the outward normal: the resultant on each face is the load, on a flat one p = load / area.
+   *
+   * Throws MeshError if a face does not exist; ParameterError if it is one of the disc, in contact or clamped, has no resultant, or the
+   * pressure pulls its body away from the disc.
+   */
+  MultiVector pressing_forces(const Model             &model,
+                              const ContactInterface  &interface,
+                              const SlidingParameters &parameters,
+                              double                   load_per_side);
+} // namespace Squeal
