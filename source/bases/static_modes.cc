@@ -109,11 +109,12 @@ namespace Squeal
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,
-                               const double          friction_coefficient)
+                               std::optional<double> friction_coefficient)
   {
     if (!system.has_damping())
       throw SolverError("there is no damping to respond to", "response of the real modes to damping",
                         "set Operation/Radial dissipation or the Rayleigh coefficients of a material, or leave this response out");
-    return inverse.solve_frictionless(times(system.terms, system.at(friction_coefficient), 1, real_modes));
+    return inverse.solve_frictionless(
+      times(system.terms, friction_coefficient ? system.at(*friction_coefficient) : system.values, 1, real_modes));
   }
 } // namespace Squeal

@@ -22,9 +22,10 @@ namespace Squeal
       return {term(SystemParameter::radial_damping, radial), term(SystemParameter::sliding_damping, tangential)};
     }
 
+    /// Of the form −μ A V; friction of a system file may have a matrix.
     bool is_friction(const Term &term)
     {
-      return term.kind == TermKind::friction;
+      return term.kind == TermKind::friction && !term.matrix;
     }
   } // namespace
 
@@ -38,11 +39,11 @@ namespace Squeal
     return stiffness->rows();
   }
 
-  ParameterValues CoupledSystem::at(const double friction_coefficient, const ParameterValues &others) const
+  ParameterValues CoupledSystem::at(const double value, const ParameterValues &others) const
   {
     ParameterValues result = others;
     result.insert(values.begin(), values.end()); // those that others leave open
-    result[SystemParameter::friction] = {friction_coefficient};
+    result[varied] = {value};
     return result;
   }
 
@@ -87,7 +88,7 @@ namespace Squeal
     const auto of_power = [&system](const int power) {
       std::vector<std::pair<double, Matrix>> summands;
       for (const Term &term : system.terms)
-        if (term.matrix && term.symmetry == Symmetry::symmetric && term.power == power)
+        if (term.matrix && term.is_frictionless() && term.power == power)
           summands.emplace_back(term.coefficient.at(system.values), term.matrix);
       return sum(summands);
     };
@@ -122,7 +123,8 @@ namespace Squeal
 
   CoupledSystem with_values(CoupledSystem system, const ParameterValues &others)
   {
-    system.values = system.at(0., others);
+    for (const auto &[name, value] : others)
+      system.values[name] = value;
     return system;
   }
 

@@ -15,7 +15,7 @@ namespace Squeal
     {
       std::vector<Term> terms;
       for (const Term &term : system.terms)
-        if (term.is_sparse() && term.symmetry == Symmetry::symmetric)
+        if (term.is_sparse() && term.is_frictionless())
           terms.push_back(term);
       return pencil_at(sparse_matrices(terms, system.values), shift);
     }
@@ -23,6 +23,8 @@ namespace Squeal
 
   bool may_keep_attachment_modes(const CoupledSystem &system)
   {
+    if (system.n_contact() == 0)
+      return false;
     const double bytes = double(sizeof(double)) * system.map().n_local() * system.n_contact();
     return largest_of_processes(system.map().communicator(), bytes / available_memory()) <= largest_part_of_attachment_modes;
   }
@@ -80,13 +82,14 @@ namespace Squeal
   void UpdatedInverse::set_friction_coefficient(const double mu)
   {
     friction_coefficient = mu;
-    const int n_c        = A->rank();
+    if (!V)
+      return;
+    const int n_c = A->rank();
     if (!VX)
       {
         VX = DenseMatrix::Zero(n_c, n_c);
-        if (V)
-          for_responses(*A,
-                        [this](const int first, const MultiVector &X_b) { VX->middleCols(first, X_b.n_columns()) = replicate(*V * X_b); });
+        for_responses(*A,
+                      [this](const int first, const MultiVector &X_b) { VX->middleCols(first, X_b.n_columns()) = replicate(*V * X_b); });
       }
     correction = regular_lu(DenseMatrix::Identity(n_c, n_c) - mu * *VX, "stiffness with friction, condensed to the contact nodes");
   }

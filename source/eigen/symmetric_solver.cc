@@ -6,6 +6,8 @@
 #include <squeal/linear_algebra/mass_orthonormal.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 
+#include <Eigen/Cholesky>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,7 +49,26 @@ namespace Squeal
 
   void SymmetricSolver::solve_densely()
   {
-    dense_pairs = symmetric_eigenpairs(to_dense(K), to_dense(M));
+    const DenseMatrix stiffness = to_dense(K), mass = to_dense(M);
+    if (mass.llt().info() == Eigen::Success)
+      {
+        dense_pairs = symmetric_eigenpairs(stiffness, mass);
+        return;
+      }
+    // Massless dofs: M x = ν (K + s M) x with ν = 1 / (ω² + s), of which the zeros are left out
+    const double     s       = count.limit;
+    const RealPairs  inverse = symmetric_eigenpairs(mass, stiffness + s * mass); // ascending
+    constexpr double zero    = 1e-12;
+    const auto finite = inverse.values.end() - std::upper_bound(inverse.values.begin(), inverse.values.end(), zero * inverse.values.back());
+    RealPairs  pairs{{}, DenseMatrix(mass.rows(), finite)};
+    for (Eigen::Index j = 0; j < finite; ++j)
+      {
+        const Eigen::Index from = mass.rows() - 1 - j;
+        const double       nu   = inverse.values[from];
+        pairs.values.push_back(1. / nu - s);
+        pairs.vectors.col(j) = inverse.vectors.col(from) / std::sqrt(nu);
+      }
+    dense_pairs = std::move(pairs);
   }
 
   SymmetricSolver::RitzPairs SymmetricSolver::rayleigh_ritz(const MultiVector &V) const

@@ -63,6 +63,8 @@ namespace Squeal
           for (const auto &[column, value] : row)
             if (column == A.rows().number(i))
               result(i, 0) = std::sqrt(std::abs(value));
+          if (result(i, 0) == 0.)
+            result(i, 0) = 1.;
         }
       return result;
     }
@@ -88,7 +90,7 @@ namespace Squeal
     double condition_of_mass(const SparseMatrix &M)
     {
       const auto [smallest, largest] = equilibrated_extremes(M, root_of_diagonal(M));
-      return largest / smallest;
+      return largest / std::max(smallest, std::numeric_limits<double>::epsilon() * largest); // massless dofs
     }
 
     double condition_of_stiffness(const SparseMatrix &K, const UpdatedInverse &inverse)

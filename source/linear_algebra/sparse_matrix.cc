@@ -319,28 +319,6 @@ namespace Squeal
     return result;
   }
 
-  std::string matrix_market(const SparseMatrix &A, const MatrixMarketSymmetry symmetry)
-  {
-    EntriesOfProcesses sent;
-    const bool         symmetric = symmetry == MatrixMarketSymmetry::symmetric;
-    for_entries(A, [&](const int i, const int column, const double value) {
-      if (const int number = A.rows().number(i); !symmetric || column <= number)
-        sent[0].push_back({number, column, value});
-    });
-    const std::vector<Entry> entries = delivered(A.communicator(), std::move(sent));
-    if (A.rows().rank() != 0)
-      return "";
-    const SparseRows   all = rows_of(entries, A.n_rows(), A.n_columns());
-    std::ostringstream stream;
-    stream.precision(std::numeric_limits<double>::max_digits10);
-    stream << "%%MatrixMarket matrix coordinate real " << (symmetric ? "symmetric" : "general") << '\n'
-           << A.n_rows() << ' ' << A.n_columns() << ' ' << all.nonZeros() << '\n';
-    for (int i = 0; i < A.n_rows(); ++i)
-      for (SparseRows::InnerIterator entry(all, i); entry; ++entry)
-        stream << i + 1 << ' ' << entry.col() + 1 << ' ' << entry.value() << '\n';
-    return stream.str();
-  }
-
   SparseRows local_rows(const SparseMatrix &A)
   {
     if (A.halo() == nullptr)

@@ -36,18 +36,27 @@ namespace Squeal
       const int              power;
     };
 
-    /// Modes at friction coefficient @p mu with Q(s)⁻¹ by @p inverse where it @p fits, else by LU factors.
-    ComplexModes attempt(const std::vector<Term>     &sparse,
+    /// Whether the symmetric factor of UpdatedInverse, made at the values of the system, holds Q(s) at others but for friction.
+    bool is_in_factor(const CoupledSystem &system, const ParameterValues &values, const double shift)
+    {
+      return std::all_of(system.terms.begin(), system.terms.end(), [&](const Term &term) {
+        return !term.matrix || (term.power > 0 && shift == 0.) ||
+               (term.is_frictionless() ? term.coefficient.at(values) == term.coefficient.at(system.values) : term.vanishes(values));
+      });
+    }
+
+    /// Modes at friction coefficient @p mu with Q(s)⁻¹ by @p inverse where that has all of it, else by LU factors.
+    ComplexModes attempt(const CoupledSystem         &system,
+                         const std::vector<Term>     &sparse,
                          const ParameterValues       &values,
                          const QuadraticPencil       &pencil,
                          const QuadraticModesOptions &options,
                          const double                 mu,
                          const SolverParameters      &parameters,
-                         const bool                   fits,
                          UpdatedInverse              &inverse)
     {
       std::unique_ptr<const LinearOperator> lu;
-      if (parameters.shift_inverse == ShiftInverse::updated_cholesky && (fits || options.shift == 0.))
+      if (parameters.shift_inverse == ShiftInverse::updated_cholesky && is_in_factor(system, values, options.shift))
         inverse.set_friction_coefficient(mu);
       else
         lu = factorize_general(*pencil_at(sparse_matrices(sparse, values), options.shift), "stiffness of the coupled system with friction");
@@ -78,9 +87,6 @@ namespace Squeal
     for (const Term &term : system.terms)
       (term.is_sparse() ? sparse : others).push_back(term);
     const bool has_full_terms = !terms_of(others, values, 1).empty();
-    // UpdatedInverse, whose factor is that of a symmetric matrix, holds all terms
-    const bool symmetric = std::none_of(sparse.begin(), sparse.end(),
-                                        [&](const Term &term) { return term.symmetry == Symmetry::skew && !term.vanishes(values); });
     // The inverse would hold them
     if (shift != 0. && has_full_terms)
       throw SolverError("modal damping and a disc that is free or held softly do not go together with the Krylov solver", "complex modes",
@@ -107,7 +113,7 @@ namespace Squeal
     ComplexModes modes;
     try
       {
-        modes = attempt(sparse, values, pencil, options, mu, parameters, symmetric, inverse);
+        modes = attempt(system, sparse, values, pencil, options, mu, parameters, inverse);
       }
     catch (const SolverError &)
       {
@@ -117,7 +123,7 @@ namespace Squeal
           throw;
         options.shift = largest_circular_frequency / band_per_stabilizing_shift;
         UpdatedInverse shifted(system, options.shift, parameters.library);
-        modes = attempt(sparse, values, pencil, options, mu, parameters, symmetric, shifted);
+        modes = attempt(system, sparse, values, pencil, options, mu, parameters, shifted);
         modes.summary += ", shifted";
       }
     finish_modes(system, values, inverse, modes);

@@ -81,5 +81,8 @@ namespace Squeal
       "Write matrices", write_matrices,
       "Writes M, C (damping of the materials), K, C_b (of the contact), P_n, P_t, P_b, K_n, T_c of the closed contact nodes in "
       "Matrix Market form and the node coordinates.");
+    declarations.add("Write system", write_system,
+                     "Writes the coupled system to the folder system of the results, which System reads. full: all terms. reduced: the "
+                     "reduced model of a sweep, valid from the first to the last value within Sweep/Tolerance.");
   }
 } // namespace Squeal

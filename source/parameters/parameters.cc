@@ -173,6 +173,7 @@ namespace Squeal
       "How accurate frequencies shall be; divergence rates in percentage points to a tenth of that. Chooses elements, mesh, solver and "
       "tolerances in place of those below; Study = stability estimates what is achieved, mode by mode, with a second, coarser mesh. as "
       "given: parameters below hold, and the error of the mesh is estimated only with Discretization/Coarser mesh.");
+    system.declare(declarations);
     geometry.declare(declarations);
     materials.declare(declarations);
     discretization.declare(declarations);
@@ -199,6 +200,7 @@ namespace Squeal
 
     // The variables of the geometry are parameters, too
     Parameters parameters;
+    parameters.system.directory = std::filesystem::path(file).parent_path().string();
     parameters.geometry.set_file(geometry_file(statements), std::filesystem::path(file).parent_path().string());
     Declarations declarations;
     parameters.declare(declarations);
@@ -332,6 +334,20 @@ namespace Squeal
 
   void Parameters::check() const
   {
+    if (output.write_system == SystemOutput::reduced && !study->has("Sweep/Parameter"))
+      throw ParameterError(text("Study = ", study->name, " has no reduced model to write"), "parameter Output/Write system",
+                           "set it to full, or set Study = sweep");
+    if (system)
+      {
+        if (study->run_of_system == nullptr)
+          throw ParameterError(text("Study = ", study->name, " needs a mesh"), "parameter System",
+                               "set Study = stability, sweep or sensitivity, or leave System empty");
+        if (goal != AccuracyGoal::as_given)
+          throw ParameterError("Accuracy chooses a mesh, but the system comes from a file", "parameter Accuracy", "set it to as given");
+        discretization.check();
+        sweep.check_of_system();
+        return;
+      }
     geometry.check();
     contact.check();
     materials.check();

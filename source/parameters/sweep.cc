@@ -1,5 +1,6 @@
 #include <squeal/base/exceptions.h>
 #include <squeal/base/text.h>
+#include <squeal/parameters/given_system.h>
 #include <squeal/parameters/number_list.h>
 #include <squeal/parameters/sweep.h>
 
@@ -33,9 +34,8 @@ namespace Squeal
     {
       for (const double value : values)
         if (value < range.first || value > (range.number > 1 ? range.last : range.first))
-          throw ParameterError(
-            "the friction coefficient " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
-            "give values between Sweep/First friction coefficient and Sweep/Last friction coefficient, with decimal points");
+          throw ParameterError("the value " + exact_text(value) + " is outside of the sweep", std::string("parameter Sweep/") + name,
+                               "give values from " + exact_text(range.first) + " to " + exact_text(range.last) + ", with decimal points");
     }
   } // namespace
 
@@ -76,11 +76,11 @@ namespace Squeal
     declarations.add("Complex plane at", planes, "none",
                      "Friction coefficients at which all modes of the band are written, as in a run at one friction coefficient, and "
                      "drawn in the complex plane, separated by commas; empty: those of Mode shapes at.",
-                     coefficients, most_coefficients);
+                     {}, most_coefficients);
     declarations.add("Count modes at", counts, "none",
                      "Friction coefficients at which the modes of the band are counted by the argument principle, which takes no part "
                      "in finding them, separated by commas.",
-                     coefficients, most_coefficients);
+                     {}, most_coefficients);
     declarations.add("Map parameter", map_parameter,
                      "Second parameter of a stability map beside the friction coefficient: the load per side or the rotation speed.");
     declarations.add("First map value", map_values.first, "N or rad/s", "Smallest load or speed of the map.", {0.});
@@ -88,6 +88,35 @@ namespace Squeal
     declarations.add("Number of map values", map_values.number, "none", "Loads or speeds of the map, of equal ratio.", {1, 10000});
     declarations.add("Map friction coefficients", map_friction_coefficients, "none",
                      "Friction coefficients of the map, equally spaced over the sweep.", {1, 10000});
+    declarations.add("Parameter", parameter,
+                     "With System: the parameter that varies, its first and last value and their number, such as omega, 6.28, 25.1, 31. "
+                     "Empty: mu, from First to Last friction coefficient.");
+    declarations.add("Second parameter", second_parameter, "With System: a second parameter of a stability map, likewise. Empty: no map.");
+  }
+
+  NamedRange SweepParameters::varied_parameter() const
+  {
+    return parameter.empty() ? NamedRange{"mu", friction_coefficients} : parsed_range(parameter, "parameter Sweep/Parameter");
+  }
+
+  std::optional<NamedRange> SweepParameters::second_varied_parameter() const
+  {
+    return second_parameter.empty() ? std::nullopt : std::optional(parsed_range(second_parameter, "parameter Sweep/Second parameter"));
+  }
+
+  void SweepParameters::check_of_system() const
+  {
+    const NamedRange varied = varied_parameter();
+    check_range(varied.values, "values of " + varied.name,
+                parameter.empty() ? "Sweep/First friction coefficient, Last friction coefficient and Number of friction coefficients" :
+                                    "Sweep/Parameter");
+    if (const auto second = second_varied_parameter(); second && second->name == varied.name)
+      throw ParameterError(in_quotes(second->name) + " is both parameters of the map", "parameter Sweep/Second parameter",
+                           "name another parameter");
+    check_distinct(planes, "Sweep/Complex plane at");
+    check_distinct(counts, "Sweep/Count modes at");
+    check_inside(planes, varied.values, "Complex plane at");
+    check_inside(counts, varied.values, "Count modes at");
   }
 
   void SweepParameters::check() const

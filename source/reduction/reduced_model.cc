@@ -60,7 +60,7 @@ namespace Squeal
   {
     DenseMatrix sums[2];
     for (std::size_t k = 0; k < matrices.size(); ++k)
-      if (const Term &term = system->terms[k]; term.matrix && term.symmetry == Symmetry::symmetric && term.power != 1)
+      if (const Term &term = system->terms[k]; term.matrix && term.is_frictionless() && term.power != 1)
         {
           DenseMatrix      &sum  = sums[term.power / 2];
           const DenseMatrix part = term.coefficient.at(system->values) * matrices[k];

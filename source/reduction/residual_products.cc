@@ -23,7 +23,7 @@ namespace Squeal
     /// Of the stiffness (power 0) or the mass (2).
     bool is_symmetric(const Term &term, const int power)
     {
-      return term.matrix && term.symmetry == Symmetry::symmetric && term.power == power;
+      return term.matrix && term.is_frictionless() && term.power == power;
     }
   } // namespace
 
@@ -33,7 +33,8 @@ namespace Squeal
   {
     const ParameterValues with_friction = system.at(1., values);
     for (std::size_t k = 0; k < system.terms.size(); ++k)
-      if (const Term &term = system.terms[k]; term.vanishes(with_friction))
+      // A coefficient that vanishes here may not vanish elsewhere, but for weights, which the caller answers for
+      if (const Term &term = system.terms[k]; term.vanishes(with_friction) && (!term.weights.empty() || term.coefficient.is_constant()))
         continue;
       else if (term.matrix)
         sparse.push_back({&term, k, term.symmetry == Symmetry::skew ? -1. : 1., 0., {}, {}, {}});

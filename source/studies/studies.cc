@@ -1,4 +1,4 @@
-#include <squeal/studies/steps/scene.h>
+#include <squeal/studies/steps/imported_modes.h>
 
 namespace Squeal
 {
@@ -14,6 +14,14 @@ namespace Squeal
 
   void run_study(Run &run)
   {
+    if (run.parameters.system)
+      {
+        if (run.is_dry)
+          read_system(run);
+        else
+          run.parameters.study->run_of_system(run);
+        return;
+      }
     Scene scene = mesh_scene(run);
     if (run.is_dry)
       run.progress.note("  dry run: nothing was computed or written");

@@ -1,4 +1,5 @@
 #include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
 #include <squeal/linear_algebra/multivector.h>
 #include <squeal/linear_algebra/sparse_matrix.h>
 #include <squeal/system/terms.h>
@@ -79,6 +80,14 @@ namespace Squeal
         return powers.empty();
       }
 
+      std::string text() const override
+      {
+        std::string result = exact_text(factor);
+        for (const auto &[parameter, power] : powers)
+          result += (power < 0 ? "/" : "*") + parameter + (std::abs(power) == 1 ? "" : "^" + std::to_string(std::abs(power)));
+        return result;
+      }
+
     private:
       const double                     factor;
       const std::map<std::string, int> powers;
@@ -112,6 +121,13 @@ namespace Squeal
         return a->is_constant() && b->is_constant();
       }
 
+      std::string text() const override
+      {
+        return a->is_constant() && a->at({}) == 1. ? b->text() :
+               b->is_constant() && b->at({}) == 1. ? a->text() :
+                                                     a->text() + "*(" + b->text() + ")";
+      }
+
     private:
       const std::shared_ptr<const ParameterFunction> a, b;
     };
@@ -143,6 +159,11 @@ namespace Squeal
   bool Coefficient::is_constant() const
   {
     return function->is_constant();
+  }
+
+  std::string Coefficient::text() const
+  {
+    return function->text();
   }
 
   Coefficient operator*(const Coefficient &a, const Coefficient &b)
@@ -180,6 +201,29 @@ namespace Squeal
   {
     return {std::move(name),    power, std::move(coefficient), {}, Symmetry::symmetric, std::move(left), std::move(right),
             std::move(weights), kind};
+  }
+
+  std::vector<Term> split_by_symmetry(const Term &term)
+  {
+    constexpr double  rounding  = 1e-15;
+    const auto        transpose = Squeal::transpose(*term.matrix);
+    const double      size      = max_norm(*term.matrix);
+    std::vector<Term> result;
+    for (const Symmetry symmetry : {Symmetry::symmetric, Symmetry::skew})
+      {
+        const Matrix part = add(0.5, *term.matrix, symmetry == Symmetry::skew ? -0.5 : 0.5, *transpose);
+        if (max_norm(*part) <= rounding * size)
+          continue;
+        result.push_back(term);
+        result.back().matrix   = part;
+        result.back().symmetry = symmetry;
+      }
+    if (result.size() == 2)
+      {
+        result[0].name += ", symmetric part";
+        result[1].name += ", skew part";
+      }
+    return result;
   }
 
   std::vector<const Term *> terms_of(const std::vector<Term> &terms, const ParameterValues &values, const int power)

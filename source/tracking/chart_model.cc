@@ -81,7 +81,7 @@ namespace Squeal
     , real_modes(&real_modes)
     , shift(shift)
     , largest_circular_frequency(largest_circular_frequency)
-    , model(starting_model(system, inverse, real_modes, true))
+    , model(starting_model(system, inverse, real_modes, system.n_contact() > 0))
     , residuals(system, inverse, shift, system.values)
   {
     residuals.extend(model);
@@ -112,9 +112,15 @@ namespace Squeal
   {
     const ParameterValues values = system.at(point.friction_coefficient, point.values);
     // What follows from products of vectors is the same in modal coordinates, where most of them are diagonal
-    const double       end   = (1. + band_margin) * largest_circular_frequency;
-    auto               modal = modal_modes_of_band(model, values, end);
-    ReducedModes       modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
+    const double     end   = (1. + band_margin) * largest_circular_frequency;
+    auto             modal = modal_modes_of_band(model, values, end);
+    ReducedModes     modes = modal ? std::move(*modal) : local_reduced_modes_by_qr(model, values, end);
+    std::vector<int> slow;
+    for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+      if (modes.lambda[j].real() >= -largest_decay)
+        slow.push_back(static_cast<int>(j));
+    if (slow.size() < modes.lambda.size())
+      modes = selected(modes, slow);
     ComplexDenseMatrix right = modes.right, left = modes.left;
     if (modal)
       for (const auto &[X, X_modal] : {std::make_pair(&right, &modes.right), {&left, &modes.left}})

@@ -168,7 +168,9 @@ TEST(Declarations, SayWhatEveryKindAccepts)
       if (parameter.accepted.empty())
         free_texts.push_back(parameter.path);
     }
-  EXPECT_EQ(free_texts, (std::vector<std::string>{"Geometry/File",
+  EXPECT_EQ(free_texts, (std::vector<std::string>{"System",
+                                                  "System values",
+                                                  "Geometry/File",
                                                   "Materials/Volumes",
                                                   "Materials/Orthotropic",
                                                   "Materials/Axes",
@@ -185,6 +187,8 @@ TEST(Declarations, SayWhatEveryKindAccepts)
                                                   "Damping/Modal damping ratio",
                                                   "Reduction/Bases",
                                                   "Reduction/Component modes",
+                                                  "Sweep/Parameter",
+                                                  "Sweep/Second parameter",
                                                   "Accuracy study/Elements",
                                                   "Accuracy study/Outlines",
                                                   "Accuracy study/Bases",

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 
 namespace Squeal
 {
@@ -85,10 +86,10 @@ namespace Squeal
    */
   MultiVector friction_response(const CoupledSystem &system, const UpdatedInverse &inverse, const MultiVector &real_modes, Side side);
 
-  /// Responses of first order of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R. Throws SolverError if there is no
-  /// damping.
+  /// Responses of first order of real coupled modes Φ_R to damping, K_c⁻¹ (C_c − μ A V_C) Φ_R, n × n_R, at a friction coefficient or at the
+  /// values of the system. Throws SolverError if there is no damping.
   MultiVector damping_response(const CoupledSystem  &system,
                                const UpdatedInverse &inverse,
                                const MultiVector    &real_modes,
-                               double                friction_coefficient = 0.);
+                               std::optional<double> friction_coefficient = {});
 } // namespace Squeal

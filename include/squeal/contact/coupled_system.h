@@ -51,8 +51,9 @@ namespace Squeal
   struct CoupledSystem
   {
     std::vector<Term>                   terms;
-    ParameterValues                     values;          ///< of all parameters, with μ = 0
-    std::shared_ptr<const SparseMatrix> mass, stiffness; ///< M_c and K_c, n × n: the symmetric terms without friction
+    ParameterValues                     values;                             ///< of all parameters, with μ = 0
+    std::string                         varied = SystemParameter::friction; ///< parameter over which charts follow the modes
+    std::shared_ptr<const SparseMatrix> mass, stiffness;                    ///< M_c and K_c, n × n: the symmetric terms without friction
     double hidden_square = 0.; ///< |λ|² up to this is zero: rounding errors of K_c, see unresolved_square() [rad²/s²]
     std::shared_ptr<const LowRankFactor> friction_forces; ///< A, n × n_c
     std::shared_ptr<const SparseMatrix>  kernel;          ///< T_c, n_uncoupled × n
@@ -66,8 +67,8 @@ namespace Squeal
       return friction_forces->rank();
     }
 
-    /// The values with a friction coefficient, and with others in place of those that are given.
-    ParameterValues at(double friction_coefficient, const ParameterValues &others = {}) const;
+    /// The values with one of the varied parameter, which is μ of a mesh, and with others in place of those that are given.
+    ParameterValues at(double value, const ParameterValues &others = {}) const;
 
     /// Whether there is damping without friction.
     bool has_damping() const;

@@ -144,17 +144,6 @@ namespace Squeal
   /// A copy as a dense matrix, the same on every process: for small matrices only.
   DenseMatrix to_dense(const SparseMatrix &A);
 
-  /// What the header of a Matrix Market file promises about its entries.
-  enum class MatrixMarketSymmetry
-  {
-    general,  ///< all entries are listed
-    symmetric ///< the lower triangle is listed
-  };
-
-  /// A in Matrix Market coordinate form with 17 significant digits, so that reading returns the same numbers: the whole text on process 0,
-  /// nothing on the others. All processes must call.
-  std::string matrix_market(const SparseMatrix &A, MatrixMarketSymmetry symmetry = MatrixMarketSymmetry::general);
-
   /// Rows of this process with the columns of all.
   SparseRows local_rows(const SparseMatrix &A);
 

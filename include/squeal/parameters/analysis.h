@@ -81,6 +81,19 @@ namespace Squeal
                                                                             {FieldSelection::unstable, "unstable"},
                                                                             {FieldSelection::all, "all"}};
 
+  /// Whether the system is written as a folder that `System` reads.
+  enum class SystemOutput
+  {
+    none,
+    full,   ///< all terms
+    reduced ///< the reduced model of a sweep
+  };
+
+  template <>
+  inline constexpr EnumName<SystemOutput> enum_table<SystemOutput>[] = {{SystemOutput::none, "none"},
+                                                                        {SystemOutput::full, "full"},
+                                                                        {SystemOutput::reduced, "reduced"}};
+
   /// What a run leaves behind (section `Output`).
   struct OutputParameters
   {
@@ -91,6 +104,7 @@ namespace Squeal
     unsigned int   animation_periods = 1;
     bool           animation_growth  = false; ///< shown with e^{Rt}
     bool           write_matrices    = false;
+    SystemOutput   write_system      = SystemOutput::none;
 
     void declare(Declarations &declarations);
   };

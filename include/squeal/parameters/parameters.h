@@ -4,6 +4,7 @@
 #include <squeal/parameters/analysis.h>
 #include <squeal/parameters/designs.h>
 #include <squeal/parameters/geometry.h>
+#include <squeal/parameters/given_system.h>
 #include <squeal/parameters/materials.h>
 #include <squeal/parameters/contact.h>
 #include <squeal/parameters/operation.h>
@@ -26,6 +27,7 @@ namespace Squeal
     const Study             *study = studies().front(); ///< the question
     AccuracyGoal             goal  = AccuracyGoal::as_given;
     std::vector<std::string> replaced; ///< parameters that were given other values than those that the goal asks for
+    GivenSystemParameters    system;   ///< in the place of geometry, materials and contact
     GeometryParameters       geometry;
     MaterialParameters       materials;
     DiscretizationParameters discretization;

@@ -50,6 +50,9 @@ namespace Squeal
     /// Throws ParameterError where parameters do not fit the study; null: nothing to check.
     void (*check)(const Parameters &) = nullptr;
 
+    /// What answers it for a system file in the place of a mesh; null: nothing.
+    void (*run_of_system)(Run &) = nullptr;
+
     bool has(const std::string &parameter) const
     {
       return std::any_of(own_parameters.begin(), own_parameters.end(), [&](const char *own) { return concerns(own, parameter); });

@@ -3,6 +3,8 @@
 #include <squeal/base/enum_table.h>
 #include <squeal/parameters/declarations.h>
 
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace Squeal
@@ -33,6 +35,13 @@ namespace Squeal
     std::vector<double> geometric() const;
   };
 
+  /// A parameter of a system file and its values.
+  struct NamedRange
+  {
+    std::string name;
+    ValueRange  values;
+  };
+
   /// Modes over the friction coefficient (section `Sweep`).
   struct SweepParameters
   {
@@ -49,6 +58,8 @@ namespace Squeal
     ValueRange   map_values                = {100., 10000., 11}; ///< [N] or [rad/s]
     unsigned int map_friction_coefficients = 19;
 
+    std::string parameter, second_parameter; ///< of a system file: "name, first, last, number"; empty: mu, none
+
     /// Friction coefficients of the complex plane.
     const std::vector<double> &complex_plane() const
     {
@@ -60,7 +71,14 @@ namespace Squeal
 
     void declare(Declarations &declarations);
 
+    /// The parameter of a system file that varies, and the second one of a map; nothing if there is none.
+    NamedRange                varied_parameter() const;
+    std::optional<NamedRange> second_varied_parameter() const;
+
     /// Throws ParameterError.
     void check() const;
+
+    /// The same for a system file.
+    void check_of_system() const;
   };
 } // namespace Squeal

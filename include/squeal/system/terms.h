@@ -66,6 +66,9 @@ namespace Squeal
 
     virtual bool contains(const std::string &parameter) const = 0;
     virtual bool is_constant() const                          = 0;
+
+    /// An expression that parsed_coefficient() reads back.
+    virtual std::string text() const = 0;
   };
 
   /// θ(p) of a term: a monomial of named parameters such as −μ ρ, a function of them of any other kind, or a product of such.
@@ -81,6 +84,8 @@ namespace Squeal
     bool   contains(const std::string &parameter) const;
     bool   is_constant() const;
 
+    std::string text() const;
+
     friend Coefficient operator*(const Coefficient &a, const Coefficient &b);
 
   private:
@@ -94,6 +99,7 @@ namespace Squeal
     mount,           ///< springs and dashpots between bodies and the ground
     rotation,        ///< forces of a turning disc
     friction,        ///< forces μ r_n along t
+    circulatory,     ///< other parts of unsymmetric matrices
     contact_damping, ///< forces on the contact nodes in proportion to relative velocities
     modal_damping
   };
@@ -130,6 +136,12 @@ namespace Squeal
     /// Whether A could be written as a sparse matrix.
     bool is_sparse() const;
 
+    /// Whether A is a part of the mass, damping and stiffness without friction: symmetric, and not of friction itself.
+    bool is_frictionless() const
+    {
+      return symmetry == Symmetry::symmetric && kind != TermKind::friction;
+    }
+
     /// diag(d) Y; all of Y where there are no weights.
     template <typename Matrix>
     Matrix weighted(Matrix Y, const ParameterValues &values) const;
@@ -159,6 +171,10 @@ namespace Squeal
                      std::shared_ptr<const LowRankFactor> right,
                      std::string                          weights = "",
                      TermKind                             kind    = TermKind::body);
+
+  /// The symmetric and the skew part of the matrix of a term, as terms with its coefficient. Parts that are rounding errors of the other
+  /// one are left out.
+  std::vector<Term> split_by_symmetry(const Term &term);
 
   template <typename Matrix>
   Matrix Term::weighted(Matrix Y, const ParameterValues &values) const

@@ -3,6 +3,7 @@
 #include <squeal/estimates/residual_iteration.h>
 #include <squeal/tracking/chart_point.h>
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -55,6 +56,12 @@ namespace Squeal
                ReducedModel          model,
                ProjectedResiduals    residuals,
                double                largest_circular_frequency);
+
+    /// Leaves out modes that decay faster than this [1/s]; at first none is.
+    void leave_out_faster_decay(const double rate)
+    {
+      largest_decay = rate;
+    }
 
     /// Vectors in the basis.
     int size() const
@@ -118,7 +125,7 @@ namespace Squeal
     const CoupledSystem  &system;
     const UpdatedInverse &inverse;
     const MultiVector    *real_modes = nullptr; ///< null: of a member of a family
-    double                shift, largest_circular_frequency;
+    double                shift, largest_circular_frequency, largest_decay = std::numeric_limits<double>::infinity();
     ReducedModel          model;
     ProjectedResiduals    residuals;
   };

@@ -136,7 +136,7 @@ namespace Squeal
 
     std::vector<std::string> answer_of(const SolvedModel &model)
     {
-      return verdict(model.friction, model.parameters.operation.friction_coefficient, model.parameters.discretization.maximum_frequency);
+      return verdict(model.friction, model.parameters.discretization.maximum_frequency);
     }
 
     /// Solves a variant and compares it, as a step of the run; what refuses it becomes an obstacle.

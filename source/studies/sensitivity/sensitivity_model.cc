@@ -95,7 +95,7 @@ namespace Squeal
                                                         const Eigentriples       &apart,
                                                         const ComplexDenseMatrix &reactions) const
   {
-    const Scene              &scene     = sweep.plan.scene;
+    const Scene              &scene     = *sweep.plan.scene;
     const OperationParameters operation = sweep.plan.lines[main_line].at(friction_coefficient);
     const auto                state     = sweep.plan.sliding_state(operation);
     const auto                k         = static_cast<Eigen::Index>(apart.lambda.size());
@@ -147,13 +147,13 @@ namespace Squeal
     if (!is_new || !plan.sliding || !operation.has_contact_damping())
       return result;
 
-    const ContactInterface &interface = plan.scene.interface;
+    const ContactInterface &interface = plan.scene->interface;
     const SlidingState      state     = *plan.sliding_state(operation);
     DenseMatrix             gaps      = DenseMatrix::Zero(interface.size(), parameters.size());
     for (std::size_t p = 0; p < parameters.size(); ++p)
       if (const auto &motion = parameters[p].contact)
-        gaps.col(p) = (initial_gaps(*plan.scene.model, motion->after, plan.sliding_parameters) -
-                       initial_gaps(*plan.scene.model, motion->before, plan.sliding_parameters)) /
+        gaps.col(p) = (initial_gaps(*plan.scene->model, motion->after, plan.sliding_parameters) -
+                       initial_gaps(*plan.scene->model, motion->before, plan.sliding_parameters)) /
                       motion->step;
     const DenseMatrix rates = reaction_rates(*plan.sliding, operation, plan.sliding_parameters, state,
                                              force_rates(*plan.sliding, state, friction_coefficient, parameters, body_rates()), gaps);
@@ -176,7 +176,7 @@ namespace Squeal
 
   ParameterValues SensitivityModel::contact_rates(const SensitivityParameter &parameter, const double friction_coefficient) const
   {
-    const Scene              &scene     = sweep.plan.scene;
+    const Scene              &scene     = *sweep.plan.scene;
     const OperationParameters operation = sweep.plan.lines[main_line].at(friction_coefficient);
     const double              step      = operation_step * std::max(std::abs(operation.*parameter.operation), least_of_operation);
     const auto                damping   = [&](const double change) {

@@ -260,12 +260,13 @@ namespace Squeal
                 run_sensitivity_study,
                 {"Sensitivity/", "Sweep/First friction coefficient", "Sweep/Last friction coefficient",
                       "Sweep/Number of friction coefficients", "Sweep/Tolerance", "Sweep/Maximum basis", "Sweep/Threshold tolerance"}};
-    study.rules = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
-                   {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
-                   {"Sweep/First friction coefficient", no_thresholds},
-                   {"Sweep/Last friction coefficient", no_thresholds},
-                   {"Sweep/Number of friction coefficients", no_thresholds},
-                   {"Sweep/Threshold tolerance", no_thresholds}};
+    study.rules         = {{"Output/", [](const Parameters &) { return "the study writes no mode shapes"; }},
+                           {"Complex modes/", [](const Parameters &) { return "the study solves reduced models"; }},
+                           {"Sweep/First friction coefficient", no_thresholds},
+                           {"Sweep/Last friction coefficient", no_thresholds},
+                           {"Sweep/Number of friction coefficients", no_thresholds},
+                           {"Sweep/Threshold tolerance", no_thresholds}};
+    study.run_of_system = run_sensitivity_of_system;
     return study;
   }();
 } // namespace Squeal

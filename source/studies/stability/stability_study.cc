@@ -1,7 +1,10 @@
 #include <squeal/base/conventions.h>
 #include <squeal/geometry/mesh_file.h>
+#include <squeal/linear_algebra/matrix_market.h>
 #include <squeal/linear_algebra/multivector.h>
+#include <squeal/studies/stability/mode_tables.h>
 #include <squeal/studies/stability/strain_energy.h>
+#include <squeal/studies/steps/imported_modes.h>
 #include <squeal/studies/steps/mode_results.h>
 
 #include <boost/range/irange.hpp>
@@ -24,61 +27,16 @@ namespace Squeal
                    listed_component_modes(modes, largest_eigenvalue));
     }
 
-    /// Real coupled modes: label, share, frequency, residual.
-    Table real_table(const FrictionlessModes &modes)
+    /// How disc modes travel.
+    Columns<int> wave_columns(const std::vector<std::optional<WaveShares>> &waves)
     {
-      return Table(Columns<int>{{"label", "", [&](const int j) { return modes.labels[j]; }},
-                                {"share", "-", [&](const int j) { return modes.labels[j].participation; }, 3},
-                                {"frequency", "Hz", [&](const int j) { return hertz(std::sqrt(modes.real.eigenvalues[j])); }, 3},
-                                {"residual", "-", [&](const int j) { return modes.real.residuals[j]; }, 1, true}},
-                   boost::irange<int>(0, modes.labels.size()));
-    }
-
-    /// A column of modes with friction, known by their numbers, of what modal_quantities() says of them.
-    Column<int> column_of(const FrictionModes &friction,
-                          const std::string   &name,
-                          const std::string   &unit,
-                          double ModalQuantities::*quantity,
-                          const int                digits)
-    {
-      const double factor = unit == "%" ? 100. : 1.;
-      return {name, unit,
-              [&friction, quantity, factor](const int j) { return factor * (modal_quantities(friction.modes.lambda[j]).*quantity); },
-              digits};
-    }
-
-    /// Complex modes: label, share, frequency, growth and divergence rate, damping ratio, residuals, whether they are unstable, how they
-    /// travel, where their energy is, estimates where there are any, and columns @p more by the numbers of the modes.
-    Table complex_table(const FrictionModes                          &friction,
-                        const std::vector<std::optional<WaveShares>> &waves,
-                        const Columns<int>                           &energies,
-                        const Columns<int>                           &more)
-    {
-      const ComplexModes &modes = friction.modes;
-      const auto          wave  = [&waves](double WaveShares::*share) {
-        return [&waves, share](const int j) { return waves[j] ? std::make_optional(*waves[j].*share) : std::nullopt; };
+      const auto wave = [&waves](double WaveShares::*share) {
+        return [waves, share](const int j) { return waves[j] ? std::make_optional(*waves[j].*share) : std::nullopt; };
       };
-      Columns<int> columns = {{"label", "", [&](const int j) { return friction.labels[j]; }},
-                              {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3},
-                              column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 3),
-                              column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 4),
-                              column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                              column_of(friction, "effective damping ratio -2R/omega", "%", &ModalQuantities::damping_ratio, 4),
-                              {"residual", "-", [&](const int j) { return modes.residuals[j]; }, 1, true},
-                              {"eps_res", "-", [&](const int j) { return modes.energy_residuals[j]; }, 1, true},
-                              {"unstable", "-", [&](const int j) { return bool(friction.unstable[j]); }},
-                              {"wave with rotation", "-", wave(&WaveShares::positive), 3},
-                              {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
-      columns.insert(columns.end(), energies.begin(), energies.end());
-      if (!modes.estimated_errors.empty())
-        columns.push_back({"estimated error of lambda", "-", [&](const int j) { return modes.estimated_errors[j]; }, 1, true});
-      if (more.empty()) // else the error of the mesh is in the verdict
-        columns.push_back({"verdict", "", [&](const int j) { return to_string(friction.verdicts[j]); }});
-      columns.insert(columns.end(), more.begin(), more.end());
-      return Table(columns, boost::irange<int>(0, friction.labels.size()));
+      return {{"wave with rotation", "-", wave(&WaveShares::positive), 3}, {"wave against rotation", "-", wave(&WaveShares::negative), 3}};
     }
 
-    /// Columns that estimated errors of the mesh add to complex_table(): those, with a goal whether they are within its limits, and the
+    /// Columns that estimated errors of the mesh add to the table of complex modes: those, with a goal whether they are within its limits, and the
     /// verdict.
     Columns<int> mesh_error_columns(const std::vector<DiscretisationError> &errors, const AccuracyGoal goal)
     {
@@ -99,25 +57,6 @@ namespace Squeal
                            }});
       columns.push_back({"verdict", "", [&errors](const int j) { return to_string(errors[j].verdict); }});
       return columns;
-    }
-
-    /// The modes that grow, the largest divergence rate first: label, frequency, growth and divergence rate, share. At most @p n_largest
-    /// rows.
-    Table unstable_table(const FrictionModes &friction, const std::size_t n_largest)
-    {
-      std::vector<int> growing;
-      for (std::size_t j = 0; j < friction.unstable.size(); ++j)
-        if (friction.unstable[j])
-          growing.push_back(static_cast<int>(j));
-      const auto rate = [&](const int j) { return modal_quantities(friction.modes.lambda[j]).divergence_rate; };
-      std::stable_sort(growing.begin(), growing.end(), [&](const int a, const int b) { return rate(a) > rate(b); });
-      growing.resize(std::min(growing.size(), n_largest));
-      return Table(Columns<int>{{"unstable mode", "", [&](const int j) { return friction.labels[j]; }},
-                                column_of(friction, "frequency", "Hz", &ModalQuantities::frequency, 1),
-                                column_of(friction, "growth rate", "1/s", &ModalQuantities::growth_rate, 2),
-                                column_of(friction, "divergence rate", "%", &ModalQuantities::divergence_rate, 4),
-                                {"share", "-", [&](const int j) { return friction.labels[j].participation; }, 3}},
-                   growing);
     }
 
     /// What a body of a mode adds to its divergence rate [-].
@@ -206,19 +145,7 @@ namespace Squeal
       run.store_table("energy", Table(columns, rows));
     }
 
-    /// Unstable modes that the screen shows.
-    constexpr std::size_t n_shown_modes = 20;
-
     // ------------------------------------------------------------------ tables
-
-    /// Real eigenvalues, fastest growth first: growth rate, kind.
-    Table real_eigenvalue_table(std::vector<double> values)
-    {
-      std::reverse(values.begin(), values.end());
-      return Table(Columns<double>{{"growth rate", "1/s", [](const double value) { return value; }, 4},
-                                   {"kind", "", [](const double value) { return value > 0. ? "static divergence" : "decay"; }}},
-                   values);
-    }
 
     // ---------------------------------------------------------------- matrices
 
@@ -288,34 +215,6 @@ namespace Squeal
       run.progress.finish("M, C, K, C_b, P_n, P_t, P_b, K_n, T_c in Matrix Market form");
     }
 
-    // ----------------------------------------------------------------- the answer
-
-    /// Verdict and unstable modes, which is what most users want to know.
-    void report(const FrictionlessModes                &frictionless,
-                const FrictionModes                    &friction,
-                const std::vector<DiscretisationError> &mesh_errors,
-                Run                                    &run)
-    {
-      const Parameters &parameters = run.parameters;
-      run.screen << '\n';
-      for (const std::string &line :
-           verdict(friction, parameters.operation.friction_coefficient, parameters.discretization.maximum_frequency))
-        run.progress.note(line);
-      if (!mesh_errors.empty())
-        report_mesh_errors(mesh_errors, friction, run);
-      if (friction.n_unstable() > 0)
-        {
-          run.screen << '\n';
-          unstable_table(friction, n_shown_modes).print(run.screen);
-          if (friction.n_unstable() > n_shown_modes)
-            run.progress.note(text("    and ", friction.n_unstable() - n_shown_modes, " more, see complex_modes.csv"));
-        }
-      run.screen << '\n';
-      if (const std::string note = note_on_count(friction, frictionless.real.eigenvalues.size()); !note.empty())
-        run.progress.note(note);
-      if (const std::string note = note_on_weak_damping(frictionless.linearisation.coupled, friction); !note.empty())
-        run.progress.note(note);
-    }
   } // namespace
 
   /// `Study = stability`: component modes, real coupled modes and complex modes at one friction coefficient, about equal shares of the load
@@ -340,29 +239,18 @@ namespace Squeal
     const FrictionModes                  friction      = friction_modes(frictionless, operation.friction_coefficient, run);
     const Linearisation                 &linearisation = frictionless.linearisation;
     const std::optional<SlidingState>   &sliding       = linearisation.sliding;
-    const SolverParameters              &solvers       = parameters.solvers;
-    record_conditioning(frictionless.linearisation.coupled, friction.modes, friction.conditioning,
-                        solvers.complex_solver == ComplexSolver::krylov ? solvers.complex_tolerance : solvers.iteration_tolerance, run);
-    run.count("complex modes", friction.modes.lambda.size());
-    run.count("unstable modes", friction.n_unstable());
-    run.count("undecided modes", friction.n_of(Verdict::undecided));
-    run.count("real eigenvalues", friction.modes.real_values.size());
-    run.count("growing real eigenvalues", friction.n_growing_real());
-    if (friction.n_growing_real() > 0)
-      run.measure("largest growth rate of a real eigenvalue [1/s]", friction.modes.real_values.back());
+    record_modes(frictionless, friction, run);
 
     // ----------------------------------------------------------------- results
     const auto errors = coarser ? mesh_errors(*coarser, frictionless, friction, parameters.goal) : std::vector<DiscretisationError>();
-    report(frictionless, friction, errors, run);
+    report_modes(frictionless, friction, errors, run);
     if (sliding)
       write_sliding_tables(scene, *sliding, operation, run);
-    run.store_table("complex_modes", complex_table(friction, waves_with_rotation(frictionless, friction, operation),
-                                                   strain_energy_columns(linearisation, friction.modes, parameters.materials),
-                                                   coarser ? mesh_error_columns(errors, parameters.goal) : Columns<int>()));
-    run.store_table("real_modes", real_table(frictionless));
+    Columns<int> columns  = wave_columns(waves_with_rotation(frictionless, friction, operation));
+    const auto   energies = strain_energy_columns(linearisation, friction.modes, parameters.materials);
+    columns.insert(columns.end(), energies.begin(), energies.end());
+    store_mode_tables(frictionless, friction, columns, coarser ? mesh_error_columns(errors, parameters.goal) : Columns<int>(), run);
     run.store_table("component_modes", component_table(frictionless, omega_max * omega_max));
-    if (!friction.modes.real_values.empty())
-      run.store_table("real_eigenvalues", real_eigenvalue_table(friction.modes.real_values));
     const PowerBalances balances = power_balances(linearisation, friction, run);
     write_power_table(linearisation, friction, balances, run);
 
@@ -371,12 +259,31 @@ namespace Squeal
     write_mode_shapes(frictionless, friction, balances, run);
     if (parameters.output.write_matrices)
       write_matrices(linearisation, run);
+    if (parameters.output.write_system != SystemOutput::none)
+      write_full_system(linearisation.coupled, {friction_parameter(parameters)}, run);
     run.folder().write("mesh.msh", [&](std::ostream &stream) { write_msh(scene.mesh, stream); });
     run.finish();
   }
 
-  extern const Study stability_study{
-    "stability",
-    run_stability_study,
-    {"Discretization/Coarser mesh", "Output/Write matrices", "Output/Component mode shapes", "Output/Real mode shapes"}};
+  /// The same for a system file: no fields, and groups of dofs in the place of bodies.
+  static void run_stability_of_system(Run &run)
+  {
+    const GivenSystem       given        = given_system(run);
+    const FrictionlessModes frictionless = imported_modes(given.coupled, given.coupled, run);
+    const FrictionModes     friction     = friction_modes(frictionless, given.value, run);
+    record_modes(frictionless, friction, run);
+    report_modes(frictionless, friction, {}, run);
+    store_mode_tables(frictionless, friction, group_columns(given.file, given.coupled, friction.modes), {}, run);
+    if (run.parameters.output.write_system != SystemOutput::none)
+      write_full_system(given.file, run);
+    run.finish();
+  }
+
+  extern const Study stability_study{"stability",
+                                     run_stability_study,
+                                     {"Discretization/Coarser mesh", "Output/Write matrices", "Output/Write system",
+                                      "Output/Component mode shapes", "Output/Real mode shapes"},
+                                     {},
+                                     nullptr,
+                                     run_stability_of_system};
 } // namespace Squeal

@@ -11,7 +11,7 @@ namespace Squeal
     constexpr double fastest_oscillating_divergence = 1.;
 
     /// Summary of the unstable modes, led by the one that grows fastest among those that oscillate.
-    std::string squeal(const FrictionModes &friction, const double mu)
+    std::string squeal(const FrictionModes &friction)
     {
       const auto &lambda = friction.modes.lambda;
       std::size_t n_weak = 0, n_monotonic = 0, leading = lambda.size();
@@ -29,7 +29,7 @@ namespace Squeal
               }
           }
       const std::size_t n      = friction.n_unstable();
-      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", " at mu = ", exact_text(mu));
+      std::string       result = text("  squeal: ", n, n == 1 ? " unstable mode" : " unstable modes", friction.at);
       if (leading < lambda.size())
         result += text(", led by ", to_string(friction.labels[leading]), " at ", decimal_text(modal_quantities(lambda[leading]).frequency),
                        " Hz with a divergence rate of ", decimal_text(100. * highest), " %");
@@ -43,7 +43,7 @@ namespace Squeal
 
   FrictionModes named_modes(const FrictionlessModes &frictionless, JudgedModes modes)
   {
-    FrictionModes result{std::move(modes), {}, {}};
+    FrictionModes result{std::move(modes), {}, {}, {}};
     result.labels = frictionless.identify(*result.modes.real_part, result.modes.imaginary_part.get());
     std::vector<double> growth; // zero for modes that do not grow
     for (std::size_t j = 0; j < result.unstable.size(); ++j)
@@ -60,26 +60,28 @@ namespace Squeal
                                                                                circular_frequency(parameters.discretization.maximum_frequency),
                                                                                parameters.solvers, run.progress));
     const ComplexModes &found  = result.modes;
-    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable at mu = ", exact_text(mu),
+    if (const std::string &varied = frictionless.linearisation.coupled.varied; !varied.empty())
+      result.at = text(" at ", varied, " = ", exact_text(mu));
+    result.cost = run.progress.finish(text(found.lambda.size(), " found, ", result.n_unstable(), " unstable", result.at,
                                            found.n_rigid_body > 0 ? text(", ", found.n_rigid_body, " of a rigid body") : "",
                                            found.real_values.empty() ? "" : text(", ", found.real_values.size(), " real eigenvalues"), "; ",
                                            found.summary));
     return result;
   }
 
-  std::vector<std::string> verdict(const FrictionModes &friction, const double mu, const double maximum_frequency)
+  std::vector<std::string> verdict(const FrictionModes &friction, const double maximum_frequency)
   {
     std::vector<std::string> lines;
     if (const std::size_t n = friction.n_growing_real(); n > 0)
-      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero at mu = ",
-                           exact_text(mu), ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
+      lines.push_back(text("  static divergence: ", n, n == 1 ? " real eigenvalue" : " real eigenvalues", " above zero", friction.at,
+                           ", the largest growth rate ", decimal_text(friction.modes.real_values.back()), " 1/s"));
     if (friction.n_unstable() > 0)
-      lines.push_back(squeal(friction, mu));
+      lines.push_back(squeal(friction));
     if (const std::size_t n = friction.n_of(Verdict::undecided); n > 0)
-      lines.push_back(text("  undecided: ", n, n == 1 ? " mode grows or decays" : " modes grow or decay", " at mu = ", exact_text(mu),
+      lines.push_back(text("  undecided: ", n, n == 1 ? " mode grows or decays" : " modes grow or decay", friction.at,
                            " by less than the estimated error of the eigenvalue"));
     if (lines.empty())
-      lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz at mu = ", exact_text(mu)));
+      lines.push_back(text("  stable: no unstable mode below ", exact_text(maximum_frequency), " Hz", friction.at));
     return lines;
   }
 

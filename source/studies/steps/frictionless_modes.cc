@@ -113,14 +113,23 @@ namespace Squeal
     add_modal_damping(modes.linearisation.coupled, vectors, eigenvalues, ratios);
   }
 
+  MultiVector FrictionlessModes::on_bodies(const MultiVector &vectors) const
+  {
+    return linearisation.scene != nullptr ? *linearisation.coupled.kernel * vectors : vectors;
+  }
+
+  const SparseMatrix &FrictionlessModes::mass_of_bodies() const
+  {
+    return linearisation.scene != nullptr ? *linearisation.scene->system.mass : *linearisation.coupled.mass;
+  }
+
   std::vector<ShapeShares> FrictionlessModes::shape_shares(const MultiVector &real_part, const MultiVector *imaginary_part) const
   {
-    const SparseMatrix      &T_c = *linearisation.coupled.kernel;
     std::vector<ShapeShares> result;
     for_column_blocks(real_part.n_columns(), [&](const int first, const int n) {
-      const MultiVector                u_re = T_c * view(real_part, first, n);
-      const std::optional<MultiVector> u_im = imaginary_part ? std::optional(T_c * view(*imaginary_part, first, n)) : std::nullopt;
-      const auto some = Squeal::shape_shares(references(), *linearisation.scene->system.mass, u_re, u_im ? &*u_im : nullptr);
+      const MultiVector                u_re = on_bodies(view(real_part, first, n));
+      const std::optional<MultiVector> u_im = imaginary_part ? std::optional(on_bodies(view(*imaginary_part, first, n))) : std::nullopt;
+      const auto                       some = Squeal::shape_shares(references(), mass_of_bodies(), u_re, u_im ? &*u_im : nullptr);
       result.insert(result.end(), some.begin(), some.end());
     });
     return result;
@@ -130,8 +139,7 @@ namespace Squeal
   {
     std::vector<DenseMatrix> result(references().size());
     for_column_blocks(vectors.n_columns(), [&](const int first, const int n) {
-      const auto some =
-        products_with(references(), *linearisation.scene->system.mass, *linearisation.coupled.kernel * view(vectors, first, n));
+      const auto some = products_with(references(), mass_of_bodies(), on_bodies(view(vectors, first, n)));
       for (std::size_t i = 0; i < some.size(); ++i)
         result[i] = append_columns(result[i], some[i]);
     });

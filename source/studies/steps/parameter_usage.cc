@@ -80,9 +80,25 @@ namespace Squeal
       return table;
     }
 
+    /// Of a system file.
+    bool is_used_with_system(const std::string &path, const Parameters &parameters)
+    {
+      for (const char *used :
+           {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/", "Output/Write system"})
+        if (concerns(used, path))
+          return true;
+      return concerns("Sweep/", path) && parameters.study->has(path);
+    }
+
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
     std::string why_unused(const std::string &path, const Parameters &parameters)
     {
+      if (parameters.system && !is_used_with_system(path, parameters))
+        return "the system comes from a file";
+      if (!parameters.system)
+        for (const char *of_system : {"System values", "Sweep/Parameter", "Sweep/Second parameter"})
+          if (path == of_system)
+            return "System is empty";
       for (const Study *other : studies())
         if (other->has(path) && !parameters.study->has(path))
           return std::string("of Study = ") + other->name;

@@ -5,6 +5,7 @@
 #include <squeal/studies/steps/run.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <ostream>
 
@@ -64,8 +65,11 @@ namespace Squeal
 
   void Run::finish(const std::function<void()> &afterwards)
   {
-    Parameters repeated    = parameters;
-    repeated.geometry.file = copy_of(parameters.geometry.path()).name;
+    Parameters repeated = parameters;
+    if (parameters.system)
+      repeated.system.file = std::filesystem::absolute(parameters.system.path()).string();
+    else
+      repeated.geometry.file = copy_of(parameters.geometry.path()).name;
     if (parameters.discretization.coarser_mesh_is_file())
       repeated.discretization.coarser_mesh = with_coarser_mesh(parameters).geometry.path();
     if (const std::string designs = designs_file(parameters); !designs.empty())

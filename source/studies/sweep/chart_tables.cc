@@ -7,7 +7,7 @@ namespace Squeal
   namespace
   {
     /// Every mode of the band at every point of a chart, refined ones included: its branch, λ, residuals, error, verdict and whether λ grows.
-    Table branch_table(const SweepChart &line, const double largest_circular_frequency)
+    Table branch_table(const SweepChart &line, const double largest_circular_frequency, const SweepAxis &axis)
     {
       struct Row : ModalQuantities
       {
@@ -29,7 +29,7 @@ namespace Squeal
                 {modal_quantities(point.lambda[j]), point, j, static_cast<int>(b + 1), line.labels[b], chart.is_refinement[i]});
           }
       return Table(
-        Columns<Row>{{"mu", "-", [](const Row &row) { return row.point.friction_coefficient; }, 6},
+        Columns<Row>{{axis.name, axis.unit, [](const Row &row) { return row.point.friction_coefficient; }, 6},
                      {"branch", "-", &Row::branch},
                      {"label", "", &Row::label},
                      {"frequency", "Hz", &Row::frequency, 3},
@@ -45,12 +45,12 @@ namespace Squeal
     }
 
     /// Where branches begin or cease to grow.
-    Table threshold_table(const SweepChart &line)
+    Table threshold_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row                = Threshold;
       const auto partner       = [](const Row &row) { return row.partner >= 0 ? Entry(row.partner + 1) : Entry(); };
       const auto partner_label = [&](const Row &row) { return row.partner >= 0 ? Entry(line.labels[row.partner]) : Entry(); };
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
+      return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 6},
                                 {"uncertainty", "-", &Row::uncertainty, 1, true},
                                 {"event", "", &Row::event},
                                 {"mechanism", "", &Row::mechanism},
@@ -63,10 +63,10 @@ namespace Squeal
     }
 
     /// Where branches enter or leave the band.
-    Table crossing_table(const SweepChart &line)
+    Table crossing_table(const SweepChart &line, const SweepAxis &axis)
     {
       using Row = BandCrossing;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
+      return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 6},
                                 {"uncertainty", "-", &Row::uncertainty, 1, true},
                                 {"branch", "-", [](const Row &row) { return row.branch + 1; }},
                                 {"label", "", [&](const Row &row) { return line.labels[row.branch]; }},
@@ -76,10 +76,10 @@ namespace Squeal
     }
 
     /// Modes in the band at every point, and how many the crossings imply.
-    Table count_table(const StabilityChart &chart)
+    Table count_table(const StabilityChart &chart, const SweepAxis &axis)
     {
       using Row = ChartCount;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 6},
+      return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 6},
                                 {"modes", "-", &Row::n_modes},
                                 {"expected", "-", &Row::n_expected},
                                 {"overdamped pairs", "-", &Row::n_overdamped}},
@@ -119,11 +119,11 @@ namespace Squeal
           const SweepChart &chart   = charts[l][s];
           const bool        is_main = plan.lines[l].kind == SweepLine::Kind::main;
           const std::string suffix  = (is_main ? "" : "_without_dissipation") + (s > 0 ? text("_", s + 1) : "");
-          run.store_table("branches" + suffix, branch_table(chart, omega_max));
-          run.store_table("counts" + suffix, count_table(chart.chart));
-          run.write_table("thresholds" + suffix, threshold_table(chart));
+          run.store_table("branches" + suffix, branch_table(chart, omega_max, plan.axis));
+          run.store_table("counts" + suffix, count_table(chart.chart, plan.axis));
+          run.write_table("thresholds" + suffix, threshold_table(chart, plan.axis));
           const bool crosses = !chart.chart.crossings.empty();
-          (run.*(crosses ? &Run::write_table : &Run::store_table))("band_crossings" + suffix, crossing_table(chart));
+          (run.*(crosses ? &Run::write_table : &Run::store_table))("band_crossings" + suffix, crossing_table(chart, plan.axis));
         }
   }
 } // namespace Squeal

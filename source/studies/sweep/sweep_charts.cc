@@ -153,7 +153,7 @@ namespace Squeal
         for (const auto &stretch : stretches(model, static_cast<int>(l)))
           {
             charts[l].push_back(follow_branches(model, static_cast<int>(l), stretch));
-            if (kind == SweepLine::Kind::main)
+            if (kind == SweepLine::Kind::main && model.plan.scene != nullptr)
               compare_with_inertia(model, charts[l].back().chart);
           }
   }
@@ -173,7 +173,10 @@ namespace Squeal
     return result;
   }
 
-  std::string verdict(const std::vector<SweepChart> &charts, const std::size_t n_asked, const double largest_circular_frequency)
+  std::string verdict(const std::vector<SweepChart> &charts,
+                      const std::size_t              n_asked,
+                      const double                   largest_circular_frequency,
+                      const std::string             &parameter)
   {
     double          at = 0.; // the friction coefficient at which a mode grows most
     ModalQuantities most{};
@@ -198,17 +201,17 @@ namespace Squeal
     const std::vector<SquealOnset> onsets = squeal_onsets(charts);
     if (onsets.empty())
       return n_known == n_asked ?
-               "  stable: no mode of the band grows at any friction coefficient of the sweep" :
-               text("  no mode of the band grows at ", n_known, " of ", n_asked, " friction coefficients; the others miss the tolerance");
+               "  stable: no mode of the band grows at any value of the sweep" :
+               text("  no mode of the band grows at ", n_known, " of ", n_asked, " values; the others miss the tolerance");
     std::string result = "  squeal";
     for (const auto &[rate, onset, of_onset] : onsets)
       {
         // What the digits shown do not hide
         const bool is_uncertain = onset.uncertainty > 1e-3 * onset.friction_coefficient;
-        result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from mu = ", onset.friction_coefficient,
+        result += text(rate > 0. ? text(", beyond ", 100. * rate, " %") : "", " from ", parameter, " = ", onset.friction_coefficient,
                        is_uncertain ? text(" +- ", onset.uncertainty) : "", " on (", to_string(of_onset), ")");
       }
-    return text(result, "; most at mu = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
+    return text(result, "; most at ", parameter, " = ", at, ": ", label, " at ", decimal_text(most.frequency), " Hz with ",
                 decimal_text(100. * most.divergence_rate), " %");
   }
 } // namespace Squeal

@@ -89,9 +89,16 @@ namespace Squeal
     , run(run)
     , largest_circular_frequency(circular_frequency(run.parameters.discretization.maximum_frequency))
   {
+    if (plan.file)
+      {
+        const CoupledSystem whole = imported_system(*plan.file, plan.values, plan.axis.name, largest_circular_frequency);
+        frictionless              = imported_modes(undamped(whole), whole, run, band_margin);
+        start();
+        return;
+      }
     const OperatingPoint     &most      = most_damped(regime);
     const OperationParameters operation = plan.lines[most.line].at(most.friction_coefficient);
-    const Linearisation       damped    = linearise(plan.scene, plan.sliding_state(operation), operation);
+    const Linearisation       damped    = linearise(*plan.scene, plan.sliding_state(operation), operation);
 
     // Neither real modes nor the factor know of damping
     Linearisation bare         = damped;
@@ -99,10 +106,16 @@ namespace Squeal
     frictionless               = frictionless_modes(bare, run, band_margin);
     frictionless.linearisation = damped;
     add_modal_damping(frictionless, run.parameters);
+    start();
+  }
 
+  void SweepModel::start()
+  {
     run.progress.begin("Reduced model");
     reduced = std::make_unique<ChartModel>(frictionless.linearisation.coupled, *frictionless.inverse, frictionless.shift,
                                            *frictionless.real.vectors, largest_circular_frequency);
+    if (plan.file)
+      reduced->leave_out_faster_decay(largest_rate_of_band * largest_circular_frequency);
     run.progress.finish(text(reduced->size(), " vectors to start from"));
   }
 

@@ -53,12 +53,17 @@ namespace Squeal
   StateOfContact SweepPlan::state_at(const int line, const double friction_coefficient) const
   {
     const OperationParameters operation = lines[line].at(friction_coefficient);
-    return state_of_contact(*scene.model, scene.interface, sliding_state(operation), operation);
+    return scene != nullptr ? state_of_contact(*scene->model, scene->interface, sliding_state(operation), operation) : StateOfContact();
   }
 
   OperatingPoint SweepPlan::point(const int line, const double friction_coefficient, const std::vector<unsigned int> &closed) const
   {
-    return {friction_coefficient, selected(state_at(line, friction_coefficient).damping, closed).values(), line};
+    if (scene != nullptr)
+      return {friction_coefficient, selected(state_at(line, friction_coefficient).damping, closed).values(), line};
+    OperatingPoint result{friction_coefficient, {}, line};
+    if (lines[line].kind == SweepLine::Kind::map)
+      result.values[second_axis.name] = {lines[line].value};
+    return result;
   }
 
   SweepPlan sweep_plan(const Scene &scene, Run &run)
@@ -68,7 +73,16 @@ namespace Squeal
 
   SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run)
   {
-    SweepPlan                   plan{scene, run.parameters.sliding, nullptr, lines, {}};
+    const bool                  is_load = run.parameters.sweep.map_parameter == MapParameter::load;
+    SweepPlan                   plan{&scene,
+                   {},
+                   {},
+                   {SystemParameter::friction, "-"},
+                   {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s"},
+                   run.parameters.sliding,
+                   nullptr,
+                   lines,
+                   {}};
     std::vector<ContactRegime> &regimes  = plan.regimes;
     std::size_t                 n_points = 0;
     if (plan.sliding_parameters.state == ContactState::steady_sliding)
@@ -90,6 +104,42 @@ namespace Squeal
           regime->points.push_back({mu, selected(state.damping, state.closed).values(), static_cast<int>(l)});
         }
     run.progress.finish(text(n_points, " operating points, ", regimes.size(), regimes.size() == 1 ? " contact set" : " contact sets"));
+    return plan;
+  }
+
+  SweepPlan sweep_plan_of_system(Run &run)
+  {
+    const SweepParameters &sweep  = run.parameters.sweep;
+    const NamedRange       varied = sweep.varied_parameter();
+    const auto             second = sweep.second_varied_parameter();
+    SystemFile             file   = read_system(run);
+    // Names and ends of ranges are checked before anything is computed
+    std::map<std::string, double> given = run.parameters.system.values;
+    if (second)
+      for (const double value : {second->values.last, second->values.first})
+        {
+          given[second->name] = value;
+          file.values(given);
+        }
+    given = run.parameters.system.values;
+    for (const double value : {varied.values.first, varied.values.last})
+      {
+        given[varied.name] = value;
+        file.values(given);
+      }
+    const ParameterValues  values = file.values(given);
+    const auto             axis   = [&file](const std::string &name) { return SweepAxis{name, file.find(name)->unit}; };
+    const SweepAxis        main = axis(varied.name), other = second ? axis(second->name) : SweepAxis();
+    std::vector<SweepLine> lines = {{SweepLine::Kind::main, {}, 0., varied.values.linear()}};
+    if (second)
+      for (const double value : second->values.linear())
+        lines.push_back({SweepLine::Kind::map, {}, value, varied.values.linear()});
+    SweepPlan     plan{nullptr, std::move(file), values, main, other, {}, nullptr, lines, {}};
+    ContactRegime all{1, {}, {}};
+    for (std::size_t l = 0; l < lines.size(); ++l)
+      for (const double value : lines[l].friction_coefficients)
+        all.points.push_back(plan.point(static_cast<int>(l), value, {}));
+    plan.regimes.push_back(all);
     return plan;
   }
 } // namespace Squeal

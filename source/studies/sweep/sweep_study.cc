@@ -61,7 +61,7 @@ namespace Squeal
       const ChartPoint point     = model.evaluate(line, {mu}).front();
       const double     tolerance = model.run.parameters.sweep.tolerance, error = model.reduced->largest_error(point);
       if (is_new && !(error <= tolerance))
-        model.run.progress.note(text("  note: at mu = ", mu, line > 0 ? " without radial dissipation" : "",
+        model.run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, line > 0 ? " without radial dissipation" : "",
                                      " the modes miss the tolerance of ", tolerance, ": the estimated error is ", error));
       return point;
     }
@@ -74,8 +74,11 @@ namespace Squeal
           const SweepLine &line = model.plan.lines[operating.line];
           if (line.kind != SweepLine::Kind::map)
             continue;
-          cells.push_back(
-            {operating.friction_coefficient, line.value, model.plan.scene.interface.size() - model.regime.closed.size(), {}, {}});
+          cells.push_back({operating.friction_coefficient,
+                           line.value,
+                           model.plan.scene != nullptr ? model.plan.scene->interface.size() - model.regime.closed.size() : 0,
+                           {},
+                           {}});
           const auto found = model.known.find({operating.line, operating.friction_coefficient});
           if (found == model.known.end())
             continue;
@@ -135,9 +138,11 @@ namespace Squeal
                    std::abs(lambda.real()) <= options.largest_growth;
           });
           counts.push_back({mu, n_found, count});
-          run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at mu = ", mu, ", ", count.n_points, " points"));
+          run.progress.finish(text(count.n_modes, " modes counted, ", n_found, " found at ", model.plan.axis.name, " = ", mu, ", ",
+                                   count.n_points, " points"));
           if (count.n_modes != n_found)
-            run.progress.note(text("  note: at mu = ", mu, " the sweep has ", n_found, " modes where ", count.n_modes, " were counted"));
+            run.progress.note(text("  note: at ", model.plan.axis.name, " = ", mu, " the sweep has ", n_found, " modes where ",
+                                   count.n_modes, " were counted"));
         }
     }
 
@@ -148,7 +153,7 @@ namespace Squeal
       const auto &wanted = run.parameters.sweep.mode_shapes;
       if (wanted.empty() || run.parameters.output.fields == FieldSelection::none)
         return;
-      const Scene &scene = model.plan.scene;
+      const Scene &scene = *model.plan.scene;
       FieldWriter  writer(*scene.model, scene.interface, model.regime.closed, run.folder());
       run.progress.begin("Mode shapes");
       int n_written = 0;
@@ -211,12 +216,12 @@ namespace Squeal
     // ------------------------------------------------------------------ tables
 
     /// Where squeal begins, and from where on it is more than weak.
-    Table onset_table(const std::vector<SquealOnset> &onsets)
+    Table onset_table(const std::vector<SquealOnset> &onsets, const SweepAxis &axis)
     {
       using Row     = SquealOnset;
       const auto of = [](auto GrowthOnset::*member) { return [member](const Row &row) { return row.onset.*member; }; };
       return Table(Columns<Row>{{"divergence rate beyond", "%", [](const Row &row) { return 100. * row.divergence_rate; }, 4},
-                                {"mu", "-", of(&GrowthOnset::friction_coefficient), 6},
+                                {axis.name, axis.unit, of(&GrowthOnset::friction_coefficient), 6},
                                 {"uncertainty", "-", of(&GrowthOnset::uncertainty), 1, true},
                                 {"label", "", &Row::label},
                                 {"frequency", "Hz", [](const Row &row) { return modal_quantities(row.onset.lambda).frequency; }, 3}},
@@ -224,11 +229,10 @@ namespace Squeal
     }
 
     /// Stability over the friction coefficient and the load or speed.
-    Table map_table(std::vector<MapCell> cells, const MapParameter parameter)
+    Table map_table(std::vector<MapCell> cells, const SweepPlan &plan)
     {
-      using Row          = MapCell;
-      const bool is_load = parameter == MapParameter::load;
-      const auto known   = [](const auto &value) {
+      using Row        = MapCell;
+      const auto known = [](const auto &value) {
         return [value](const Row &row) { return row.leading ? Entry(std::invoke(value, row)) : Entry(); };
       };
       const auto leading = [](double ModalQuantities::*quantity, const double factor = 1.) {
@@ -237,8 +241,8 @@ namespace Squeal
       std::sort(cells.begin(), cells.end(), [](const Row &a, const Row &b) {
         return std::tie(a.value, a.friction_coefficient) < std::tie(b.value, b.friction_coefficient);
       });
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
-                                {is_load ? "load per side" : "rotation speed", is_load ? "N" : "rad/s", &Row::value, 3},
+      return Table(Columns<Row>{{plan.axis.name, plan.axis.unit, &Row::friction_coefficient, 4},
+                                {plan.second_axis.name, plan.second_axis.unit, &Row::value, 3},
                                 {"unstable modes", "-", known(&Row::n_unstable)},
                                 {"undecided modes", "-", known(&Row::n_undecided)},
                                 {"label", "", known(&Row::label)},
@@ -251,13 +255,13 @@ namespace Squeal
     }
 
     /// Modes at the friction coefficients of the complex plane, in the order of the parameter, without dissipation last.
-    Table plane_table(const std::vector<PlaneMode> &modes)
+    Table plane_table(const std::vector<PlaneMode> &modes, const SweepAxis &axis)
     {
       using Row           = PlaneMode;
       const auto quantity = [](double ModalQuantities::*member, const double factor = 1.) {
         return [member, factor](const Row &row) { return factor * (modal_quantities(row.lambda).*member); };
       };
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+      return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 4},
                                 {"radial dissipation", "", [](const Row &row) { return to_string(row.dissipation); }},
                                 {"label", "", &Row::label},
                                 {"frequency", "Hz", quantity(&ModalQuantities::frequency), 3},
@@ -269,10 +273,10 @@ namespace Squeal
     }
 
     /// Numbers of modes beside those of the argument principle.
-    Table argument_table(const std::vector<CountAt> &counts)
+    Table argument_table(const std::vector<CountAt> &counts, const SweepAxis &axis)
     {
       using Row = CountAt;
-      return Table(Columns<Row>{{"mu", "-", &Row::friction_coefficient, 4},
+      return Table(Columns<Row>{{axis.name, axis.unit, &Row::friction_coefficient, 4},
                                 {"modes of the sweep", "-", &Row::n_found},
                                 {"modes counted", "-", [](const Row &row) { return row.count.n_modes; }},
                                 {"real modes by inertia", "-", [](const Row &row) { return row.count.n_frictionless; }},
@@ -283,16 +287,10 @@ namespace Squeal
     }
   } // namespace
 
-  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where they begin and
-  /// cease to grow, and maps over load or speed.
-  static void run_sweep_study(Scene &scene, Run &run)
+  /// Solves the points of a plan contact set by contact set, and writes what they show.
+  static void run_plan(const SweepPlan &plan, Run &run)
   {
-    const Parameters &parameters = run.parameters;
-    const double      omega_max  = circular_frequency(parameters.discretization.maximum_frequency);
-
-    assemble_scene(scene, run);
-
-    const SweepPlan                      plan = sweep_plan(scene, run);
+    const double                         omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
     std::vector<std::vector<SweepChart>> charts(plan.lines.size());
     const std::vector<SweepChart>       &main = charts[0];
     std::vector<MapCell>                 map;
@@ -306,50 +304,68 @@ namespace Squeal
         append_map_cells(model, main.empty() ? nullptr : &main.back(), map);
         append_plane_modes(model, plane);
         append_counts(model, counts);
-        write_leading_modes(model);
+        if (plan.scene != nullptr)
+          write_leading_modes(model);
+        write_system_of(model);
       }
     note_unknown_contact(plan, run);
 
     if (!main.empty())
       {
-        run.progress.note("\n" + verdict(main, plan.lines[0].friction_coefficients.size(), omega_max));
-        run.store_table("onsets", onset_table(squeal_onsets(main)));
+        run.progress.note("\n" + verdict(main, plan.lines[0].friction_coefficients.size(), omega_max, plan.axis.name));
+        run.store_table("onsets", onset_table(squeal_onsets(main), plan.axis));
       }
     write_charts(plan, charts, omega_max, run);
     if (!plane.empty())
-      run.store_table("complex_plane", plane_table(plane));
+      run.store_table("complex_plane", plane_table(plane, plan.axis));
     if (!counts.empty())
-      run.write_table("argument_counts", argument_table(counts));
+      run.write_table("argument_counts", argument_table(counts, plan.axis));
     if (plan.regimes.size() > 1)
       {
-        run.store_table("contact_sets", contact_table(plan, scene.interface.size()));
+        run.store_table("contact_sets", contact_table(plan, plan.scene->interface.size()));
         run.progress.note(text("  note: ", plan.regimes.size(), " contact sets, see contact_sets.csv; branches end where the set changes"));
       }
     if (!map.empty())
-      run.store_table("map", map_table(map, parameters.sweep.map_parameter));
+      run.store_table("map", map_table(map, plan));
     run.finish();
+  }
+
+  /// `Study = sweep`: complex modes over a range of the friction coefficient, with and without radial dissipation, where they begin and
+  /// cease to grow, and maps over load or speed.
+  static void run_sweep_study(Scene &scene, Run &run)
+  {
+    assemble_scene(scene, run);
+    run_plan(sweep_plan(scene, run), run);
+  }
+
+  /// The same over a parameter of a system file, and a map over two.
+  static void run_sweep_of_system(Run &run)
+  {
+    run_plan(sweep_plan_of_system(run), run);
   }
 
   extern const Study sweep_study = [] {
     const auto map_axis = [](const Parameters &p) {
       return unless(p.sweep.map_parameter != MapParameter::none, "Sweep/Map parameter = none");
     };
-    Study study{"sweep", run_sweep_study, {"Sweep/"}};
-    study.rules = {{"Output/",
-                    [](const Parameters &p) {
+    Study study{"sweep", run_sweep_study, {"Sweep/", "Output/Write system"}};
+    study.rules         = {{"Output/Write system", [](const Parameters &) -> Reason { return nullptr; }},
+                           {"Output/",
+                            [](const Parameters &p) {
                       return p.sweep.mode_shapes.empty() && p.output.fields != FieldSelection::none ?
-                               "a sweep writes mode shapes for Sweep/Mode shapes at" :
-                               as_in_general;
+                                       "a sweep writes mode shapes for Sweep/Mode shapes at" :
+                                       as_in_general;
                     }},
-                   {"Operation/Friction coefficient",
-                    [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
-                   {"Operation/Rotation speed", no_sliding_speed},
-                   {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
-                   {"Sweep/First map value", map_axis},
-                   {"Sweep/Last map value", map_axis},
-                   {"Sweep/Number of map values", map_axis},
-                   {"Sweep/Map friction coefficients", map_axis}};
-    study.check = check_map;
+                           {"Operation/Friction coefficient",
+                            [](const Parameters &) { return "a sweep goes from Sweep/First to Sweep/Last friction coefficient"; }},
+                           {"Operation/Rotation speed", no_sliding_speed},
+                           {"Complex modes/", [](const Parameters &) { return "a sweep solves reduced models"; }},
+                           {"Sweep/First map value", map_axis},
+                           {"Sweep/Last map value", map_axis},
+                           {"Sweep/Number of map values", map_axis},
+                           {"Sweep/Map friction coefficients", map_axis}};
+    study.check         = check_map;
+    study.run_of_system = run_sweep_of_system;
     return study;
   }();
 } // namespace Squeal

@@ -137,4 +137,7 @@ namespace Squeal
    *   dμ_c/dp = −Re(∂λ/∂p) / Re(∂λ/∂μ).
    */
   std::vector<ThresholdSensitivity> threshold_sensitivities(SensitivityModel &model, const SweepChart &chart, Run &run);
+
+  /// `Study = sensitivity` of a system file: derivatives of λ with respect to each of its parameters.
+  void run_sensitivity_of_system(Run &run);
 } // namespace Squeal

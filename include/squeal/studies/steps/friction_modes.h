@@ -10,14 +10,14 @@ namespace Squeal
   /// Modes of the linearised scene without friction, with what the scene adds: components and names.
   struct FrictionlessModes : SystemModes
   {
-    Linearisation          linearisation;
-    ComponentModes         disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end
-    std::vector<ModeLabel> labels;                        ///< of the coupled modes
+    Linearisation  linearisation;
+    ComponentModes disc, pins_free, pins_sliding; ///< up to somewhat beyond the band, which labels modes at its end; see imported_modes()
+    std::vector<ModeLabel> labels;                ///< of the coupled modes
 
     /// Component modes that give coupled ones their names.
     std::vector<const ComponentModes *> references() const
     {
-      return {&disc, &pins_sliding};
+      return linearisation.scene != nullptr ? std::vector{&disc, &pins_sliding} : std::vector{&disc};
     }
 
     /// What coupled modes have of them; @p imaginary_part may be null.
@@ -28,6 +28,11 @@ namespace Squeal
 
     /// Identities of coupled modes, without the signs of doublets; @p imaginary_part may be null.
     std::vector<ModeLabel> identify(const MultiVector &real_part, const MultiVector *imaginary_part) const;
+
+  private:
+    /// Coupled vectors on the uncoupled dofs, and the mass there.
+    MultiVector         on_bodies(const MultiVector &vectors) const;
+    const SparseMatrix &mass_of_bodies() const;
   };
 
   /// The number of real coupled modes by inertia, component modes, the factorisation, and the real coupled modes up to (1 + @p margin)
@@ -59,6 +64,7 @@ namespace Squeal
   {
     std::vector<ModeLabel> labels;
     Cost                   cost; ///< of the solution
+    std::string            at;   ///< " at mu = 0.5", for messages
   };
 
   /// Names @p modes, however they were found. Their cost is left zero.
@@ -90,7 +96,7 @@ namespace Squeal
                        const MultiVector          &imaginary_part);
 
   /// Stable, squeal or static divergence, one line for each.
-  std::vector<std::string> verdict(const FrictionModes &modes, double mu, double maximum_frequency);
+  std::vector<std::string> verdict(const FrictionModes &modes, double maximum_frequency);
 
   /// Where the numbers of real modes and of modes with friction differ, what became of the difference; else empty. Two real eigenvalues
   /// stand for one mode that has stopped oscillating.

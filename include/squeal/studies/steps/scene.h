@@ -45,12 +45,12 @@ namespace Squeal
   /// The state of contact about which a scene is linearised, and the system that results: only closed contact nodes couple the bodies.
   struct Linearisation
   {
-    const Scene                *scene;     ///< must outlive it
-    std::optional<SlidingState> sliding;   ///< where the state is steady sliding
-    std::vector<unsigned int>   closed;    ///< numbers of the closed pairs: S_0
-    ContactInterface            interface; ///< S_0
-    ContactOperators            contact;   ///< of S_0
-    ContactDamping              damping;   ///< of S_0
+    const Scene                *scene = nullptr; ///< must outlive it; null: of an imported system
+    std::optional<SlidingState> sliding;         ///< where the state is steady sliding
+    std::vector<unsigned int>   closed;          ///< numbers of the closed pairs: S_0
+    ContactInterface            interface;       ///< S_0
+    ContactOperators            contact;         ///< of S_0
+    ContactDamping              damping;         ///< of S_0
     CoupledSystem               coupled;
   };
 

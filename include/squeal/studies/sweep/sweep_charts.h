@@ -1,6 +1,6 @@
 #pragma once
 
-#include <squeal/studies/steps/friction_modes.h>
+#include <squeal/studies/steps/imported_modes.h>
 #include <squeal/tracking/branches.h>
 #include <squeal/tracking/error_controlled_sweep.h>
 
@@ -17,9 +17,9 @@ namespace Squeal
     };
 
     Kind                kind;
-    OperationParameters operation; ///< but for the friction coefficient
-    double              value;     ///< load [N] or speed [rad/s] of a line of the map
-    std::vector<double> friction_coefficients;
+    OperationParameters operation;             ///< but for the friction coefficient
+    double              value;                 ///< of the second axis, on a line of the map
+    std::vector<double> friction_coefficients; ///< or values of the varied parameter of a system file
 
     OperationParameters at(double friction_coefficient) const;
   };
@@ -35,10 +35,19 @@ namespace Squeal
     std::vector<int> on_line(int line) const;
   };
 
+  /// What varies along a line of a sweep, or from line to line of a map.
+  struct SweepAxis
+  {
+    std::string name, unit;
+  };
+
   /// What a sweep asks for, with the states of contact there. The main line is the first.
   struct SweepPlan
   {
-    const Scene                  &scene;
+    const Scene                  *scene; ///< null: of a system file
+    std::optional<SystemFile>     file;
+    ParameterValues               values; ///< of the file's parameters, but for those that vary
+    SweepAxis                     axis, second_axis;
     SlidingParameters             sliding_parameters;
     std::unique_ptr<SlidingModel> sliding; ///< serves all states; null: equal shares of the load
     std::vector<SweepLine>        lines;
@@ -61,6 +70,9 @@ namespace Squeal
 
   /// Finds the states of contact at all operating points that the parameters ask for, as steps of the run. @p scene must outlive the plan.
   SweepPlan sweep_plan(const Scene &scene, Run &run);
+
+  /// Reads a system file: the parameters that vary in it, as a step of the run. Its main line has the other parameters at their values.
+  SweepPlan sweep_plan_of_system(Run &run);
 
   /// The same for some lines of operating points.
   SweepPlan sweep_plan(const Scene &scene, const std::vector<SweepLine> &lines, Run &run);
@@ -113,6 +125,9 @@ namespace Squeal
     std::map<std::pair<int, double>, ChartPoint> known; ///< by line and friction coefficient
 
   private:
+    /// Begins the reduced model.
+    void start();
+
     /// What names the modes of a point, from products with the basis or, where the basis is only a part of another one, at full order.
     std::vector<ShapeShares> shape_shares(const ChartPoint &point, const std::vector<int> &modes) const;
 
@@ -127,6 +142,9 @@ namespace Squeal
 
   /// Evaluates all points of the contact set to the tolerance that the parameters ask for, as a step of the run.
   void evaluate_points(SweepModel &model);
+
+  /// `Output/Write system`: the system of a contact set, or its reduced model with the basis, in the folder `system` of the results.
+  void write_system_of(const SweepModel &model);
 
   /// Modes over the friction coefficient at one load and speed, as far as the contact set is the same.
   struct SweepChart
@@ -157,7 +175,10 @@ namespace Squeal
   std::vector<SquealOnset> squeal_onsets(const std::vector<SweepChart> &charts);
 
   /// From which friction coefficient on there is squeal, and what grows most: of the stretches of the main line, of @p n_asked values.
-  std::string verdict(const std::vector<SweepChart> &charts, std::size_t n_asked, double largest_circular_frequency);
+  std::string verdict(const std::vector<SweepChart> &charts,
+                      std::size_t                    n_asked,
+                      double                         largest_circular_frequency,
+                      const std::string             &parameter);
 
   /// Contact sets along the lines: where they change.
   Table contact_table(const SweepPlan &plan, std::size_t n_pairs);

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <squeal/parameters/declarations.h>
+#include <squeal/parameters/sweep.h>
+
+#include <map>
+#include <string>
+
+namespace Squeal
+{
+  /// A system of matrices in the place of a mesh (parameters `System` and `System values`).
+  struct GivenSystemParameters
+  {
+    std::string                   file;      ///< folder with a system.json, or that file; empty: the system comes from a mesh
+    std::map<std::string, double> values;    ///< of its parameters, where they differ from those of the file
+    std::string                   directory; ///< of the parameter file
+
+    explicit operator bool() const
+    {
+      return !file.empty();
+    }
+
+    /// Path of the file: relative to the directory of the parameter file if it exists there, else as given.
+    std::string path() const;
+
+    void declare(Declarations &declarations);
+  };
+
+  /// "name, first, last, number": a range of a parameter. Throws ParameterError naming @p where.
+  NamedRange parsed_range(const std::string &text, const std::string &where);
+} // namespace Squeal

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <squeal/contact/imported_system.h>
+#include <squeal/studies/steps/friction_modes.h>
+
+namespace Squeal
+{
+  /// Reads the system file of the parameters, as a step of the run.
+  SystemFile read_system(Run &run);
+
+  /// The system file of the parameters at the values that they give.
+  struct GivenSystem
+  {
+    SystemFile      file;
+    ParameterValues values;
+    CoupledSystem   coupled;
+    double          value; ///< of the varied parameter of the coupled system
+  };
+  GivenSystem given_system(Run &run);
+
+  /**
+   * Modes of an imported system without skew terms, by the names `mode 1`, `mode 2`, ... that modes with all terms take from them; as
+   * steps of the run. Its linearisation has no scene.
+   *
+   * @param system @p whole or a part of it, such as that without damping, which modes and factor are made from
+   *
+   * Throws SolverError if K + s² M is positive definite for no shift s up to the end of the band.
+   */
+  FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, double margin = 0.);
+
+  /// Columns of a table of modes, known by their numbers: shares of the kinetic energy of the groups of dofs, φ_gᴴ (M φ)_g / φᴴ M φ [%].
+  Columns<int> group_columns(const SystemFile &file, const CoupledSystem &system, const ComplexModes &modes);
+
+  /// μ of a mesh as the parameter of a system file: its range is all that is swept, or its value where contact nodes or damping depend on it.
+  FileParameter friction_parameter(const Parameters &parameters);
+
+  /// `Output/Write system`: the full system of a mesh, or a system file as it was read, in the folder `system` of the results.
+  void write_full_system(const CoupledSystem &system, const std::vector<FileParameter> &parameters, Run &run);
+  void write_full_system(const SystemFile &file, Run &run);
+} // namespace Squeal

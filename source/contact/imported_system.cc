@@ -1,0 +1,145 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/contact/imported_system.h>
+#include <squeal/linear_algebra/factorization.h>
+#include <squeal/linear_algebra/multivector.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Whether a term is the friction that UpdatedInverse updates its factor by.
+    bool is_low_rank_friction(const Term &term, const std::string &varied, const ParameterValues &values)
+    {
+      if (term.kind != TermKind::friction || term.matrix || !term.weights.empty() || varied != SystemParameter::friction)
+        return false;
+      ParameterValues others = values;
+      const auto      at     = [&](const double mu) {
+        others.at(varied) = {mu};
+        return term.coefficient.at(others);
+      };
+      return at(0.) == 0. && at(2.) == 2. * at(1.);
+    }
+
+    /// L diag(d) Rᵀ as terms with a matrix.
+    std::vector<Term> multiplied_out(const Term &term, const ParameterValues &values)
+    {
+      Term plain          = term;
+      plain.coefficient   = {};
+      const auto matrices = sparse_matrices({plain}, values);
+      Term       result   = term;
+      result.matrix       = term.power == 0 ? matrices.stiffness : term.power == 1 ? matrices.damping : matrices.mass;
+      result.left = result.right = nullptr;
+      result.weights.clear();
+      return result.matrix ? split_by_symmetry(result) : std::vector<Term>();
+    }
+
+    /// √ of the diagonal of K + ω² M, rounded to a power of two, and inverted: for the rows of this process.
+    std::vector<double> dof_scales(const CoupledSystem &system, const double omega)
+    {
+      const SparseMatrix &K = *system.stiffness, &M = *system.mass;
+      std::vector<double> result(K.rows().n_local());
+      SparseMatrix::Row   row;
+      for (int i = 0; i < K.rows().n_local(); ++i)
+        {
+          double diagonal = 0., largest = 0.;
+          for (const auto &[A, factor] : {std::make_pair(&K, 1.), {&M, omega * omega}})
+            {
+              A->get_row(i, row);
+              for (const auto &[column, value] : row)
+                {
+                  largest = std::max(largest, factor * std::abs(value));
+                  diagonal += column == A->rows().number(i) ? factor * value : 0.;
+                }
+            }
+          const double size = diagonal > 0. ? diagonal : largest > 0. ? largest : 1.;
+          result[i]         = std::exp2(-std::round(0.5 * std::log2(size)));
+        }
+      return result;
+    }
+    /// Throws if there is no symmetric mass or stiffness.
+    void check_parts(const CoupledSystem &system, const SystemFile &file)
+    {
+      for (const auto &[power, what] : {std::make_pair(0, "stiffness"), {2, "mass"}})
+        if (std::none_of(system.terms.begin(), system.terms.end(),
+                         [power = power](const Term &term) { return term.matrix && term.is_frictionless() && term.power == power; }))
+          throw ParameterError(std::string("the ") + what + " has no symmetric part", "file " + file.path,
+                               "only systems with a positive definite part of the stiffness and a symmetric mass are solved");
+    }
+  } // namespace
+
+  CoupledSystem imported_system(const SystemFile      &file,
+                                const ParameterValues &values,
+                                const std::string     &varied,
+                                const double           largest_circular_frequency)
+  {
+    CoupledSystem result;
+    result.values = values;
+    result.varied = varied;
+    for (const Term &term : file.terms)
+      if (term.matrix)
+        result.terms.push_back(term);
+      else if (is_low_rank_friction(term, varied, values) && (!result.friction_forces || result.friction_forces == term.left))
+        {
+          result.terms.push_back(term);
+          result.friction_forces   = term.left;
+          result.values.at(varied) = {0.};
+        }
+      else if (term.power == 1 && term.left == term.right)
+        result.terms.push_back(term);
+      else
+        for (Term &part : multiplied_out(term, values))
+          result.terms.push_back(std::move(part));
+    check_parts(result, file);
+    set_frictionless_matrices(result);
+
+    const RowMap             &map = file.map;
+    const std::vector<double> d   = dof_scales(result, largest_circular_frequency);
+    const auto                D =
+      std::make_shared<SparseMatrix>(map, map, [&](const int i, SparseMatrix::Row &row) { row.emplace_back(map.number(i), d[i]); });
+    std::map<const LowRankFactor *, std::shared_ptr<const LowRankFactor>> scaled;
+    const auto scaled_factor = [&](const std::shared_ptr<const LowRankFactor> &factor) {
+      auto &entry = scaled[factor.get()];
+      if (factor && !entry)
+        entry = std::make_shared<LowRankFactor>(multiply(*factor->sparse_transpose(), *D));
+      return entry;
+    };
+    for (Term &term : result.terms)
+      {
+        if (term.matrix)
+          term.matrix = multiply(*multiply(*D, *term.matrix), *D);
+        term.left  = scaled_factor(term.left);
+        term.right = scaled_factor(term.right);
+      }
+    result.friction_forces = result.friction_forces ? scaled_factor(result.friction_forces) :
+                                                      std::make_shared<LowRankFactor>(std::make_shared<SparseMatrix>(
+                                                        RowMap::even(0, map.communicator()), map, [](int, SparseMatrix::Row &) {}));
+    result.kernel          = D;
+    set_frictionless_matrices(result);
+    if (!definite_shift(result, largest_circular_frequency))
+      {
+        for (Term &term : result.terms)
+          if (term.kind == TermKind::circulatory)
+            term.kind = TermKind::friction;
+        check_parts(result, file);
+        set_frictionless_matrices(result);
+      }
+    return result;
+  }
+
+  std::optional<double> definite_shift(const CoupledSystem &system, const double largest_circular_frequency)
+  {
+    constexpr double parts[] = {0., 0.02, 1.};
+    for (const double part : parts)
+      {
+        const double shift  = part * largest_circular_frequency;
+        const auto   A      = shift == 0. ? system.stiffness : add(1., *system.stiffness, shift * shift, *system.mass);
+        int          n_null = 0;
+        if (count_negative_eigenvalues(*A, "symmetric part of the stiffness", &n_null) + n_null == 0)
+          return shift;
+      }
+    return {};
+  }
+} // namespace Squeal

@@ -1,0 +1,72 @@
+#include <squeal/base/conventions.h>
+#include <squeal/sensitivity/eigenvalue_derivatives.h>
+#include <squeal/studies/sensitivity/sensitivity_results.h>
+#include <squeal/studies/steps/imported_modes.h>
+
+#include <boost/range/irange.hpp>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// Estimated relative error of λ to which left and right vectors are found: their own errors are about the root of it.
+    constexpr double tolerance_of_vectors = 1e-12;
+  } // namespace
+
+  void run_sensitivity_of_system(Run &run)
+  {
+    const GivenSystem       given        = given_system(run);
+    const SystemFile       &file         = given.file;
+    const CoupledSystem    &system       = given.coupled;
+    const double            value        = given.value;
+    const FrictionlessModes frictionless = imported_modes(system, system, run);
+
+    run.progress.begin("Left and right modes");
+    SolverParameters solvers     = run.parameters.solvers;
+    solvers.complex_solver       = ComplexSolver::residual_iteration;
+    solvers.iteration_tolerance  = tolerance_of_vectors;
+    const FrictionModes friction = named_modes(
+      frictionless, modes_with_friction(system, frictionless, value, circular_frequency(run.parameters.discretization.maximum_frequency),
+                                        solvers, run.progress));
+    const ComplexModes &modes = friction.modes;
+    run.progress.finish(text(modes.lambda.size(), " found"));
+
+    const TermProducts       products(system.terms, {modes.lambda, join({modes.real_part.get(), modes.imaginary_part.get()}),
+                                                     join({modes.left_real_part.get(), modes.left_imaginary_part.get()})});
+    const ParameterValues    at = system.at(value);
+    const ComplexDenseMatrix D  = products.by_lambda(at);
+    struct Row
+    {
+      int                  mode;
+      const FileParameter *parameter;
+      double               value;
+      std::complex<double> derivative;
+    };
+    std::vector<Row> rows;
+    for (const FileParameter &parameter : file.parameters)
+      {
+        const ComplexDenseMatrix N = products.along(at, {{parameter.name, {1.}}});
+        for (std::size_t j = 0; j < modes.lambda.size(); ++j)
+          rows.push_back(
+            {static_cast<int>(j), &parameter, given.values.at(parameter.name).front(), eigenvalue_derivative(N, D, static_cast<int>(j))});
+      }
+    const auto lambda  = [&](const Row &row) { return modes.lambda[row.mode]; };
+    const auto percent = [](const Row &row) { return 0.01 * row.value * row.derivative; };
+    run.store_table(
+      "sensitivities",
+      Table(Columns<Row>{{"mode", "-", [](const Row &row) { return row.mode + 1; }},
+                         {"label", "", [&](const Row &row) { return friction.labels[row.mode]; }},
+                         {"frequency", "Hz", [&](const Row &row) { return modal_quantities(lambda(row)).frequency; }},
+                         {"growth rate", "1/s", [&](const Row &row) { return lambda(row).real(); }},
+                         {"divergence rate", "%", [&](const Row &row) { return 100. * modal_quantities(lambda(row)).divergence_rate; }},
+                         {"parameter", "", [](const Row &row) { return row.parameter->name; }},
+                         {"value", "", &Row::value},
+                         {"unit", "", [](const Row &row) { return row.parameter->unit; }},
+                         {"growth rate per 1 %", "1/s", [&](const Row &row) { return percent(row).real(); }},
+                         {"frequency per 1 %", "Hz", [&](const Row &row) { return hertz(percent(row).imag()); }},
+                         {"growth rate per unit", "1/s", [](const Row &row) { return row.derivative.real(); }},
+                         {"frequency per unit", "Hz", [](const Row &row) { return hertz(row.derivative.imag()); }}},
+            rows));
+    run.finish();
+  }
+} // namespace Squeal

@@ -1,0 +1,116 @@
+#include <squeal/base/conventions.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/linear_algebra/communication.h>
+#include <squeal/studies/steps/imported_modes.h>
+
+#include <cmath>
+
+namespace Squeal
+{
+  namespace
+  {
+    void write_terms(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, Run &run)
+    {
+      run.progress.begin("System file");
+      write_system(terms, weights, notes, [&](const std::string &name, const std::function<void(std::ostream &)> &content) {
+        run.folder().write("system/" + name, content);
+      });
+      run.progress.finish(text(terms.size(), " terms"));
+    }
+
+    /// Vectors of a block of the eigensolver.
+    constexpr int block_size_of_modes = 8;
+  } // namespace
+
+  SystemFile read_system(Run &run)
+  {
+    run.progress.begin("System");
+    SystemFile  result = read_system(run.parameters.system.path(), run.communicator);
+    std::string names;
+    for (const FileParameter &parameter : result.parameters)
+      names += (names.empty() ? "" : ", ") + parameter.name;
+    run.progress.finish(
+      text(result.map.n(), " dofs, ", result.terms.size(), " terms, ", names.empty() ? "no parameters" : "parameters " + names));
+    run.count("dofs", result.map.n());
+    return result;
+  }
+
+  GivenSystem given_system(Run &run)
+  {
+    SystemFile            file   = read_system(run);
+    const ParameterValues values = file.values(run.parameters.system.values);
+    const std::string     varied = file.default_varied();
+    CoupledSystem coupled = imported_system(file, values, varied, circular_frequency(run.parameters.discretization.maximum_frequency));
+    return {std::move(file), values, std::move(coupled), varied.empty() ? 0. : values.at(varied).front()};
+  }
+
+  FrictionlessModes imported_modes(const CoupledSystem &system, const CoupledSystem &whole, Run &run, const double margin)
+  {
+    const double omega_max = circular_frequency(run.parameters.discretization.maximum_frequency);
+    const auto  &solvers   = run.parameters.solvers;
+    const auto   shift     = definite_shift(system, omega_max);
+    if (!shift)
+      throw SolverError("K + s^2 M of the symmetric terms is not positive definite for any shift s up to the end of the band",
+                        "symmetric part of the stiffness",
+                        "eliminate constraints, raise Band/Maximum frequency, or check the signs of the terms");
+    const auto count = number_of_modes(system, (1. + margin) * omega_max, solvers, run.progress);
+
+    FrictionlessModes result;
+    static_cast<SystemModes &>(result) = system_modes(system, *shift, omega_max, count, block_size_of_modes, solvers, run.progress);
+    result.linearisation.coupled       = whole;
+    run.measure("entries of the Cholesky factor", result.inverse->frictionless().n_factor_entries());
+    run.count("real modes", n_in_band(result.real.eigenvalues, omega_max * omega_max));
+    for (int j = 0; j < result.real.vectors->n_columns(); ++j)
+      {
+        ModeLabel label;
+        label.family        = ModeFamily::body;
+        label.body          = "mode";
+        label.rank          = j + 1;
+        label.participation = 1.;
+        result.labels.push_back(label);
+      }
+    result.disc = {result.labels, result.real.eigenvalues, result.real.residuals, result.real.vectors};
+    return result;
+  }
+
+  Columns<int> group_columns(const SystemFile &file, const CoupledSystem &system, const ComplexModes &modes)
+  {
+    const MultiVector &re = *modes.real_part, &im = *modes.imaginary_part;
+    const MultiVector  M_re = *system.mass * re, M_im = *system.mass * im;
+    const DenseMatrix  energies = re.local().cwiseProduct(M_re.local()) + im.local().cwiseProduct(M_im.local()); // of each dof
+    DenseMatrix        shares   = DenseMatrix::Zero(static_cast<Eigen::Index>(file.groups.size()), energies.cols());
+    for (std::size_t g = 0; g < file.groups.size(); ++g)
+      for (const auto &[first, last] : file.groups[g].ranges)
+        for (int dof = first; dof <= last; ++dof)
+          if (const int place = re.map().place(dof); place >= 0)
+            shares.row(static_cast<Eigen::Index>(g)) += energies.row(place);
+    sum_over_processes(re.map().communicator(), shares.data(), static_cast<std::size_t>(shares.size()));
+    Columns<int> result;
+    for (std::size_t g = 0; g < file.groups.size(); ++g)
+      result.push_back({"kinetic energy of " + file.groups[g].name, "%",
+                        [shares, g](const int j) { return 100. * shares(static_cast<Eigen::Index>(g), j); }, 1});
+    return result; // modes have unit φᴴMφ
+  }
+
+  FileParameter friction_parameter(const Parameters &parameters)
+  {
+    constexpr double largest = 10.;
+    const double     mu      = parameters.operation.friction_coefficient;
+    const bool       depends = parameters.needs_steady_sliding() || parameters.has_contact_damping();
+    FileParameter    result{SystemParameter::friction, mu};
+    result.lower       = depends ? mu : 0.;
+    result.upper       = depends ? mu : largest;
+    result.description = depends ? "friction coefficient, about the state of contact at this value" : "friction coefficient";
+    return result;
+  }
+
+  void write_full_system(const CoupledSystem &system, const std::vector<FileParameter> &parameters, Run &run)
+  {
+    write_terms(system.terms, system.values, {parameters, "coupled system, displacements in m, forces in N"}, run);
+  }
+
+  void write_full_system(const SystemFile &file, Run &run)
+  {
+    write_terms(file.terms, file.weights, {file.parameters, file.description, file.groups}, run);
+  }
+} // namespace Squeal

@@ -1,0 +1,130 @@
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/system/expression.h>
+
+#include <boost/math/differentiation/finite_difference.hpp>
+
+#include <muParser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <optional>
+#include <regex>
+
+namespace Squeal
+{
+  namespace
+  {
+    /// An expression of muParser.
+    class Expression : public ParameterFunction
+    {
+    public:
+      Expression(const std::string &expression, const std::vector<std::string> &parameters)
+        : expression(expression)
+      {
+        parser.SetExpr(expression);
+        for (const std::string &name : parameters)
+          parser.DefineVar(name, &variables[name]); // elements of a map stay where they are
+        for (const auto &[name, place] : parser.GetUsedVar())
+          used.push_back(name);
+        parser.Eval();
+      }
+
+      double at(const ParameterValues &values) const override
+      {
+        // The parser reads its variables from here, and several threads may ask
+        const std::lock_guard guard(mutex);
+        for (const std::string &name : used)
+          variables.at(name) = values.at(name).front();
+        return parser.Eval();
+      }
+
+      double derivative(const std::string &parameter, const ParameterValues &values) const override
+      {
+        if (!contains(parameter))
+          return 0.;
+        ParameterValues others = values;
+        double         &value  = others.at(parameter).front();
+        return boost::math::differentiation::finite_difference_derivative(
+          [&](const double x) {
+            value = x;
+            return at(others);
+          },
+          values.at(parameter).front());
+      }
+
+      bool contains(const std::string &parameter) const override
+      {
+        return std::find(used.begin(), used.end(), parameter) != used.end();
+      }
+
+      bool is_constant() const override
+      {
+        return used.empty();
+      }
+
+      std::string text() const override
+      {
+        return "(" + expression + ")";
+      }
+
+    private:
+      const std::string                     expression;
+      std::vector<std::string>              used;
+      mutable std::map<std::string, double> variables;
+      mutable mu::Parser                    parser;
+      mutable std::mutex                    mutex;
+    };
+
+    /// The same expression where it is a product of numbers and of integer powers of parameters.
+    std::optional<Coefficient> monomial(const std::string &expression, const std::vector<std::string> &parameters)
+    {
+      static const std::regex    factor_pattern(R"(\s*([*/]?)\s*(?:(\d+\.?\d*(?:[eE][-+]?\d+)?)|([A-Za-z_]\w*)(?:\s*\^\s*(\d+))?)\s*)");
+      double                     factor = 1.;
+      std::map<std::string, int> powers;
+      auto                       at = expression.cbegin();
+      for (; at != expression.cend() && (*at == ' ' || *at == '-'); ++at)
+        factor *= *at == '-' ? -1. : 1.;
+      bool is_first = true;
+      for (std::smatch match; at != expression.cend(); at = match.suffix().first, is_first = false)
+        {
+          if (!std::regex_search(at, expression.cend(), match, factor_pattern, std::regex_constants::match_continuous) ||
+              is_first != (match.length(1) == 0))
+            return {};
+          const bool divides = match.str(1) == "/";
+          if (match.length(2) > 0)
+            factor *= std::pow(std::stod(match.str(2)), divides ? -1 : 1);
+          else if (std::find(parameters.begin(), parameters.end(), match.str(3)) == parameters.end())
+            return {};
+          else
+            powers[match.str(3)] += (divides ? -1 : 1) * (match.length(4) > 0 ? std::stoi(match.str(4)) : 1);
+        }
+      if (is_first)
+        return {};
+      for (auto power = powers.begin(); power != powers.end();)
+        power = power->second == 0 ? powers.erase(power) : std::next(power);
+      return Coefficient(factor, powers);
+    }
+  } // namespace
+
+  Coefficient parsed_coefficient(const std::string &expression, const std::vector<std::string> &parameters)
+  {
+    try
+      {
+        const auto parsed = std::make_shared<Expression>(expression, parameters);
+        return monomial(expression, parameters).value_or(Coefficient(parsed));
+      }
+    catch (const mu::Parser::exception_type &error)
+      {
+        throw ParameterError(text("the expression ", in_quotes(expression), " cannot be parsed: ", error.GetMsg()), "",
+                             "write an expression in the parameters, such as mu*omega^2");
+      }
+  }
+
+  bool is_parameter_name(const std::string &text)
+  {
+    static const std::regex name(R"([A-Za-z_]\w*)");
+    return std::regex_match(text, name);
+  }
+} // namespace Squeal

@@ -1,0 +1,536 @@
+#include <squeal/base/enum_table.h>
+#include <squeal/base/exceptions.h>
+#include <squeal/base/text.h>
+#include <squeal/linear_algebra/communication.h>
+#include <squeal/linear_algebra/matrix_market.h>
+#include <squeal/system/expression.h>
+#include <squeal/system/system_file.h>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+namespace Squeal
+{
+  template <>
+  inline constexpr EnumName<TermKind> enum_table<TermKind>[] = {{TermKind::body, "body"},
+                                                                {TermKind::mount, "mount"},
+                                                                {TermKind::rotation, "rotation"},
+                                                                {TermKind::friction, "friction"},
+                                                                {TermKind::circulatory, "circulatory"},
+                                                                {TermKind::contact_damping, "contact damping"},
+                                                                {TermKind::modal_damping, "modal damping"}};
+
+  template <>
+  inline constexpr EnumName<Symmetry> enum_table<Symmetry>[] = {{Symmetry::symmetric, "symmetric"}, {Symmetry::skew, "skew"}};
+
+  namespace
+  {
+    using Json = nlohmann::ordered_json;
+
+    constexpr const char *format         = "squeal system";
+    constexpr int         format_version = 1;
+
+    /// Largest |A − Aᵀ| or |A + Aᵀ| of a claimed symmetry, relative to the largest entry.
+    constexpr double symmetry_tolerance = 1e-12;
+
+    /// Values of every parameter at which the coefficients are checked.
+    constexpr int n_samples = 65;
+
+    /// An object of the file with its place, for messages.
+    class JsonEntry
+    {
+    public:
+      JsonEntry(const Json &json, std::string file, std::string place)
+        : json(json)
+        , file(std::move(file))
+        , place(std::move(place))
+      {}
+
+      [[noreturn]] void refuse(const std::string &what, const std::string &change) const
+      {
+        throw FileError(what, "file " + file + (place.empty() ? "" : ", entry " + place), change);
+      }
+
+      bool has(const char *key) const
+      {
+        return json.contains(key);
+      }
+
+      JsonEntry operator[](const std::string &key) const
+      {
+        if (!json.is_object() || !json.contains(key))
+          refuse("`" + key + "` is missing", "add it; the page on system files shows an example");
+        return {json[key], file, place.empty() ? key : place + "." + key};
+      }
+
+      template <typename Value>
+      Value as(const char *what) const
+      {
+        try
+          {
+            return json.get<Value>();
+          }
+        catch (const nlohmann::json::exception &)
+          {
+            refuse(text(in_quotes(json.dump()), " is not ", what), text("write ", what));
+          }
+      }
+
+      double number() const
+      {
+        const double value = json.is_number() ? json.get<double>() : NAN;
+        if (!std::isfinite(value))
+          refuse(in_quotes(json.dump()) + " is not a finite number", "write a number");
+        return value;
+      }
+
+      std::string text_or(const char *key, const std::string &otherwise) const
+      {
+        return has(key) ? (*this)[key].as<std::string>("a text") : otherwise;
+      }
+
+      /// Elements of a list, or members of an object with their names.
+      std::vector<std::pair<std::string, JsonEntry>> members(const bool named) const
+      {
+        if (named ? !json.is_object() : !json.is_array())
+          refuse(named ? "not an object with named members" : "not a list", named ? "write {\"name\": ...}" : "write [...]");
+        std::vector<std::pair<std::string, JsonEntry>> result;
+        std::size_t                                    i = 0;
+        for (const auto &[key, value] : json.items())
+          {
+            const std::string name = named ? key : std::to_string(++i);
+            result.emplace_back(name, JsonEntry(value, file, named ? place + "." + name : place + "[" + name + "]"));
+          }
+        return result;
+      }
+
+      /// Throws unless all keys are among those known: a misspelt one would be ignored.
+      void check_keys(const std::set<std::string> &known) const
+      {
+        if (!json.is_object())
+          refuse("not an object", "write {...}");
+        for (const auto &[key, value] : json.items())
+          if (known.count(key) == 0)
+            {
+              std::string names;
+              for (const std::string &name : known)
+                names += (names.empty() ? "" : ", ") + name;
+              refuse(text("unknown key ", in_quotes(key)), "known are " + names);
+            }
+      }
+
+    private:
+      const Json &json;
+      std::string file, place;
+    };
+
+    std::vector<FileParameter> read_parameters(const JsonEntry &entries)
+    {
+      std::vector<FileParameter> result;
+      for (const auto &[name, entry] : entries.members(true))
+        {
+          entry.check_keys({"value", "lower", "upper", "unit", "description"});
+          if (!is_parameter_name(name))
+            entry.refuse(in_quotes(name) + " cannot be the name of a parameter", "use letters, digits and _, a letter first");
+          FileParameter parameter{name, entry["value"].number()};
+          parameter.lower       = entry.has("lower") ? entry["lower"].number() : parameter.value;
+          parameter.upper       = entry.has("upper") ? entry["upper"].number() : parameter.value;
+          parameter.unit        = entry.text_or("unit", "-");
+          parameter.description = entry.text_or("description", "");
+          if (!(parameter.lower <= parameter.value && parameter.value <= parameter.upper))
+            entry.refuse(text("the value ", exact_text(parameter.value), " is not in the range from ", exact_text(parameter.lower), " to ",
+                              exact_text(parameter.upper)),
+                         "widen the range or change the value");
+          result.push_back(parameter);
+        }
+      return result;
+    }
+
+    /// Reads terms, and knows the matrices that several of them share.
+    class TermReader
+    {
+    public:
+      TermReader(SystemFile &system, const MPI_Comm communicator)
+        : system(system)
+        , communicator(communicator)
+        , folder(std::filesystem::path(system.path).parent_path())
+      {
+        for (const FileParameter &parameter : system.parameters)
+          names.push_back(parameter.name);
+      }
+
+      void read(const JsonEntry &entry)
+      {
+        entry.check_keys({"name", "power", "coefficient", "matrix", "symmetry", "left", "right", "weights", "kind"});
+        Term term;
+        term.name  = entry.has("name") ? entry["name"].as<std::string>("a text") :
+                                         entry[entry.has("matrix") ? "matrix" : "left"].as<std::string>("a text");
+        term.power = entry["power"].as<int>("an integer");
+        if (term.power < 0 || term.power > 2)
+          entry["power"].refuse("the power of lambda is " + std::to_string(term.power), "write 0, 1 or 2");
+        const std::string kind = entry.text_or("kind", "body");
+        if (const auto kinds = enum_names<TermKind>(); std::find(kinds.begin(), kinds.end(), kind) == kinds.end())
+          entry["kind"].refuse("unknown kind " + in_quotes(kind), "leave it out");
+        term.kind        = enum_value<TermKind>(kind);
+        term.coefficient = coefficient(entry);
+        if (entry.has("matrix"))
+          read_matrix(entry, term);
+        else
+          read_factors(entry, term);
+      }
+
+    private:
+      Coefficient coefficient(const JsonEntry &entry) const
+      {
+        const std::string expression = entry.text_or("coefficient", "1");
+        Coefficient       result;
+        try
+          {
+            result = parsed_coefficient(expression, names);
+          }
+        catch (const ParameterError &error)
+          {
+            entry["coefficient"].refuse(error.reason, error.change);
+          }
+        // Each parameter over its range with the others at their values
+        const auto check = [&](const ParameterValues &values) {
+          if (std::isfinite(result.at(values)))
+            return;
+          std::string at;
+          for (const std::string &name : names)
+            if (result.contains(name))
+              at += text(at.empty() ? "" : ", ", name, " = ", values.at(name).front());
+          entry["coefficient"].refuse(text(in_quotes(expression), " is not finite at ", at),
+                                      "change the ranges of the parameters, or the expression");
+        };
+        const ParameterValues values = system.values();
+        for (const FileParameter &parameter : system.parameters)
+          {
+            ParameterValues sample = values;
+            double         &value  = sample.at(parameter.name).front();
+            for (int i = 0; i < n_samples; ++i)
+              {
+                value = parameter.lower + (parameter.upper - parameter.lower) * i / (n_samples - 1.);
+                check(sample);
+              }
+            if (parameter.lower < 0. && parameter.upper > 0.)
+              {
+                value = 0.;
+                check(sample);
+              }
+          }
+        return result;
+      }
+
+      /// All entries of a matrix; known ones are not read again.
+      const SparseRows &entries_of(const JsonEntry &file)
+      {
+        const std::string name = file.as<std::string>("the name of a file");
+        if (const auto known = read_files.find(name); known != read_files.end())
+          return known->second;
+        const std::filesystem::path path = folder / name;
+        if (!std::filesystem::is_regular_file(path))
+          file.refuse("there is no file " + in_quotes(path.string()), "write the matrix there, or change the name");
+        const SparseRows &result = read_files.emplace(name, read_matrix_market(path.string())).first->second;
+        if (system.map.n() == 0 && result.rows() > 0)
+          {
+            system.map = RowMap::even(static_cast<int>(result.rows()), communicator);
+            size_from  = name;
+          }
+        if (result.rows() != system.map.n())
+          file.refuse(text(in_quotes(name), " has ", result.rows(), " rows, ", in_quotes(size_from), " has ", system.map.n()),
+                      "give all matrices the same dofs");
+        return result;
+      }
+
+      void read_matrix(const JsonEntry &entry, Term term)
+      {
+        const JsonEntry   file = entry["matrix"];
+        const SparseRows &A    = entries_of(file);
+        if (A.cols() != A.rows())
+          file.refuse(text("the matrix is ", A.rows(), " x ", A.cols(), ", not square"), "give a square matrix");
+        term.matrix =
+          std::make_shared<SparseMatrix>(system.map, system.map, SparseRows(A.middleRows(system.map.first(), system.map.n_local())));
+        const double      size  = max_norm(*term.matrix);
+        const std::string claim = entry.text_or("symmetry", "none");
+        if (claim != "symmetric" && claim != "skew" && claim != "none")
+          entry["symmetry"].refuse("unknown symmetry " + in_quotes(claim), "write symmetric, skew or none");
+        std::vector<Term> parts = split_by_symmetry(term);
+        for (Term &part : parts)
+          {
+            if (parts.size() == 2 && term.kind == TermKind::body)
+              part.kind = TermKind::circulatory;
+            const double defect = max_norm(*part.matrix);
+            if (claim == "none" || claim == to_string(part.symmetry))
+              system.terms.push_back(std::move(part));
+            else if (defect > symmetry_tolerance * size)
+              entry["symmetry"].refuse(text("the matrix is not ", claim, ": it has a ", to_string(part.symmetry),
+                                            " part with entries up to ", defect, ", the largest of all is ", size),
+                                       "correct the matrix, or write none");
+          }
+      }
+
+      void read_factors(const JsonEntry &entry, Term term)
+      {
+        const JsonEntry left = entry["left"], right = entry["right"];
+        const auto      factor = [&](const JsonEntry &file) {
+          const std::string name = file.as<std::string>("the name of a file");
+          if (const auto known = factors.find(name); known != factors.end())
+            return known->second;
+          const SparseRows transpose = entries_of(file).transpose();
+          const RowMap     map       = RowMap::even(static_cast<int>(transpose.rows()), communicator);
+          const auto       result    = std::make_shared<LowRankFactor>(
+            std::make_shared<SparseMatrix>(map, system.map, SparseRows(transpose.middleRows(map.first(), map.n_local()))));
+          factors.emplace(name, result);
+          return std::shared_ptr<const LowRankFactor>(result);
+        };
+        term.left  = factor(left);
+        term.right = factor(right);
+        if (term.left->rank() != term.right->rank())
+          right.refuse(text("the factor has ", term.right->rank(), " columns, the left one ", term.left->rank()),
+                       "give both the same number of columns");
+        if (entry.has("weights"))
+          {
+            const JsonEntry   file = entry["weights"];
+            const std::string name = file.as<std::string>("the name of a file");
+            const SparseRows  d    = read_matrix_market((folder / name).string());
+            if (d.rows() != term.left->rank() || d.cols() != 1)
+              file.refuse(text("the weights are ", d.rows(), " x ", d.cols(), ", not ", term.left->rank(), " x 1"),
+                          "give one for each column of the factors");
+            term.weights  = "weights " + name;
+            auto &weights = system.weights[term.weights];
+            weights.assign(d.rows(), 0.);
+            for (int i = 0; i < d.rows(); ++i)
+              weights[i] = d.coeff(i, 0);
+          }
+        system.terms.push_back(term);
+      }
+
+      SystemFile                                                 &system;
+      const MPI_Comm                                              communicator;
+      const std::filesystem::path                                 folder;
+      std::vector<std::string>                                    names;
+      std::map<std::string, SparseRows>                           read_files;
+      std::map<std::string, std::shared_ptr<const LowRankFactor>> factors;
+      std::string                                                 size_from; ///< file that gave the number of dofs
+    };
+
+    std::vector<DofGroup> read_groups(const JsonEntry &entries, const int n)
+    {
+      std::vector<DofGroup> result;
+      for (const auto &[name, entry] : entries.members(true))
+        {
+          result.push_back({name, {}});
+          for (const auto &[number, range] : entry.members(false))
+            {
+              const auto ends = range.as<std::vector<int>>("a range of dofs such as [1, 300]");
+              if (ends.size() != 2 || ends[0] < 1 || ends[0] > ends[1] || ends[1] > n)
+                range.refuse(text("not a range of dofs from 1 to ", n), "write [first, last]");
+              result.back().ranges.emplace_back(ends[0] - 1, ends[1] - 1);
+            }
+        }
+      return result;
+    }
+
+    /// Throws if a dof has no entry in any matrix, or if there is no mass.
+    void check_terms(const SystemFile &system, const JsonEntry &terms)
+    {
+      DenseMatrix sizes = DenseMatrix::Zero(system.map.n_local(), 1);
+      double      mass  = 0.;
+      for (const Term &term : system.terms)
+        {
+          SparseMatrix::Row row;
+          double            largest = 0.;
+          const auto        add     = [&](const SparseMatrix &A, const bool by_columns) {
+            const MultiVector ones = [&] {
+              MultiVector result(by_columns ? A.rows() : A.columns(), 1);
+              result.local().setOnes();
+              return result;
+            }();
+            const auto        abs  = moduli(A);
+            const MultiVector sums = by_columns ? transpose_times(*abs, ones) : *abs * ones;
+            sizes += sums.local();
+            largest = std::max(largest, max_norm(A));
+          };
+          if (term.matrix)
+            add(*term.matrix, false);
+          else
+            for (const auto &factor : {term.left, term.right})
+              add(*factor->sparse_transpose(), true);
+          if (term.power == 2)
+            mass = std::max(mass, largest);
+        }
+      if (!(mass > 0.))
+        terms.refuse("there is no mass: no term with power 2 has entries", "add the mass matrix as a term with power 2");
+      int empty = system.map.n();
+      for (int i = system.map.n_local() - 1; i >= 0; --i)
+        if (sizes(i, 0) == 0.)
+          empty = system.map.number(i);
+      empty = -static_cast<int>(largest_of_processes(system.map.communicator(), -empty));
+      if (empty < system.map.n())
+        terms.refuse(text("dof ", empty + 1, " has no entry in any matrix: det Q(lambda) vanishes for all lambda"),
+                     "remove its row and column from all matrices");
+    }
+  } // namespace
+
+  const FileParameter *SystemFile::find(const std::string &parameter) const
+  {
+    const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const FileParameter &known) { return known.name == parameter; });
+    return found == parameters.end() ? nullptr : &*found;
+  }
+
+  std::string SystemFile::default_varied() const
+  {
+    return find("mu") != nullptr ? "mu" : parameters.empty() ? "" : parameters.front().name;
+  }
+
+  ParameterValues SystemFile::values(const std::map<std::string, double> &others) const
+  {
+    for (const auto &[name, value] : others)
+      {
+        const FileParameter *parameter = find(name);
+        if (parameter == nullptr)
+          {
+            std::string known;
+            for (const FileParameter &one : parameters)
+              known += (known.empty() ? "" : ", ") + one.name;
+            throw ParameterError("the system has no parameter " + in_quotes(name), "file " + path,
+                                 known.empty() ? "it has none" : "it has " + known);
+          }
+        if (!(parameter->lower <= value && value <= parameter->upper))
+          throw ParameterError(text(name, " = ", exact_text(value), " is outside of its range from ", exact_text(parameter->lower), " to ",
+                                    exact_text(parameter->upper)),
+                               "file " + path, "choose a value in the range, or widen the range in the file if the system is valid there");
+      }
+    ParameterValues result = weights;
+    for (const FileParameter &parameter : parameters)
+      {
+        const auto other       = others.find(parameter.name);
+        result[parameter.name] = {other == others.end() ? parameter.value : other->second};
+      }
+    return result;
+  }
+
+  SystemFile read_system(const std::string &path, const MPI_Comm communicator)
+  {
+    const auto    file = std::filesystem::is_directory(path) ? std::filesystem::path(path) / "system.json" : std::filesystem::path(path);
+    std::ifstream stream(file);
+    if (!stream)
+      throw FileError("there is no system file " + in_quotes(file.string()), "parameter System", "name a folder with a system.json");
+    Json json;
+    try
+      {
+        json = Json::parse(stream);
+      }
+    catch (const nlohmann::json::exception &error)
+      {
+        throw FileError(text("not JSON: ", error.what()), "file " + file.string(), "correct the file at this position");
+      }
+    const JsonEntry root(json, file.string(), "");
+    root.check_keys({"format", "version", "description", "parameters", "terms", "groups", "dofs", "reduction"});
+    if (root["format"].as<std::string>("a text") != format || root["version"].as<int>("an integer") != format_version)
+      root.refuse("not a system file of this version", text("write \"format\": \"", format, "\", \"version\": ", format_version));
+
+    SystemFile system;
+    system.path        = file.string();
+    system.description = root.text_or("description", "");
+    if (root.has("parameters"))
+      system.parameters = read_parameters(root["parameters"]);
+    const JsonEntry terms = root["terms"];
+    TermReader      reader(system, communicator);
+    for (const auto &[number, entry] : terms.members(false))
+      reader.read(entry);
+    check_terms(system, terms);
+    if (root.has("groups"))
+      system.groups = read_groups(root["groups"], system.map.n());
+    return system;
+  }
+
+  void write_system(const std::vector<Term> &terms, const ParameterValues &weights, const SystemNotes &notes, const WriteFile &write)
+  {
+    Json json = {{"format", format}, {"version", format_version}};
+    if (!notes.description.empty())
+      json["description"] = notes.description;
+    json["parameters"] = Json::object();
+    for (const FileParameter &parameter : notes.parameters)
+      {
+        Json &entry = json["parameters"][parameter.name];
+        entry       = {{"value", parameter.value}, {"lower", parameter.lower}, {"upper", parameter.upper}, {"unit", parameter.unit}};
+        if (!parameter.description.empty())
+          entry["description"] = parameter.description;
+      }
+
+    const auto write_text = [&](const std::string &name, const std::string &content) {
+      write(name, [&content](std::ostream &stream) { stream << content; });
+    };
+    std::map<const void *, std::string> names; // of files, by what is in them
+    const auto                          factor_file = [&](const LowRankFactor &factor) {
+      std::string &name = names[&factor];
+      if (name.empty())
+        {
+          name               = text("factor_", names.size(), ".mtx");
+          const auto &sparse = factor.sparse_transpose();
+          if (sparse)
+            write_text(name, matrix_market(*transpose(*sparse)));
+          else
+            {
+              const MultiVector columns    = factor.columns(0, factor.rank());
+              const RowMap      column_map = RowMap::even(factor.rank(), columns.map().communicator());
+              write_text(name, matrix_market(SparseMatrix(columns.map(), column_map, [&](const int i, SparseMatrix::Row &row) {
+                           for (int j = 0; j < columns.n_columns(); ++j)
+                             row.emplace_back(j, columns(i, j));
+                         })));
+            }
+        }
+      return name;
+    };
+    json["terms"] = Json::array();
+    for (const Term &term : terms)
+      {
+        Json entry = {{"name", term.name}, {"power", term.power}, {"coefficient", term.coefficient.text()}};
+        if (term.matrix)
+          {
+            std::string &name = names[term.matrix.get()];
+            if (name.empty())
+              {
+                name = text("matrix_", json["terms"].size() + 1, ".mtx");
+                write_text(name, matrix_market(*term.matrix, term.symmetry == Symmetry::symmetric ? MatrixMarketSymmetry::symmetric :
+                                                                                                    MatrixMarketSymmetry::general));
+              }
+            entry["matrix"]   = name;
+            entry["symmetry"] = term.symmetry == Symmetry::symmetric ? "symmetric" : "skew";
+          }
+        else
+          {
+            entry["left"]  = factor_file(*term.left);
+            entry["right"] = factor_file(*term.right);
+            if (!term.weights.empty())
+              {
+                const std::string          name    = text("weights_", json["terms"].size() + 1, ".mtx");
+                const std::vector<double> &d       = weights.at(term.weights);
+                std::string                content = text("%%MatrixMarket matrix array real general\n", term.left->rank(), " 1\n");
+                for (int i = 0; i < term.left->rank(); ++i)
+                  content += exact_text(d.empty() ? 0. : d[i]) + "\n";
+                write_text(name, content);
+                entry["weights"] = name;
+              }
+          }
+        entry["kind"] = to_string(term.kind);
+        json["terms"].push_back(entry);
+      }
+    for (const DofGroup &group : notes.groups)
+      for (const auto &[first, last] : group.ranges)
+        json["groups"][group.name].push_back({first + 1, last + 1});
+    if (notes.reduction)
+      json["reduction"] = {{"basis", notes.reduction->basis},
+                           {"points", notes.reduction->points},
+                           {"tolerance", notes.reduction->tolerance}};
+    write_text("system.json", json.dump(2) + "\n");
+  }
+} // namespace Squeal

@@ -1,0 +1,278 @@
+"""Systems of matrices in the place of a mesh: against dense eigenvalues and closed forms, written and read back."""
+
+import csv
+import importlib.util
+import json
+import math
+import unittest
+
+from program import SAME, ProgramTest
+
+HAS_NUMPY = importlib.util.find_spec("numpy") is not None
+if HAS_NUMPY:
+    import numpy as np
+
+BAND = 3.  # [Hz]
+STUDY = "set System = system\nset Study = {study}\nsubsection Band\n  set Maximum frequency = {band}\nend\n"
+
+# k_11, k_22, k_12 and the contact stiffness of two degrees of freedom with friction (Hoffmann et al. 2002)
+FLUTTER = (100., 80., -30., 60.)
+
+
+def matrix_text(A):
+    rows = [f"{i + 1} {j + 1} {A[i][j]!r}" for i in range(len(A)) for j in range(len(A[0])) if A[i][j] != 0.]
+    return f"%%MatrixMarket matrix coordinate real general\n{len(A)} {len(A[0])} {len(rows)}\n" + "\n".join(rows) + "\n"
+
+
+class SystemTest(ProgramTest):
+    def write_system(self, parameters, terms, folder="system", **more):
+        """Terms as (power, coefficient, matrix, symmetry); parameters as name: (value, lower, upper)."""
+        for number, (_, _, A, _) in enumerate(terms):
+            self.write(f"{folder}/A{number}.mtx", matrix_text([[float(x) for x in row] for row in A]))
+        description = {"format": "squeal system", "version": 1,
+                       "parameters": {name: dict(zip(("value", "lower", "upper"), values)) for name, values in parameters.items()},
+                       "terms": [{"name": f"A{number}", "power": power, "coefficient": coefficient, "matrix": f"A{number}.mtx", "symmetry": symmetry}
+                                 for number, (power, coefficient, _, symmetry) in enumerate(terms)], **more}
+        self.write(f"{folder}/system.json", json.dumps(description))
+        return description
+
+    def study(self, name, *overrides, band=BAND):
+        self.write("study.prm", STUDY.format(study=name, band=band))
+        return self.run_scene("results", *overrides, file="study.prm")
+
+    @staticmethod
+    def rows(folder, table):
+        with open(folder / f"{table}.csv", newline="", encoding="utf-8") as file:
+            return [{name: float(cell) if is_number(cell) else cell for name, cell in row.items()} for row in csv.DictReader(file)]
+
+    def lambdas(self, folder):
+        return [complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]) for row in self.rows(folder, "complex_modes")]
+
+
+def is_number(cell):
+    try:
+        float(cell)
+        return True
+    except ValueError:
+        return False
+
+
+def flutter_terms():
+    k11, k22, k12, k_c = FLUTTER
+    return [(2, "1", [[1., 0.], [0., 1.]], "symmetric"), (0, "1", [[k11, k12], [k12, k22]], "symmetric"),
+            (0, "mu*kappa", [[0., k_c], [0., 0.]], "none")]
+
+
+def flutter_squares(mu):
+    """λ² of the two modes."""
+    k11, k22, k12, k_c = FLUTTER
+    discriminant = ((k11 - k22) / 2.) ** 2 + k12 * (k12 + mu * k_c)
+    root = complex(discriminant) ** 0.5
+    return [-((k11 + k22) / 2. + sign * root) for sign in (-1., 1.)]
+
+
+class Flutter(SystemTest):
+    """Two degrees of freedom by hand, with closed forms."""
+
+    MU_C = (((FLUTTER[0] - FLUTTER[1]) / 2.) ** 2 + FLUTTER[2] ** 2) / (-FLUTTER[2] * FLUTTER[3])
+
+    def setUp(self):
+        self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
+
+    def test_stability(self):
+        for mu, n_unstable in ((0.3, 0), (0.8, 1)):
+            found = self.lambdas(self.study("stability", f"System values=mu = {mu}"))
+            expected = [root for square in flutter_squares(mu) for root in (square ** 0.5, -square ** 0.5) if root.imag > 0.]
+            self.assertEqual(len(found), 2)
+            for value in expected:
+                self.assertLess(min(abs(value - other) for other in found), SAME * abs(value))
+            self.assertEqual(sum(value.real > 1e-9 for value in found), n_unstable)
+
+    def test_threshold_and_map(self):
+        results = self.study("sweep", "Sweep/Parameter=mu, 0, 1, 21", "Sweep/Second parameter=kappa, 0.5, 2, 7",
+                             "Sweep/Threshold tolerance=1e-12", "Sweep/Count modes at=0.3, 0.8")
+        thresholds = self.rows(results, "thresholds")
+        self.assertEqual([row["mechanism"] for row in thresholds], ["coalescence"])
+        self.assertAlmostEqual(thresholds[0]["mu [-]"], self.MU_C, delta=1e-10)
+        cells = self.rows(results, "map")
+        self.assertEqual(len(cells), 7 * 21)
+        for cell in cells:
+            self.assertEqual(cell["unstable modes [-]"], cell["mu [-]"] * cell["kappa [-]"] > self.MU_C, cell)
+            leading = max((root for square in flutter_squares(cell["mu [-]"] * cell["kappa [-]"]) for root in (square ** 0.5, -square ** 0.5)
+                           if root.imag > 0.), key=lambda root: round(root.real, 6))
+            self.assertAlmostEqual(cell["growth rate [1/s]"], leading.real, delta=1e-6)
+        for row in self.rows(results, "argument_counts"):
+            self.assertEqual(row["modes of the sweep [-]"], row["modes counted [-]"])
+
+    def test_derivatives(self):
+        rows = self.rows(self.study("sensitivity", "System values=mu = 0.3, kappa = 1.2"), "sensitivities")
+        self.assertEqual(len(rows), 4)
+        product, h = 0.36, 1e-6
+        for row in rows:
+            value = 2j * math.pi * row["frequency [Hz]"]
+            branch = min((0, 1), key=lambda k: abs(value * value - flutter_squares(product)[k]))
+            by_product = (flutter_squares(product + h)[branch] - flutter_squares(product - h)[branch]) / (2. * h) / (2. * value)
+            expected = by_product * (1.2 if row["parameter"] == "mu" else 0.3)
+            self.assertAlmostEqual(2. * math.pi * row["frequency per unit [Hz]"], expected.imag, delta=1e-5 * abs(expected))
+
+    def test_refusals(self):
+        """Each mistake gets one message with its file and entry."""
+        singular = [(2, "1", [[1., 0.], [0., 0.]], "symmetric"), (0, "1", [[1., 0.], [0., 0.]], "symmetric")]
+        mass, stiffness, friction = flutter_terms()
+        cases = [([mass, stiffness, (0, "1", [[1.]], "none")], ["1 rows", "A2.mtx", "terms[3].matrix"]),
+                 ([mass, stiffness, (0, "1", [[1., 2., 3.], [1., 2., 3.]], "none")], ["2 x 3", "terms[3].matrix"]),
+                 ([mass, (0, "1", [[1., math.nan], [0., 1.]], "none")], ["row 1 and column 2", "A1.mtx"]),
+                 ([mass, stiffness, (0, "1", friction[2], "symmetric")], ["terms[3].symmetry", "skew part with entries up to 30"]),
+                 ([mass, stiffness, (0, "mu*", friction[2], "none")], ["terms[3].coefficient", "`mu*`"]),
+                 ([mass, stiffness, (0, "nu", friction[2], "none")], ["terms[3].coefficient", "nu"]),
+                 ([mass, stiffness, (0, "1/mu", friction[2], "none")], ["not finite at mu = 0"]),
+                 ([mass, stiffness, (3, "1", friction[2], "none")], ["terms[3].power"]),
+                 (singular, ["dof 2", "det Q"]), ([stiffness], ["no mass"]), ([(2, "1", [[0., 0.], [0., 0.]], "symmetric"), stiffness], ["no mass"])]
+        for terms, mentions in cases:
+            with self.subTest(mentions):
+                self.write_system({"mu": (0.6, 0., 1.)}, terms)
+                self.write("study.prm", STUDY.format(study="stability", band=BAND))
+                process = self.call("study.prm", "--output", "refused")
+                self.assert_message(process, mentions)
+                self.assertFalse((self.folder / "refused").exists())
+        self.write_system({"mu": (0.6, 0., 1.), "kappa": (1., 0.5, 2.)}, flutter_terms())
+        for study, override, mentions in (("stability", "System values=nu = 1", ["`nu`", "mu, kappa"]), ("stability", "System values=mu = 2", ["range"]),
+                                          ("sweep", "Sweep/Parameter=mu, 0, 2, 5", ["range"]), ("stability", "System=nothing", ["nothing"]),
+                                          ("reduction", "System=system", ["needs a mesh"]), ("sweep", "Sweep/Parameter=mu", ["range of a parameter"])):
+            self.write("study.prm", STUDY.format(study=study, band=BAND))
+            self.assert_message(self.call("study.prm", "--output", "refused", "--set", override), mentions)
+
+    def test_broken_description(self):
+        self.write("study.prm", STUDY.format(study="stability", band=BAND))
+        good = self.write_system({"mu": (0.6, 0., 1.)}, flutter_terms()[:2])
+        for change, mentions in (({"terms": None}, ["terms"]), ({"format": "other"}, ["version"]), ({"Terms": []}, ["`Terms`"]),
+                                 ({"groups": {"all": [[1, 3]]}}, ["groups.all"]),
+                                 ({"parameters": {"mu": {"value": 2, "lower": 0, "upper": 1}}}, ["parameters.mu"]),
+                                 ({"parameters": {"2mu": {"value": 2}}}, ["2mu"])):
+            self.write("system/system.json", json.dumps({**good, **change}))
+            self.assert_message(self.call("study.prm", "--output", "refused"), mentions)
+        self.write("system/system.json", "{")
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["JSON"])
+        self.write("system/system.json", json.dumps(good))
+        self.write("system/A0.mtx", "2 2\n")
+        self.assert_message(self.call("study.prm", "--output", "refused"), ["A0.mtx", "header"])
+
+
+@unittest.skipUnless(HAS_NUMPY, "needs NumPy")
+class Brake(SystemTest):
+    """A system with the terms of a brake: M, D1, D_R / omega, omega D_G, K1, K_R, omega^2 K_geo."""
+
+    N = 60
+
+    def setUp(self):
+        rng = np.random.default_rng(1)
+        n = self.N
+        band = np.abs(np.subtract.outer(np.arange(n), np.arange(n))) <= 4
+
+        def random(scale):
+            return scale * band * rng.standard_normal((n, n))
+
+        G, K_R, K_geo = random(0.02), random(2.), random(0.02)
+        self.K1 = np.diag(30. + 10. * np.arange(n)) - 4. * (np.eye(n, k=1) + np.eye(n, k=-1))
+        self.M = np.eye(n) + 0.1 * (np.eye(n, k=1) + np.eye(n, k=-1))
+        self.terms = [(2, "1", self.M, "symmetric"), (1, "1", 1e-4 * self.K1, "symmetric"), (1, "1/omega", 0.05 * np.eye(n), "symmetric"),
+                      (1, "omega", G - G.T, "skew"), (0, "1", self.K1, "symmetric"), (0, "1", K_R, "none"),
+                      (0, "omega^2", K_geo + K_geo.T, "symmetric")]
+
+    def eigenvalues(self, omega, scale=None, band=BAND):
+        """λ with 0 < Im λ up to the end of the band, from the dense companion form."""
+        matrices = [np.zeros((self.N, self.N)) for _ in range(3)]
+        for power, coefficient, A, _ in self.terms:
+            matrices[power] += eval(coefficient.replace("^", "**"), {"omega": omega}) * A  # of the lines above
+        K, C, M = matrices
+        companion = np.block([[np.zeros_like(K), np.eye(self.N)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+        values = np.linalg.eigvals(companion)
+        return sorted((value for value in values if 1e-6 < value.imag <= 2. * math.pi * band), key=lambda value: value.imag)
+
+    def assert_same(self, found, expected, tolerance):
+        self.assertEqual(len(found), len(expected))
+        for value in expected:
+            self.assertLess(min(abs(value - other) for other in found), tolerance * abs(value))
+
+    def test_eigenvalues(self):
+        self.write_system({"omega": (2., 1., 4.)}, self.terms)
+        for omega in (1., 2., 4.):
+            for solver in ("Krylov", "residual iteration"):
+                found = self.lambdas(self.study("stability", f"System values=omega = {omega}", f"Complex modes/Solver={solver}",
+                                                "Complex modes/Iteration tolerance=1e-10"))
+                self.assert_same(found, self.eigenvalues(omega), 1e-8)
+
+    def test_sweep(self):
+        self.write_system({"omega": (2., 1., 4.)}, self.terms)
+        results = self.study("sweep", "Sweep/Parameter=omega, 1, 4, 13", "Sweep/Complex plane at=1, 2.5, 4", "Sweep/Count modes at=1, 2.5")
+        self.assertTrue(all(row["estimated error of lambda [-]"] <= 1e-6 for row in self.rows(results, "branches")))
+        plane = self.rows(results, "complex_plane")
+        for omega in (1., 2.5, 4.):
+            found = [complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]) for row in plane if row["omega [-]"] == omega]
+            self.assert_same(found, self.eigenvalues(omega), 1e-6)
+        for row in self.rows(results, "argument_counts"):
+            self.assertEqual(row["modes of the sweep [-]"], row["modes counted [-]"])
+
+    def test_derivatives(self):
+        self.write_system({"omega": (2., 1., 4.)}, self.terms)
+        h = 1e-4
+        rows = self.rows(self.study("sensitivity"), "sensitivities")
+        before, at, after = (np.array(self.eigenvalues(omega)) for omega in (2. - h, 2., 2. + h))
+        self.assertEqual(len(rows), len(at))
+        for row in rows:
+            j = np.argmin(abs(at - complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"])))
+            expected = (after[j] - before[j]) / (2. * h)
+            found = complex(row["growth rate per unit [1/s]"], 2. * math.pi * row["frequency per unit [Hz]"])
+            self.assertLess(abs(found - expected), 1e-5 * max(abs(expected), 1e-2 * abs(at[j])))
+
+    def test_units(self):
+        """Dofs in units that differ by twelve decades and more, and a massless dof on a spring: the same eigenvalues."""
+        reference = self.eigenvalues(2.)
+        d = 10. ** np.linspace(-7., 7., self.N)
+        scaled = [(power, coefficient, d[:, None] * A * d, symmetry) for power, coefficient, A, symmetry in self.terms]
+        with_massless = [(power, coefficient, np.block([[A, np.zeros((self.N, 1))], [np.zeros((1, self.N)), np.full((1, 1), 7. if k == 4 else 0.)]]), symmetry)
+                         for k, (power, coefficient, A, symmetry) in enumerate(self.terms)]
+        for terms in (scaled, with_massless):
+            self.write_system({"omega": (2., 1., 4.)}, terms)
+            self.assert_same(self.lambdas(self.study("stability")), reference, 1e-8)
+
+
+class RoundTrip(SystemTest):
+    """What a mesh writes, read back: the tables of the mesh."""
+
+    def system_of(self, folder):
+        self.write("again.prm", STUDY.format(study="stability", band=5000).replace("= system\n", f"= {folder}/system\n"))
+        return self.run_scene("again", file="again.prm")
+
+    def test_full(self):
+        for name, overrides in (("plain", []), ("damped", ["Operation/Radial dissipation=consistent", "Operation/Friction slope=-0.02"]),
+                                ("modal", ["Damping/Modal damping ratio=1: 0.001, 10000: 0.001"]),
+                                ("turning", ["Operation/Gyroscopic forces=true", "Pin material/Rayleigh beta=1e-7"])):
+            with self.subTest(name):
+                results = self.run_scene("mesh", "Output/Write system=full", *overrides)
+                expected = self.lambdas(results)
+                again = self.lambdas(self.system_of("mesh"))
+                self.assertEqual(len(again), len(expected))
+                for value, other in zip(again, expected):
+                    self.assertLess(abs(value - other), SAME * abs(other))
+
+    def test_sweep(self):
+        grid = ["Sweep/Number of friction coefficients=10"]
+        mesh = self.run_scene("mesh", "Study=sweep", "Output/Write system=full", *grid)
+        self.write("again.prm", STUDY.format(study="sweep", band=5000).replace("= system\n", "= mesh/system\n"))
+        again = self.run_scene("again", *grid, file="again.prm")
+        expected, found = self.rows(mesh, "thresholds"), self.rows(again, "thresholds")
+        self.assertEqual(len(found), len(expected))
+        for row, other in zip(found, expected):
+            self.assertEqual((row["event"], row["mechanism"]), (other["event"], other["mechanism"]))
+            self.assertLess(abs(row["mu [-]"] - other["mu [-]"]), row["uncertainty [-]"] + other["uncertainty [-]"])
+
+    def test_reduced(self):
+        mesh = self.run_scene("mesh", "Study=sweep", "Output/Write system=reduced", "Sweep/Number of friction coefficients=10",
+                              "Sweep/Last friction coefficient=0.5", "Sweep/Complex plane at=0.5")
+        expected = [complex(row["growth rate [1/s]"], 2. * math.pi * row["frequency [Hz]"]) for row in self.rows(mesh, "complex_plane")]
+        again = self.lambdas(self.system_of("mesh"))
+        self.assertEqual(len(again), len(expected))
+        for value, other in zip(again, expected):
+            self.assertLess(abs(value - other), 1e-10 * abs(other))
+        self.assertTrue((mesh / "system" / "basis.mtx").is_file())
