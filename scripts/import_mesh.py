@@ -14,8 +14,9 @@ mounts: ["pad_back: 2e10, 2e10, 2e10"]}. --unit is the unit of length of the fil
 to no volume is listed. FILE.prm beside FILE.msh, which an import never overwrites, runs the brake: contact and mounts as given, otherwise as
 comments to fill in, quadratic elements if the mesh has them, and the elastic materials of an Abaqus file.
 
-Read are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by the number of their
-property) and what meshio reads: Exodus, MED, VTK, Gmsh and others. Needs python3-meshio.
+Read are Abaqus .inp (sets, surfaces, elastic materials), Nastran .bdf (volumes by the number of their property), Exodus (blocks, side sets, node
+sets) and what meshio reads: MED (groups), VTK (integers of cells: a set `part:3` for each value), Gmsh and others. Meshes of Ansys and Permas are
+rejected. Needs python3-meshio, for Exodus python3-netcdf4, for MED python3-h5py.
 """
 
 import argparse

@@ -26,7 +26,7 @@ packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 # Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
-packages_import=(python3-meshio python3-yaml)
+packages_import=(python3-meshio python3-h5py python3-netcdf4 python3-yaml)
 packages_peers=(python3-petsc4py python3-slepc4py)
 
 complain() { printf '%s\n' "$*" >&2; }

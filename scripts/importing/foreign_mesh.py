@@ -2,14 +2,18 @@
 
 import contextlib
 import io
+import re
 
 import numpy as np
 
 from importing.abaqus_input import AbaqusInput
+from importing.exodus_file import ExodusFile
 from importing.mesh_shapes import ImportRefused, faces_of
 from importing.nastran_input import NastranInput
 
-READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput)}
+READERS = {".inp": AbaqusInput, **dict.fromkeys((".bdf", ".nas", ".fem", ".dat"), NastranInput), **dict.fromkeys((".e", ".exo", ".ex2"), ExodusFile)}
+# How files of Ansys, Fluent and Permas begin, whatever they are called
+NOT_READ = rb"(?im)^\s*(?P<Ansys>/prep7|/com\b|nblock,)|\A\s*(?P<Fluent>\()|^\s*(?P<Permas>\$enter component|\$coor\b)"
 # meshio leaves these in Gmsh's order; their middle nodes of faces are left out, squeal adds them
 GMSH_ORDER = {"wedge18": ("wedge15", (0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11)),
               "pyramid14": ("pyramid13", (0, 1, 2, 3, 4, 5, 8, 10, 6, 7, 9, 11, 12))}
@@ -84,15 +88,22 @@ def from_meshio(path):
                 for value in np.unique(values):
                     alone = [str(value) if is_set else f"{key}:{value}"]
                     for name in names.get((block.dim, value)) or getattr(source, "cell_tags", {}).get(value) or alone:
-                        members.setdefault(name, np.flatnonzero(values == value))
+                        # A group of MED is that of several values
+                        members[name] = np.union1d(members.get(name, []), np.flatnonzero(values == value))
         for name, numbers in members.items():
             mesh.element_sets.setdefault(name, []).extend(first + int(number) for number in numbers)
     if any(not 0 <= node < len(mesh.points) for _, nodes in mesh.elements for node in nodes):
         raise ImportRefused("elements have nodes that are not in the file", path, "write all nodes out")
     mesh.node_sets = {name: [int(node) for node in nodes] for name, nodes in source.point_sets.items()}
+    for value, names in getattr(source, "point_tags", {}).items():
+        for name in names:
+            mesh.node_sets.setdefault(name, []).extend(np.flatnonzero(source.point_data["point_tags"] == value).tolist())
     return mesh
 
 
 def read(path):
+    with path.open("rb") as file:
+        if begin := re.search(NOT_READ, file.read(100_000)):
+            raise ImportRefused(f"meshes of {begin.lastgroup} are not read", path, "export .inp (Abaqus) or .bdf (Nastran) in the pre-processor")
     reader = READERS.get(path.suffix.lower())
     return from_input_file(reader(path)) if reader else from_meshio(path)
