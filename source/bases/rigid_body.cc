@@ -86,7 +86,7 @@ namespace Squeal
   std::optional<MultiVector> free_motions(const Model &model, const SecondOrderSystem &system, const unsigned int component)
   {
     const bool is_clamped = std::any_of(model.nodes().begin(), model.nodes().end(),
-                                        [&](const Node &node) { return node.component == component && node.dofs[0] < 0; });
+                                        [&](const Node &node) { return node.component == component && node.is_clamped(); });
     if (largest_of_processes(model.communicator(), is_clamped) > 0.)
       return {};
     const auto [modes, eigenvalues] = rayleigh_ritz(rigid_motions(model, component), system);

@@ -124,6 +124,34 @@ TEST(PressedFaces, APressedColumnHasUniformPressure)
       }
 }
 
+TEST(PressedFaces, OfTiedNodesPressTheNodesThatTheyFollow)
+{
+  // A lining that is wider than the plate tied to it: all of its back is pressed, or the plate
+  for (const Cut cut : {Cut::hexahedra, Cut::tetrahedra})
+    for (const double plate_length : {length, 0.4 * length})
+      for (const char *pressed_face : {"lining_back", "pad_back"})
+        {
+          if (plate_length < length && pressed_face == std::string("pad_back"))
+            continue; // bends
+          SCOPED_TRACE(pressed_face);
+          Mesh mesh;
+          add_box(mesh, {cut, {{4, 3, 1}}, {1., 0., -0.05}, {1. + length, width, 0.}, 0.}, "disc", {{"disc_bore", "disc_contact"}});
+          add_box(mesh, {cut, {{5, 2, 1}}, {1., 0., 0.}, {1. + length, width, 0.5 * height}, 0.}, "pin_lining",
+                  {{"pin_contact", "lining_back"}});
+          add_box(mesh, {cut, {{3, 3, 1}}, {1., 0., 0.5 * height}, {1. + plate_length, width, height}, 0.}, "pin_plate",
+                  {{"plate_front", "pad_back"}});
+          mesh.tied = {{"lining_back", "plate_front"}};
+          find_bodies(mesh);
+          const Scene        s(mesh, materials(guided), along_x(0.));
+          const SlidingModel sliding(s.model, s.interface, s.contact, s.system, 1e4, FactorizationLibrary::automatic);
+          const SlidingState state = steady_sliding(sliding, s.operation, pressed({pressed_face}));
+          check(state);
+          EXPECT_NEAR(sum(state.reactions), -load, 1e-10 * load);
+          for (std::size_t node = 0; node < s.interface.size(); ++node)
+            EXPECT_NEAR(state.reactions[node], -load / (length * width) * s.interface[node].area, 1e-10 * load);
+        }
+}
+
 TEST(PressedFaces, FrictionShiftsThePressureToTheLeadingEdge)
 {
   // Moments about the back, where springs hold the pad: F e = μ F h
