@@ -31,7 +31,7 @@ namespace Squeal
     constexpr double off_curved_faces = 0.3;
 
     /// Bodies overlap: below this, chords of a curved face may lie inside another body.
-    constexpr double overlap = 0.05;
+    constexpr double chord_depth = 0.05;
 
     std::string place(const Position &p)
     {
@@ -309,7 +309,7 @@ namespace Squeal
               return;
             if (body != own_body)
               {
-                if (depth->relative > overlap && depth->length > pairing_tolerance)
+                if (depth->relative > chord_depth && depth->length > pairing_tolerance)
                   found.overlaps[{body, own_body}].insert(index);
               }
             else if (depth->length >= -tolerances[index] || (is_pinched && depth->relative >= -off_curved_faces))
