@@ -205,9 +205,8 @@ namespace Squeal
         throw MeshError(text("the contact faces do not face each other: the mean cosine between their normals is ", mean_cosine), where,
                         "let the normals of the two surfaces be opposite");
       if (!(mortar.overlap_area >= least_overlap * mortar.slave_area) || mortar.rows.empty())
-        throw MeshError(
-          text("the contact faces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m² on the pins' side"), where,
-          text("let the faces lie on each other, with a gap below ", search_distance, " m, or name in Contact/Pairs those that do"));
+        throw MeshError(text("the faces overlap by ", mortar.overlap_area, " m² of ", mortar.slave_area, " m²"), where,
+                        text("let them lie on each other, with a gap below ", search_distance, " m, or name surfaces that do"));
     }
   } // namespace
 
