@@ -78,8 +78,12 @@ namespace
                                  sparse_term("mass", 2, {}, matrix(apart, apart, M))};
       if (C.norm() > 0.)
         terms.push_back(sparse_term("damping", 1, {}, matrix(apart, apart, C)));
-      return couple(terms, {matrix(contact, apart, P_n), matrix(contact, apart, P_t), matrix(contact, apart, 0. * P_t),
-                            matrix(apart, coupled, T_c), matrix(contact, apart, 0.5 * P_n)});
+      return couple(terms, {matrix(contact, apart, P_n),
+                            matrix(contact, apart, P_t),
+                            matrix(contact, apart, 0. * P_t),
+                            matrix(apart, coupled, T_c),
+                            matrix(contact, apart, 0.5 * P_n),
+                            {}});
     }
 
     /// λ of the band by LAPACK from the companion form of T_cᵀ (I − (μ/2) P_tᵀ P_n) {M, C, K} T_c, by ascending frequency.
