@@ -7,7 +7,7 @@ SetFactory("OpenCASCADE");
 DefineConstant[
   disc_radius         = 0.140,
   ring_inner_radius   = 0.086,
-  disc_thickness      = 0.022,
+  ring_thickness      = 0.0463,
   hat_radius          = 0.078,
   hat_height          = 0.045,
   hat_wall            = 0.008,
@@ -24,7 +24,7 @@ DefineConstant[
   pad_size            = 0.0060
 ];
 
-h = disc_thickness / 2;
+h = ring_thickness / 2;
 
 // Disc: the rubbed ring, and a hat that opens downwards and stands on it
 Cylinder(1) = {0, 0, -h, 0, 0, 2 * h, disc_radius};

@@ -13,6 +13,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <boost/algorithm/string/join.hpp>
+#include <boost/lexical_cast/try_lexical_convert.hpp>
 #include <boost/serialization/utility.hpp>
 
 #include <algorithm>
@@ -50,6 +51,20 @@ namespace Squeal
         if (variable.value && variable.declaration.onelab_name.empty())
           script += variable.declaration.name + " = " + exact_text(*variable.value) + ";\n";
       return script;
+    }
+
+    /// Where the script gives a parameter of the section another value, and the section has its default: the section counts.
+    void note_overridden_variables(const GeometryParameters &parameters, const std::string &where, Mesh &mesh)
+    {
+      const auto values = parameters.script_variables(), defaults = GeometryParameters().script_variables();
+      double     own = 0.;
+      if (is_script(where))
+        for (const GeometryVariable &variable : GeometryScript(where).variables())
+          if (const auto value = values.find(variable.name); value != values.end() && value->second == defaults.at(variable.name) &&
+                                                             boost::conversion::try_lexical_convert(variable.value, own) &&
+                                                             own != std::stod(value->second))
+            mesh.notes.push_back(variable.name + " is " + value->second + ", the value of section Geometry, not " + variable.value +
+                                 " as in the script; set the parameter, or give the variable another name");
     }
 
     // Statements of Gmsh by which a script reaches beyond the mesh
@@ -317,6 +332,7 @@ namespace Squeal
         check_topology(mesh, given.pairing_tolerance, where);
         mesh.tied = contact.tied;
         find_bodies(mesh);
+        note_overridden_variables(given, where, mesh);
       }
     return mesh;
   }

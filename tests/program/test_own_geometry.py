@@ -71,6 +71,12 @@ class OwnGeometry(ProgramTest):
         self.dry_run_refused(["Geometry/pad_angle", "`wide`"], pad, "Geometry/pad_angle=wide")
         self.dry_run_refused(["unknown parameter `Geometry/pad_angle`"], "Geometry/pad_angle=40")
 
+    def test_a_variable_is_that_of_the_section(self):
+        self.write("other.geo", "DefineConstant[ disc_thickness = 0.022 ];\n" + SCRIPT)
+        own, note = ("Geometry/File=other.geo", "Mounts/Elastic mounts="), "note: disc_thickness is 0.0463, the value of section Geometry, not 0.022"
+        self.assertIn(note, self.understood(*own))
+        self.assertNotIn("value of section Geometry", self.understood(*own, "Geometry/Disc thickness=0.03"))
+
     # ------------------------------------------------------- what is understood
 
     def test_summary(self):
@@ -100,6 +106,14 @@ class OwnGeometry(ProgramTest):
     def test_disc_that_is_not_round(self):
         self.write("other.geo", SCRIPT)
         self.assertIn("warning: the disc is not round about the z axis", self.understood("Geometry/File=other.geo", "Mounts/Elastic mounts="))
+
+    def test_axes_that_do_not_turn(self):
+        constants = "Materials/Orthotropic=disc: 210e9, 200e9, 190e9, 0.3, 0.3, 0.3, 80e9, 80e9, 80e9, 7850"
+        axes, warning = "Materials/Axes=disc: 1, 0, 0, 0, 1, 0", "warning: the axes of disc in Materials/Axes do not turn with the disc"
+        self.assertIn(warning, self.understood(constants, axes))
+        self.assertNotIn("do not turn", self.understood(constants))
+        self.assertNotIn("do not turn", self.understood(constants, axes, "Operation/Sliding direction=1, 0, 0"))
+        self.assertNotIn("do not turn", self.understood(constants.replace("disc", "pin_top_1"), axes.replace("disc", "pin_top_1")))
 
     # ------------------------------------------------------------------ bodies
 

@@ -147,10 +147,11 @@ namespace Squeal
     run.measure("expected memory [byte]", bytes);
 
     // Doubts
-    if (SlidingVelocity(parameters.operation).turns_about_z() && !is_round_about_z(mesh, parameters.geometry.path()))
+    const bool turns = SlidingVelocity(parameters.operation).turns_about_z();
+    if (turns && !is_round_about_z(mesh, parameters.geometry.path()))
       run.warn("the disc is not round about the z axis, about which it turns");
     for (const MaterialAxes &axes : parameters.materials.axes)
-      if (is_of_disc(axes.volume))
+      if (turns && is_of_disc(axes.volume))
         run.warn("the axes of " + axes.volume +
                  " in Materials/Axes do not turn with the disc; without an entry they are radial, tangential "
                  "and axial");
