@@ -66,6 +66,20 @@ class FamiliesTest(ProgramTest):
         self.assertAlmostEqual(float(row["largest divergence rate [%]"]), float(alone["largest divergence rate [%]"]),
                                delta=1e-3 * float(alone["largest divergence rate [%]"]))
 
+    def test_orthotropic_designs(self):
+        """All moduli by one factor, and densities."""
+        moduli = ((2e9, 1.5e9, 1e9), (0.8e9, 0.4e9, 0.3e9))
+        values = [", ".join(str(factor * E) for E in moduli[0]) + ", 0.25, 0.4, 0.3, " + ", ".join(str(factor * G) for G in moduli[1]) + f", {density}"
+                  for factor in (1, 1.1) for density in (2900, 3070)]
+        variables = "Designs/Variables=Materials/Orthotropic = " + " | ".join(f"pin_top_1: {value}" for value in values)
+        study = self.run_scene("orthotropic", *STUDY, variables)
+        rows = read_table(study / "designs.csv")
+        self.assertEqual([row["outcome"] for row in rows], ["solved"] * 4)
+        single = self.run_scene("orthotropic_single", file=str(study / "designs" / "4.prm"))
+        largest = max(float(row["divergence rate [%]"]) for row in read_table(single / "branches.csv") if row["growing [-]"] == "1")
+        self.assertAlmostEqual(float(rows[3]["largest divergence rate [%]"]), largest, delta=1e-3 * largest)
+        self.assertEqual(len({row["largest divergence rate [%]"] for row in rows}), 4)
+
     def test_a_common_fault_is_told_in_every_row(self):
         study = self.run_scene("fault", *STUDY, VARIABLES, "Designs/Variables=Pin material/Young modulus = 1, 2")
         rows = read_table(study / "designs.csv")

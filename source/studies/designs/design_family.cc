@@ -3,6 +3,7 @@
 #include <squeal/linear_algebra/orthonormal_basis.h>
 #include <squeal/studies/designs/design_solution.h>
 
+#include <cmath>
 #include <numeric>
 
 namespace Squeal
@@ -38,7 +39,7 @@ namespace Squeal
       {
         if (Orthotropy *o = material->orthotropy ? &*material->orthotropy : nullptr)
           for (double *modulus : {&o->E2, &o->E3, &o->G12, &o->G13, &o->G23})
-            *modulus /= material->young_modulus;
+            *modulus = std::round(1e12 * *modulus / material->young_modulus); // without rounding errors
         material->young_modulus = material->density = 1.;
         for (double *damping : {&material->rayleigh_alpha, &material->rayleigh_beta})
           {
