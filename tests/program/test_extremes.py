@@ -128,9 +128,16 @@ class Extremes(ProgramTest):
         self.assert_spectrum(folder)
 
     def test_locking(self):
-        _, screen = self.succeed("locked", *SMALL, "Pin material/Poisson ratio=0.49")
-        self.assertIn("note: trilinear elements lock at Pin material/Poisson ratio = 0.49", screen)
-        self.assertIn("Discretization/Element = incompatible modes", screen)
+        constants = "Materials/Orthotropic=pin_top_1: {0}, 0.49, {1}, 6.5e8, 6.5e8, 6.5e8, 3070".format
+        change = "Discretization/Element = incompatible modes"
+        for override, place in (("Pin material/Poisson ratio=0.49", "Pin material/Poisson ratio = 0.49"),
+                                (constants("1.9e9, 1.9e9, 1.9e9", "0.49, 0.49"), "Materials/Orthotropic, pin_top_1, mean Poisson ratio = 0.49")):
+            process = self.dry_run(*SMALL, override)
+            self.assertIn(f"note: trilinear elements lock at {place}", process.stdout)
+            self.assertIn(change, process.stdout)
+            self.assertNotIn("lock", self.dry_run(*SMALL, override, "Discretization/Element=incompatible modes").stdout)
+        # Soft along axis 3: one of three ratios alone does not lock
+        self.assertNotIn("lock", self.dry_run(*SMALL, constants("1.9e9, 1.9e9, 0.5e9", "0.1, 0.1")).stdout)
 
 
 if __name__ == "__main__":

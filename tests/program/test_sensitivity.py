@@ -171,18 +171,26 @@ class Sensitivity(ProgramTest):
         self.assertEqual({name for name in names if "ratio: " in name}, set(ratios))
 
     def test_orthotropic_pin(self):
-        """Every constant of a pin compared with complete runs; with E1 all moduli change."""
-        numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), (2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9)))
+        """Every constant in fixed axes."""
+        self.check_orthotropic("pin_top_1", (2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9), 3070, "1, 0.2, 0, 0, 1, 0.3")
+
+    def test_orthotropic_disc(self):
+        """Cylindrical axes."""
+        self.check_orthotropic("disc", (210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9), 7850, "", ("E2", "nu12", "G23"))
+
+    def check_orthotropic(self, volume, values, density, axes, checked=()):
+        """Constants compared with complete runs; with E1 all moduli change."""
+        numbers = dict(zip(("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G13", "G23"), values))
 
         def scene(**changed):
-            return ["Materials/Orthotropic=pin_top_1: " + ", ".join(map(repr, ({**numbers, **changed}).values())) + ", 3070, 10, 1e-7",
-                    "Materials/Axes=pin_top_1: 1, 0.2, 0, 0, 1, 0.3", "Pin material/Rayleigh beta=2e-8"]
+            return [f"Materials/Orthotropic={volume}: " + ", ".join(map(repr, ({**numbers, **changed}).values())) + f", {density}, 10, 1e-7",
+                    "Materials/Axes=" + (f"{volume}: {axes}" if axes else ""), "Pin material/Rayleigh beta=2e-8"]
 
         folder = self.run_scene("orthotropic", STUDY, NO_THRESHOLDS, NO_GEOMETRY, "Sensitivity/Tolerance=1e-7",
                                 "Sensitivity/Largest number of modes=3", *scene())
         rows = [row for row in read_table(folder / "sensitivities.csv") if row["parameter"].startswith("Materials/Orthotropic:/")]
-        self.assertEqual({row["only of"] for row in rows}, {"pin_top_1"})
-        for name in numbers:
+        self.assertEqual({row["only of"] for row in rows}, {volume})
+        for name in checked or numbers:
             of_path = [row for row in rows if row["parameter"].rsplit("/", 1)[1].split()[0] == name]
             self.assertGreaterEqual(len(of_path), 2)
             scaled = [key for key in numbers if name == "E1" and not key.startswith("nu")] or [name]
@@ -275,6 +283,15 @@ class Sensitivity(ProgramTest):
     def test_curved_elements(self):
         """The same of elements whose edges follow the circle that grows."""
         self.check_geometry([*RICH, "Discretization/Element=quadratic", "Band/Maximum frequency=4000"], [("Pin diameter", "")])
+
+    def test_geometry_of_orthotropic_volumes(self):
+        """Cylindrical axes follow the nodes, fixed ones stay."""
+        materials = ("disc: 210e9, 180e9, 150e9, 0.3, 0.25, 0.2, 80e9, 70e9, 60e9, 7850; "
+                     "pin_bottom_1: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070; "
+                     "pin_top_2: 2e9, 1.5e9, 1e9, 0.25, 0.4, 0.3, 0.8e9, 0.4e9, 0.3e9, 3070")
+        axes = "Materials/Axes=pin_top_2: 1, 0.2, 0, 0, 1, 0.3"
+        self.check_geometry([f"Materials/Orthotropic={materials}", axes, "Operation/Friction coefficient=0.7"],
+                            [("Disc thickness", ""), ("Top pin radii", "pin_top_2"), ("Bottom pin angles", "pin_bottom_1")])
 
     def check_geometry(self, scene, places):
         folder = self.run_scene("moving", STUDY, NO_THRESHOLDS, "Sensitivity/Geometry=sizes and places", "Sensitivity/Tolerance=1e-8",
