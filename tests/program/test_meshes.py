@@ -212,6 +212,12 @@ class Tetrahedra(ProgramTest):
             with self.subTest(n_processes=n_processes):
                 tied = self.run_scene(f"out_tied_{n_processes}", TIED, "Output/Mode shapes=unstable", file=file, n_processes=n_processes)
                 self.assert_same_eigenvalues(eigenvalues(tied), expected)
+        # Held in the plane of their backs, pressed along the axis
+        pressed = ("Steady sliding/Contact state=steady sliding", "Steady sliding/Control=pressure", "Operation/Radial dissipation=consistent",
+                   "Steady sliding/Pressed faces=pad_outer_back, pad_inner_back",
+                   "Mounts/Elastic mounts=disc_hub: 1e12, 1e12, 1e12; pad_outer_back: 2e10, 2e10, 0; pad_inner_back: 2e10, 2e10, 0")
+        self.assert_same_eigenvalues(*(eigenvalues(self.run_scene(f"out_pressed_{name}", *pressed, *tied, file=f"{name}.prm"))
+                                       for name, tied in (("brake", ()), ("bonded", (TIED,)))))
         # Faces that do not match converge to the same: both are coarse
         other = eigenvalues(self.run_scene("out_other", TIED, file=self.write_brake(bonded_brake(5), "bonded_5")))
         self.assertEqual(len(other), len(expected))
