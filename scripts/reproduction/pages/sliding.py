@@ -73,3 +73,14 @@ def random_patterns(runs):
     yield Number("  whose state is the only one", "20", unique)
     yield Number("largest residual", "1e-11", max(residuals), bound=True)
     yield Number("largest overlap", "1e-13", max(overlaps), bound=True)
+
+
+@entry("sliding", "Pads of the disc brake that a pressure tilts")
+def pressed_pads(runs):
+    results = runs("brake_pressed", "brake.prm", NO_SHAPES, "Steady sliding/Contact state=steady sliding", "Steady sliding/Control=pressure",
+                   "Steady sliding/Pressed faces=pad_outer_back, pad_inner_back",
+                   "Mounts/Elastic mounts=disc_hub: 1e13, 1e13, 1e13; pad_outer_back: 5e9, 2e10, 0; pad_inner_back: 4e9, 1.5e10, 0")
+    for pad in results.table("sliding_pins.csv"):
+        yield Number(f"{pad['pin']}: centre of pressure towards the leading edge [mm]", "7.8", -1e3 * pad["pressure offset along t [m]"])
+        yield Number(f"{pad['pin']}: outwards [mm]", "4.9", 1e3 * pad["pressure offset outwards [m]"])
+        yield Number(f"{pad['pin']}: largest pressure [MPa]", "1.9", 1e-6 * pad["largest pressure [Pa]"])
