@@ -16,12 +16,13 @@ round, of which the median is printed.
 import argparse
 import pathlib
 import statistics
-import sys
 import tempfile
 
 import benchmarking
-import exported_matrices
 import slepc_modes
+from squeal import exported_matrices
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
 
 
 def squeal_times(core, directory):
@@ -53,13 +54,14 @@ def compare(rounds, n_modes):
         if n_complete == len(records):
             complete[formulation] = statistics.median(seconds)
     if not complete:
-        sys.exit("No formulation found all modes in every run.")
+        raise Error("no formulation found all modes in every run", "SLEPc", "give other --formulations, or more --runs")
     fastest = min(complete, key=complete.get)
     ratios = [[times[i] / peers[fastest]["CPU time [s]"] for times, peers in rounds] for i in range(2)]
     print(f"fastest peer: {fastest}; squeal takes {benchmarking.spread(ratios[0], 2)} of its time, "
           f"with the real modes {benchmarking.spread(ratios[1], 2)}")
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
@@ -68,7 +70,7 @@ def main():
     parser.add_argument("--core", type=int, default=0, help="the core to run on (default: %(default)s)")
     arguments = parser.parse_args()
     if not slepc_modes.available():
-        sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+        raise slepc_modes.missing()
 
     matrices = exported_matrices.read_matrices(arguments.directory)
     problem = exported_matrices.couple(matrices, exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient"))

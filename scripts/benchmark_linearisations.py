@@ -19,7 +19,6 @@ Processor seconds of one core, medians; the largest relative distance of an eige
 
 import argparse
 import os
-import sys
 import time
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -31,8 +30,10 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 import benchmarking
-import exported_matrices
 import slepc_modes
+from squeal import exported_matrices
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
 
 
 def small_problem(directory, n_vectors):
@@ -88,6 +89,7 @@ def by_toar(M, C, K, end):
     return solution.eigenvalues[in_band(solution.eigenvalues, end)]
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory")
@@ -100,7 +102,7 @@ def main():
 
     (M, C, K), end = small_problem(arguments.directory, arguments.vectors)
     if abs(C).max() == 0.0:
-        sys.exit(f"{arguments.directory} has no damping: the problem is linear in lambda^2. Take prm/dissipation.prm.")
+        raise Error("the problem has no damping and is linear in lambda^2", arguments.directory, "take prm/dissipation.prm")
     methods = {"companion": by_companion, "symmetric": by_symmetric, "values": by_values}
     if slepc_modes.available():
         methods["toar"] = by_toar

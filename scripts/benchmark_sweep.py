@@ -17,6 +17,7 @@ import statistics
 import tempfile
 
 import benchmarking
+from squeal.command_line import exit_on_error
 
 PARTS = (0.1, 0.3, 0.5, 0.7, 0.9)
 
@@ -28,6 +29,7 @@ def coefficients(directory):
     return int(number), [first + part * (last - first) for part in PARTS]
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("parameter_file", metavar="PRM", type=pathlib.Path)

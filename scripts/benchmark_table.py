@@ -18,12 +18,13 @@ the largest. Needs SLEPc (scripts/setup.sh peers) for all rows but the last.
 import argparse
 import pathlib
 import statistics
-import sys
 import tempfile
 
 import benchmarking
 import slepc_modes
 from benchmark_sweep import coefficients
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
 
 PRM = benchmarking.SOURCE / "prm"
 NO_FIELDS = ["Output/Mode shapes=none"]
@@ -124,6 +125,7 @@ ROWS = {"chart": lambda *arguments: chart(*arguments, damped=False), "damped": l
         "one": one, "default": default}
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--runs", type=int, default=3, help="rounds (default: %(default)s)")
@@ -132,9 +134,9 @@ def main():
     arguments = parser.parse_args()
     rows = arguments.rows.split(",")
     if unknown := [row for row in rows if row not in ROWS]:
-        sys.exit(f"There is no row {unknown[0]}: give some of {', '.join(ROWS)}.")
+        raise Error(f"there is no row {unknown[0]}", "command line", f"give some of {', '.join(ROWS)}")
     if rows != ["default"] and not slepc_modes.available():
-        sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+        raise slepc_modes.missing()
     cores = [int(core) for core in arguments.cores.split(",")]
     print(benchmarking.describe_machine(cores[0]))
     with tempfile.TemporaryDirectory() as folder:

@@ -1,6 +1,5 @@
 """What the benchmarks share: the machine, runs of squeal and of SLEPc on one core with the same BLAS kernels, medians."""
 
-import csv
 import json
 import os
 import pathlib
@@ -9,10 +8,12 @@ import subprocess
 import sys
 import tempfile
 
-from parameter_file import read_parameters
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.errors import Error
+from squeal.parameter_file import read_parameters
+from squeal.program import SOURCE, find_program, words_of
+from squeal.results import read_table
 
-SOURCE = pathlib.Path(__file__).resolve().parents[1]
-SQUEAL = SOURCE / "build" / "release" / "squeal"
 PEER = SOURCE / "scripts" / "slepc_modes.py"
 
 
@@ -56,14 +57,13 @@ def run_on_core(core, command):
     words = ["taskset", "-c", ",".join(map(str, cores)), *map(str, command)]
     process = subprocess.run(words, env=environment(len(cores)), text=True, capture_output=True, check=False)
     if process.returncode != 0:
-        sys.exit(f"{process.stdout}{process.stderr}This command failed: {' '.join(map(str, command))}")
+        raise Error(f"{process.stdout}{process.stderr}the command failed", " ".join(map(str, command)), "see the messages")
     return process.stdout
 
 
 def run_squeal(core, parameter_file, output, settings=()):
     """Runs squeal with settings "Section/Name=value" and returns its run record."""
-    options = [word for setting in settings for word in ("--set", setting)]
-    run_on_core(core, [SQUEAL, parameter_file, "--output", output, *options])
+    run_on_core(core, [find_program(), parameter_file, "--output", output, *words_of(settings)])
     return json.loads((pathlib.Path(output) / "run.json").read_text(encoding="utf-8"))
 
 
@@ -88,8 +88,7 @@ def parameter(directory, name):
 
 def n_rows(table):
     """Rows of a table."""
-    with open(table, newline="", encoding="utf-8") as file:
-        return sum(1 for _ in csv.DictReader(file))
+    return len(read_table(table))
 
 
 def spread(values, digits=1):

@@ -11,14 +11,17 @@ is 1 if there is one.
 """
 
 import argparse
-import csv
 import pathlib
 import sys
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
-from parameter_file import read_parameters
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+from squeal.parameter_file import read_parameters
+from squeal.results import read_table
 
 FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate [%]"
 ESTIMATED_FREQUENCY, ESTIMATED_DIVERGENCE = ("estimated frequency error by the mesh [%]", "estimated divergence rate error by the mesh [%]")
@@ -26,15 +29,14 @@ OTHER_KIND = 0.002  # of the frequency: where disc and pins take part alike, a m
 
 
 def read(folder):
-    with open(pathlib.Path(folder) / "complex_modes.csv", newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return read_table(pathlib.Path(folder) / "complex_modes.csv")
 
 
 def accuracy(folder):
     """What RUN was asked for [%]."""
     goal = read_parameters(pathlib.Path(folder) / "parameters.prm").get("Accuracy", "as given")
     if goal == "as given":
-        sys.exit(f"error: {folder} was run without `set Accuracy`")
+        raise Error("the run has no `set Accuracy`", folder, "run with `set Accuracy = ...`")
     return float(goal.replace("%", ""))
 
 
@@ -65,6 +67,7 @@ def print_largest(what, chosen):
         print(f"  {what:<44} {len(chosen):>4}   {max(e[0] for e in errors):>9.4f}   {max(e[1] for e in errors):>9.4f}")
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("run")
@@ -72,7 +75,7 @@ def main():
     arguments = parser.parse_args()
     modes, reference = read(arguments.run), read(arguments.reference)
     if ESTIMATED_FREQUENCY not in modes[0]:
-        sys.exit(f"error: {arguments.run} has no estimated errors\n  change: run with `set Accuracy = ...`")
+        raise Error("the run has no estimated errors", arguments.run, "run with `set Accuracy = ...`")
     found = pairs(modes, reference)
     converged = [pair for pair in found if pair[0]["converged [-]"] == "1"]
     print(f"  {'':<44} modes   f [%]       xi [points]")

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Checks the complex modes of a run with other people's eigensolvers.
 
-    scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both]
+    scripts/check_eigenvalues.py DIRECTORY [--modes FILE] [--solver scipy|slepc|both] [--system FOLDER]
 
-DIRECTORY is the output of a run with Output/Write matrices = true. The coupled quadratic problem is formed here
-from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc (MUMPS;
+DIRECTORY is the output of a run with Output/Write matrices = true, or of any run of the system in FOLDER (doc/python.md). The
+coupled quadratic problem is formed here from the exported matrices and solved by SciPy (ARPACK on the companion form) and, where installed, by SLEPc (MUMPS;
 Krylov-Schur on the linear problem in lambda^2, or with damping two-level orthogonal Arnoldi). Each eigenvalue of the
 table is held against the nearest one found, one to one. The exit status is 1 when a difference exceeds the tolerance, a count
 differs or the matrices are not what they should be.
@@ -15,7 +15,6 @@ differ by three times the largest estimate.
 """
 
 import argparse
-import csv
 import math
 import os
 import pathlib
@@ -28,9 +27,14 @@ import numpy as np
 import scipy.optimize
 import scipy.sparse.linalg
 
-import exported_matrices
-import parameter_file
 import slepc_modes
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal import exported_matrices, parameter_file, quadratic
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+from squeal.results import Table
+from squeal.system import System
 
 STRUCTURE_TOLERANCE = 1e-10
 # Largest relative difference of eigenvalues that the table says nothing about the accuracy of
@@ -46,19 +50,13 @@ def read_modes(path):
 
     The columns are `frequency [Hz]`, `growth rate [1/s]` and `estimated error of lambda [-]`.
     """
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(line for line in file if line.strip() and not line.startswith("#")))
-    columns = {name.split("[")[0].strip(): index for index, name in enumerate(rows[0])}
-    for name in ("frequency", "growth rate"):
-        if name not in columns:
-            sys.exit(f"{path} has no column `{name}`; its columns are {', '.join(columns)}.")
-    label = columns.get("label")
-    labels = [row[label].strip() if label is not None else "" for row in rows[1:]]
-    eigenvalues = [complex(float(row[columns["growth rate"]]), 2 * math.pi * float(row[columns["frequency"]]))
-                   for row in rows[1:]]
-    error = columns.get("estimated error of lambda")
-    errors = [float(row[error]) for row in rows[1:]] if error is not None else []
-    return labels, np.array(eigenvalues, dtype=complex), errors
+    table = Table(path)
+    for name in ("frequency [Hz]", "growth rate [1/s]"):
+        if name not in table.columns:
+            raise Error(f"there is no column `{name}`", path, f"name a table with it; this one has: {', '.join(table.columns)}")
+    labels = table.texts("label") if "label" in table.columns else [""] * len(table)
+    error = "estimated error of lambda [-]"
+    return labels, np.array(table.eigenvalues(), dtype=complex), table.numbers(error) if error in table.columns else []
 
 
 def choose_shift(problem, band):
@@ -83,39 +81,39 @@ def choose_tolerance(errors):
 
 
 def solve_by_scipy(problem, band, n_modes, shift=0.0):
-    """All eigenvalues of the band by ARPACK on the companion form, which costs one factorisation of size n.
-
-    With w = lambda u / s, s of the size of the eigenvalues sought, s / (lambda - shift) are the eigenvalues of
-
-        (u, w) -> (x, u + shift / s x),  x = -s Q(shift)^-1 ((C + shift M) u + s M w).
-    """
-    n = problem.size
-    scale = math.pi * band
-    damping = problem.damping + shift * problem.mass
-    factor = scipy.sparse.linalg.splu((problem.stiffness + shift * damping).tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.1,
-                                      options={"SymmetricMode": True})
-
-    def apply(state):
-        u, w = state[:n], state[n:]
-        x = -scale * factor.solve(damping @ u + scale * (problem.mass @ w))
-        return np.concatenate([x, u + shift / scale * x])
-
-    operator = scipy.sparse.linalg.LinearOperator((2 * n, 2 * n), matvec=apply, dtype=float)
+    """All eigenvalues of the band by ARPACK on the companion form, which costs one factorisation of size n."""
+    solver = quadratic.ShiftInvert(problem.mass, problem.damping, problem.stiffness, "exported matrices")
+    factor = solver.factor(shift)
 
     def solve(seed):
-        start = np.random.default_rng(seed).standard_normal(2 * n)
-        n_eigenvalues = 2 * n_modes + 8
-        while True:
-            n_eigenvalues = min(n_eigenvalues, 2 * n - 2)
-            ncv = min(2 * n_eigenvalues + 20, 2 * n)
-            inverse, vectors = scipy.sparse.linalg.eigs(operator, k=n_eigenvalues, v0=start, ncv=ncv, tol=0, maxiter=1000)
-            eigenvalues = shift + scale / inverse
-            if abs(eigenvalues - shift).max() > 2 * math.pi * band + abs(shift) or n_eigenvalues == 2 * n - 2:
-                listed = exported_matrices.in_band(eigenvalues, band)
-                return eigenvalues[listed], vectors[:n, listed]
+        n_eigenvalues, radius = 2 * n_modes + 8, 0.0
+        while radius <= 2 * math.pi * band + abs(shift):
+            eigenvalues, vectors, radius = solver.nearest(shift, n_eigenvalues, seed, factor)
             n_eigenvalues = n_eigenvalues * 3 // 2
+        listed = exported_matrices.in_band(eigenvalues, band)
+        return eigenvalues[listed], vectors[:, listed]
 
-    return exported_matrices.collect(solve)
+    return quadratic.collect(solve)
+
+
+def problem_of_system(arguments):
+    """The quadratic problem of a system of matrices, whose structure is checked when it is read."""
+    system = System.read(arguments.system)
+    p = {name: float(value) for name, _, value in (word.partition("=") for word in arguments.parameter)}
+    print(f"{system.size} dofs, {len(system.terms)} terms, " + "".join(f"{name} = {value:g}, " for name, value in system.values(p).items()), end="")
+    return exported_matrices.QuadraticProblem(*system.matrices(p)), True
+
+
+def problem_of_run(arguments):
+    """The coupled quadratic problem of exported matrices, and whether what must vanish does."""
+    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
+    matrices, right = exported_matrices.read_matrices(arguments.directory), True
+    for description, error in exported_matrices.structure_errors(matrices).items():
+        fails = error > STRUCTURE_TOLERANCE
+        right = right and not fails
+        print(f"  {description:<28} {error:8.1e}" + ("  <- should vanish" if fails else ""))
+    print(f"{matrices['M'].shape[0]} dofs, {matrices['P_n'].shape[0]} contact nodes, friction coefficient {friction_coefficient:g}, ", end="")
+    return exported_matrices.couple(matrices, friction_coefficient), right
 
 
 def compare(name, labels, eigenvalues, found, tolerance):
@@ -144,11 +142,14 @@ def compare(name, labels, eigenvalues, found, tolerance):
     return right
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", metavar="DIRECTORY", type=pathlib.Path, help="output of a run with Output/Write matrices = true")
     parser.add_argument("--modes", metavar="FILE", default="complex_modes.csv", help="the table, in DIRECTORY (default: %(default)s)")
     parser.add_argument("--solver", choices=("scipy", "slepc", "both"), default="both", help="(default: %(default)s)")
+    parser.add_argument("--system", metavar="FOLDER", help="the system of matrices that was solved, instead of exported matrices")
+    parser.add_argument("--parameter", action="append", default=[], metavar="NAME=VALUE", help="of the system, where it is not that of its file")
     parser.add_argument("--mu", type=float, help="friction coefficient (default: that of the run)")
     parser.add_argument("--band", type=float, help="upper end of the band in Hz (default: that of the run)")
     parser.add_argument("--shift", type=float, help="real shift in 1/s (default: 0, or chosen where a body can move freely)")
@@ -156,7 +157,6 @@ def main():
                         help=f"largest relative difference (default: {TOLERANCE:g}, or what the table's own estimates allow)")
     arguments = parser.parse_args()
 
-    friction_coefficient = exported_matrices.run_parameter(arguments.directory, "Operation/Friction coefficient", arguments.mu)
     band = exported_matrices.run_parameter(arguments.directory, "Band/Maximum frequency", arguments.band)
     labels, eigenvalues, errors = read_modes(arguments.directory / arguments.modes)
     listed = exported_matrices.in_band(eigenvalues, band)
@@ -164,18 +164,9 @@ def main():
     file = pathlib.Path(arguments.directory) / "parameters.prm"
     parameters = parameter_file.read_parameters(file) if file.is_file() else {}
     if parameters.get("Damping/Modal damping ratio"):
-        sys.exit("The run has modal damping, which no exported matrix holds; repeat it without Damping/Modal damping ratio.")
-    matrices = exported_matrices.read_matrices(arguments.directory)
-
-    print(f"{matrices['M'].shape[0]} dofs, {matrices['P_n'].shape[0]} contact nodes, friction coefficient {friction_coefficient:g}, "
-          f"modes up to {band:g} Hz")
-    right = True
-    for description, error in exported_matrices.structure_errors(matrices).items():
-        fails = error > STRUCTURE_TOLERANCE
-        right = right and not fails
-        print(f"  {description:<28} {error:8.1e}" + ("  <- should vanish" if fails else ""))
-
-    problem = exported_matrices.couple(matrices, friction_coefficient)
+        raise Error("the run has modal damping, which no exported matrix holds", file, "repeat it without Damping/Modal damping ratio")
+    problem, right = (problem_of_system if arguments.system else problem_of_run)(arguments)
+    print(f"modes up to {band:g} Hz")
     shift = arguments.shift
     if shift is None:
         shift = choose_shift(problem, band)
@@ -188,7 +179,7 @@ def main():
         if slepc_modes.available():
             solvers["SLEPc"] = slepc_modes.solve_band
         elif arguments.solver == "slepc":
-            sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+            raise slepc_modes.missing()
         else:
             print("SLEPc is not installed; SciPy alone is asked.")
 

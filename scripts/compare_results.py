@@ -18,6 +18,10 @@ import pathlib
 import re
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+
 VARYING = re.compile(r"time|CPU|wall|memory|residual|eps_res|speed-up|orthonormality", re.IGNORECASE)
 
 
@@ -77,6 +81,7 @@ def compare_tables(old_file, new_file, tolerance, ignored, everything):
     return largest, complaints
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", metavar="OLD", type=pathlib.Path)
@@ -89,7 +94,7 @@ def main():
 
     files = sorted(path.relative_to(arguments.old) for path in arguments.old.rglob(arguments.tables))
     if not files:
-        sys.exit(f"{arguments.old} holds no table {arguments.tables}.")
+        raise Error(f"there is no table {arguments.tables}", arguments.old, "name a folder of results")
     agree = True
     for file in files:
         if not (arguments.new / file).is_file():

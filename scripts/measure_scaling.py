@@ -9,14 +9,12 @@ size the exponent of a power law through the last two.
 """
 
 import argparse
-import json
 import math
-import pathlib
-import subprocess
-import sys
 import tempfile
 
 import benchmarking
+import squeal
+from squeal.command_line import exit_on_error
 
 # Element size [m], layers of the disc, nodes on a pin's face, layers of the pins
 MESHES = {"32": (0.0115, 3, 19, 4), "78": (0.008, 4, 37, 6), "138": (0.006, 4, 61, 6), "281": (0.0045, 5, 91, 8),
@@ -35,12 +33,8 @@ def settings_of(mesh):
 def run(study, mesh, settings):
     """The record of one run."""
     with tempfile.TemporaryDirectory() as folder:
-        options = [word for setting in [*settings_of(mesh), *settings] for word in ("--set", setting)]
-        command = [benchmarking.SQUEAL, benchmarking.SOURCE / "prm" / STUDIES[study], "--output", f"{folder}/run", *options]
-        process = subprocess.run(list(map(str, command)), text=True, capture_output=True, check=False)
-        if process.returncode != 0:
-            sys.exit(f"{process.stdout}{process.stderr}")
-        return json.loads((pathlib.Path(folder) / "run" / "run.json").read_text(encoding="utf-8"))
+        overrides = dict(setting.split("=", 1) for setting in [*settings_of(mesh), *settings])
+        return squeal.run(benchmarking.SOURCE / "prm" / STUDIES[study], overrides, f"{folder}/run").record
 
 
 def columns(record):
@@ -58,6 +52,7 @@ def columns(record):
     return result
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--sizes", default="32,78,138,281", help="names of meshes (default: %(default)s)")
@@ -66,7 +61,7 @@ def main():
     arguments = parser.parse_args()
     names = arguments.sizes.split(",")
     if unknown := [name for name in names if name not in MESHES]:
-        sys.exit(f"There is no mesh {unknown[0]}: give some of {', '.join(MESHES)}.")
+        raise squeal.Error(f"there is no mesh {unknown[0]}", "--sizes", f"give some of {', '.join(MESHES)}")
     print(benchmarking.describe_machine("all"), flush=True)
     before = None
     for name in names:

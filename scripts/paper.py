@@ -22,7 +22,8 @@ import pathlib
 import re
 import sys
 
-from reproduction.runs import SOURCE, SQUEAL, Runs
+from reproduction.runs import SOURCE, Runs
+from squeal.command_line import exit_on_error
 
 NEGLIGIBLE = 0.01  # divergence rate [%] below which a mode counts as neutral
 FIXED = "Study", "Band/", "Operation/Radial dissipation", "Steady sliding/Contact state", "Output/"
@@ -344,9 +345,9 @@ def show(title, rows, columns):
 def draw(folder, without, damped):
     """Figure 6 of the paper, if matplotlib is there."""
     try:
-        from plot_results import render
-        from plotting import complex_plane
-        from plotting.results import Results
+        from squeal.plotting import complex_plane
+        from squeal.plotting.draw import render
+        from squeal.results import Results
         figure = complex_plane.paper_figure(Results(without.folder), Results(damped.folder))
         (folder / "figure6.svg").write_bytes(render(figure, "svg"))
     except ModuleNotFoundError as missing:
@@ -380,6 +381,7 @@ def compare(folder, settings):
     print(f"\nresults in {folder}")
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--results", metavar="DIR", type=pathlib.Path, default=SOURCE / "results" / "paper")
@@ -388,12 +390,7 @@ def main():
     arguments = parser.parse_args()
     if fixed := [setting for setting in arguments.settings if setting.startswith(FIXED)]:
         parser.error(f"--set {fixed[0]}: the comparison chooses {', '.join(FIXED)} itself; leave it out")
-    if not SQUEAL.is_file():
-        sys.exit(f"error: there is no program {SQUEAL}: build it with scripts/setup.sh")
-    try:
-        compare(arguments.results, arguments.settings)
-    except (OSError, RuntimeError) as error:
-        sys.exit(f"error: {error}")
+    compare(arguments.results, arguments.settings)
 
 
 if __name__ == "__main__":

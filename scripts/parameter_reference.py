@@ -9,15 +9,15 @@ The environment variable SQUEAL names the program (default: build/release/squeal
 
 import argparse
 import dataclasses
-import os
 import pathlib
 import re
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.program import SOURCE, find_program
+
 PAGE = SOURCE / "doc" / "parameters.md"
-SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal"))
 TITLE = ("# Listing of Parameters", "# ---------------------")  # deal.II's
 ACCEPTS, UNITS = " Accepts ", " Units: "
 HEAD = """# Parameters
@@ -82,7 +82,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--check", action="store_true", help="writes nothing")
     arguments = parser.parse_args()
-    written = page(subprocess.run([SQUEAL, "--print-parameters"], capture_output=True, text=True, check=True).stdout)
+    written = page(subprocess.run([find_program(), "--print-parameters"], capture_output=True, text=True, check=True).stdout)
     if not arguments.check:
         PAGE.write_text(written, encoding="utf-8")
     elif not PAGE.exists() or PAGE.read_text(encoding="utf-8") != written:

@@ -18,27 +18,21 @@ without a screen it starts itself again under xvfb-run.
 """
 
 import argparse
-import csv
-import os
 import pathlib
-import re
-import shutil
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
 from paraview_scenes import VIEWS, WIDTH, scene_of_all, scene_of_energy, scene_of_one, write_film
-
-
-class ModesError(Exception):
-    """What the user reads: the reason and what to change."""
+from squeal.command_line import ensure_display, exit_on_error
+from squeal.errors import Error
+from squeal.results import read_table, shape_files
 
 
 def rows_of(results):
     """Rows of complex_modes.csv."""
-    try:
-        with open(results / "complex_modes.csv", newline="", encoding="utf-8") as file:
-            return list(csv.DictReader(file))
-    except OSError:
-        raise ModesError(f"{results} holds no complex_modes.csv: name the folder of a stability run") from None
+    if not (results / "complex_modes.csv").is_file():
+        raise Error("there is no complex_modes.csv", results, "name the folder of a stability run")
+    return read_table(results / "complex_modes.csv")
 
 
 def title_of(row):
@@ -50,10 +44,9 @@ def title_of(row):
 
 def files_of(results):
     """Files of shapes by rows of complex_modes.csv."""
-    found = {int(match[1]): path for path in sorted((results / "modes").glob("complex_*.vtu"))
-             if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
+    found = shape_files(results)
     if not found:
-        raise ModesError(f"{results} holds no shapes of complex modes: run again with Output/Mode shapes = all")
+        raise Error("there are no shapes of complex modes", results, "run again with Output/Mode shapes = all")
     return found
 
 
@@ -62,24 +55,15 @@ def chosen(name, rows, files):
     if name.isdigit():
         number = int(name)
         if not 1 <= number <= len(rows):
-            raise ModesError(f"--mode {name}: complex_modes.csv has rows 1 to {len(rows)}")
+            raise Error(f"there is no row {name}", "--mode", f"complex_modes.csv has rows 1 to {len(rows)}")
     else:
         own = [number for number, row in enumerate(rows, start=1) if name in (row["label"], row["label"].split(" ")[0])]
         if not own:
-            raise ModesError(f"--mode {name}: no mode has that label; there are {', '.join(sorted({row['label'] for row in rows}))}")
+            raise Error(f"no mode has that label: {name}", "--mode", f"name one of: {', '.join(sorted({row['label'] for row in rows}))}")
         number = max(own, key=lambda one: float(rows[one - 1]["growth rate [1/s]"]))
     if number not in files:
-        raise ModesError(f"--mode {name}: the shape of row {number} was not written; run again with Output/Mode shapes = all")
+        raise Error(f"the shape of row {number} was not written", f"--mode {name}", "run again with Output/Mode shapes = all")
     return number
-
-
-def ensure_display():
-    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        return
-    if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):
-        sys.exit("There is no X display, and xvfb-run is missing: apt-get install xvfb xauth (or scripts/setup.sh paraview)")
-    os.environ["SQUEAL_RENDER_UNDER_XVFB"] = "1"
-    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1600x1200x24 -noreset", "pvpython", *sys.argv])
 
 
 def parsed():
@@ -111,7 +95,7 @@ def write_energy_pictures(simple, numbers, rows, files, titles, arguments):
     """Of the modes chosen, or of all that grow and have shapes."""
     growing = [number for number in numbers or sorted(files) if rows[number - 1]["unstable [-]"] == "1"]
     if not growing or set(numbers) - set(growing):
-        raise ModesError("--view energy is of growing modes" + (": name one with --mode" if numbers else ", and none grows"))
+        raise Error("--view energy is of growing modes" + ("" if numbers else ", and none grows"), "--mode", "name one that grows")
     arguments.pictures.mkdir(parents=True, exist_ok=True)
     for number in growing:
         path = arguments.pictures / f"{files[number].stem}_energy.png"
@@ -147,28 +131,26 @@ def write_session_and_film(simple, results, numbers, rows, files, titles, argume
     simple.ResetSession()
 
 
+@exit_on_error()
 def main():
     arguments = parsed()
     results = arguments.results.resolve()
+    rows, files = rows_of(results), files_of(results)
+    numbers = [chosen(name, rows, files) for name in arguments.mode or ()]
+    titles = {number: title_of(rows[number - 1]) for number in files}
+    ensure_display("paraview", ("pvpython",), "1600x1200x24 -noreset")
     try:
-        rows, files = rows_of(results), files_of(results)
-        numbers = [chosen(name, rows, files) for name in arguments.mode or ()]
-        titles = {number: title_of(rows[number - 1]) for number in files}
-        ensure_display()
-        try:
-            from paraview import simple
-        except ImportError:
-            raise ModesError("ParaView is missing: apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
-        simple._DisableFirstRenderCameraReset()
-        if arguments.state or arguments.film:
-            write_session_and_film(simple, results, numbers, rows, files, titles, arguments)
-        if arguments.pictures:
-            if arguments.view == "energy":
-                write_energy_pictures(simple, numbers, rows, files, titles, arguments)
-            else:
-                write_pictures(simple, results, numbers, files, titles, arguments)
-    except (ModesError, ImportError, ValueError) as error:
-        sys.exit(f"error: {error}")
+        from paraview import simple
+    except ImportError:
+        raise Error("ParaView is missing", "paraview.simple", "apt-get install paraview python3-paraview (or scripts/setup.sh paraview)") from None
+    simple._DisableFirstRenderCameraReset()
+    if arguments.state or arguments.film:
+        write_session_and_film(simple, results, numbers, rows, files, titles, arguments)
+    if arguments.pictures:
+        if arguments.view == "energy":
+            write_energy_pictures(simple, numbers, rows, files, titles, arguments)
+        else:
+            write_pictures(simple, results, numbers, files, titles, arguments)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,8 @@ import math
 import pathlib
 import tempfile
 
+from squeal.errors import Error
+
 VIEWS = {"iso": ((0.62, -0.62, 0.62), (0, 0, 1)), "top": ((0, 0, 1), (0, 1, 0)), "side": ((1, -0.08, 0.12), (0, 0, 1)),
          "below": ((0.62, -0.62, -0.62), (0, 0, 1)), "faces": ((0.25, -0.25, -0.94), (-1, 0, 0)), "energy": ((0.25, -0.25, -0.94), (-1, 0, 0))}  # towards the eye, and up
 WIDTH, ASPECT = 1600, 0.625  # of pictures [pixels], height over width
@@ -96,7 +98,7 @@ class Scene:
         simple = self.simple
         faces.UpdatePipeline(max(faces.TimestepValues or [0]))
         if field not in faces.PointData.keys():
-            raise ValueError(f"the contact faces have no field {field}: that is known of growing modes")
+            raise Error(f"the contact faces have no field {field}", "--view", "choose a mode that grows")
         bounds = faces.GetDataInformation().GetBounds()
         middle = [0, 0, (bounds[4] + bounds[5]) / 2]
         pins = simple.Threshold(Input=bodies)
@@ -205,7 +207,7 @@ def write_film(scene, times, path):
     try:
         from PIL import Image
     except ImportError:
-        raise ImportError("Python has no Pillow: apt-get install python3-pil") from None
+        raise Error("Python has no Pillow", "--film", "apt-get install python3-pil") from None
     with tempfile.TemporaryDirectory() as folder:
         frames = []
         for step, time in enumerate(times):

@@ -4,17 +4,17 @@ Needs Debian's python3-vtk9, xvfb and xauth (scripts/setup.sh pictures).
 """
 
 import math
-import os
-import shutil
 import sys
 
 import numpy as np
+
+from squeal.errors import Error
 
 try:
     import vtk
     from vtk.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 except ImportError:
-    sys.exit("VTK is missing: apt-get install python3-vtk9 (or scripts/setup.sh pictures)")
+    sys.exit(f'error: {Error("VTK is missing", "vtk", "apt-get install python3-vtk9 (or scripts/setup.sh pictures)")}')
 
 # Anchors of colour maps that are readable with every kind of colour vision: YlGnBu and RdBu of ColorBrewer, whose pale
 # ends leave what is at rest pale, and twilight of Matplotlib, which is cyclic.
@@ -25,16 +25,6 @@ RED_BLUE = ("0a3a70", "2166ac", "4393c3", "92c5de", "d1e5f0", "f7f7f7", "fddbc7"
 SIZE = (1600, 1000)
 OVERSAMPLING = 2
 INK = (0.13, 0.13, 0.15)
-
-
-def ensure_display():
-    """Debian's VTK draws through X; without a screen this starts a virtual one around the script."""
-    if os.environ.get("DISPLAY"):
-        return
-    if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):
-        sys.exit("There is no X display, and xvfb-run is missing: apt-get install xvfb xauth (or scripts/setup.sh pictures)")
-    os.environ["SQUEAL_RENDER_UNDER_XVFB"] = "1"
-    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", "-screen 0 1280x1024x24", sys.executable, *sys.argv])
 
 
 def grid_of(points, offsets, connectivity):
@@ -60,7 +50,7 @@ def read(path):
     reader.Update()
     grid = reader.GetOutput()
     if grid.GetNumberOfCells() == 0:
-        sys.exit(f"{path} holds no cells.")
+        raise Error("the file holds no cells", path, "name a file of fields")
 
     points = vtk_to_numpy(grid.GetPoints().GetData()).astype(float)
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())
@@ -96,7 +86,7 @@ def add_array(grid, name, values):
 def values_of(grid, name):
     if not grid.GetPointData().HasArray(name):
         names = [grid.GetPointData().GetArrayName(i) for i in range(grid.GetPointData().GetNumberOfArrays())]
-        sys.exit(f"The file has no point field {name}; it has {', '.join(names)}.")
+        raise Error(f"the file has no point field {name}", "--field", f"name one of: {', '.join(names)}")
     return vtk_to_numpy(grid.GetPointData().GetArray(name)).astype(float)
 
 

@@ -16,9 +16,13 @@ import sys
 
 import numpy as np
 
-from parameter_file import read_parameters
-from pictures import (INK, RED_BLUE, SIZE, YELLOW_BLUE, add_array, colour_bar, colour_table, ensure_display, line_actor, new_window,
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from pictures import (INK, RED_BLUE, SIZE, YELLOW_BLUE, add_array, colour_bar, colour_table, line_actor, new_window,
                       nice_range, read, save, sharp_edges, surface_of, text_actor, values_of)
+
+from squeal.command_line import ensure_display, exit_on_error
+from squeal.errors import Error
+from squeal.parameter_file import read_parameters
 
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -171,7 +175,7 @@ def rotation_of(path):
     for folder in path.resolve().parents[:2]:
         if (folder / "parameters.prm").is_file():
             return -1 if read_parameters(folder / "parameters.prm").get("Operation/Rotation") == "negative" else 1
-    sys.exit(f"There is no parameters.prm beside {path}, which tells the sliding direction.")
+    raise Error("there is no parameters.prm, which has the sliding direction", path, "name a file in a folder of results")
 
 
 def look_along_the_axis(renderer, points, side, up):
@@ -194,7 +198,7 @@ def draw(path, picture, field, view, title):
     """Draws the field of the contact file `path` into the file `picture`; title may be None."""
     bodies_path = path.with_name(path.name.replace("_contact.vtu", ".vtu"))
     if bodies_path == path or not bodies_path.is_file():
-        sys.exit(f"There is no file of disc and pins beside {path}; a contact file is named NAME_contact.vtu, theirs NAME.vtu.")
+        raise Error("there is no file of disc and pins", path, "name a contact file NAME_contact.vtu next to NAME.vtu")
     side, sense = VIEWS[view], rotation_of(path)
     faces = read(path)
     values, caption, unit = in_units(field, values_of(faces, field))
@@ -204,7 +208,7 @@ def draw(path, picture, field, view, title):
     table = colour_table(YELLOW_BLUE if values.min() >= 0 else RED_BLUE, limits)
     on_side = side * points_of(faces)[:, 2] > 0
     if not on_side.any():
-        sys.exit(f"No contact face is seen from {view}.")
+        raise Error(f"no contact face is seen from {view}", path, "choose another --view")
     faces = part_of(faces, on_side)
     places = points_of(faces)
     shown = vtk_to_numpy(faces.GetPointData().GetArray("colour"))
@@ -262,6 +266,7 @@ def draw(path, picture, field, view, title):
     save(window, overlay, picture)
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("contact", metavar="CONTACT.vtu", type=pathlib.Path)
@@ -271,8 +276,8 @@ def main():
     parser.add_argument("--title", help="(default: field and side)")
     arguments = parser.parse_args()
     if not arguments.contact.is_file():
-        sys.exit(f"There is no file {arguments.contact}.")
-    ensure_display()
+        raise Error(f"there is no file {arguments.contact}", "CONTACT.vtu", "name a file of results")
+    ensure_display("pictures")
     picture = arguments.output or arguments.contact.with_suffix(".png")
     draw(arguments.contact, picture, arguments.field, arguments.view, arguments.title)
     print(picture)

@@ -15,8 +15,12 @@ import sys
 
 import numpy as np
 
-from pictures import (INK, RED_BLUE, TWILIGHT, YELLOW_BLUE, add_array, colour_bar, colour_table, ensure_display, line_actor,
-                      new_window, nice_range, read, save, sharp_edges, surface_of, text_actor, values_of)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from pictures import (INK, RED_BLUE, TWILIGHT, YELLOW_BLUE, add_array, colour_bar, colour_table, line_actor, new_window, nice_range,
+                      read, save, sharp_edges, surface_of, text_actor, values_of)
+
+from squeal.command_line import ensure_display, exit_on_error
+from squeal.errors import Error
 
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -299,6 +303,7 @@ def draw_several(modes, picture, view, width):
     save(window, overlay, picture, width)
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("modes", metavar="MODE", type=pathlib.Path, nargs="+")
@@ -315,7 +320,7 @@ def main():
     arguments = parser.parse_args()
     for path in arguments.modes:
         if not path.is_file():
-            sys.exit(f"There is no file {path}.")
+            raise Error(f"there is no file {path}", "MODE", "name a file of results")
     if arguments.title and len(arguments.modes) > 1:
         parser.error("--title is of a single mode")
     if arguments.width is not None and arguments.width < 1:
@@ -324,7 +329,7 @@ def main():
         scale = None if arguments.scale == "auto" else float(arguments.scale)
     except ValueError:
         parser.error(f"--scale takes a number or auto, not {arguments.scale}")
-    ensure_display()
+    ensure_display("pictures")
     picture = arguments.output or arguments.modes[0].with_suffix(".png")
     modes = [Mode(path, arguments.field, scale, arguments.bodies) for path in arguments.modes]
     if len(modes) == 1:

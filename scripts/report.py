@@ -13,27 +13,10 @@ import argparse
 import pathlib
 import sys
 
-from plot_results import enlist, replace
-from plotting.results import Results, ResultsError
-from reporting import page
-
-NAME = "report.html"
-
-
-def write(folder, output):
-    """Writes the report; returns its file and remarks."""
-    from reporting import content
-
-    results = Results(folder)
-    text = page.page(content.content(results)).encode()
-    place = pathlib.Path(output) if output else results.folder / NAME
-    try:
-        remarks = [] if output else enlist(results, {NAME: text})
-        place.parent.mkdir(parents=True, exist_ok=True)
-        replace(place, text)
-    except OSError as problem:
-        raise ResultsError(f"the report cannot be written: {problem}", f"file {place}", "check permissions and free space, or give -o FILE") from problem
-    return place, remarks
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal.errors import Error
+from squeal.reporting.page import MissingLibraries
+from squeal.results import Results
 
 
 def main(words=None):
@@ -42,12 +25,12 @@ def main(words=None):
     parser.add_argument("-o", "--output", metavar="FILE.html", help="(default: RESULTS/report.html)")
     arguments = parser.parse_args(words)
     try:
-        place, remarks = write(arguments.results, arguments.output)
-    except ResultsError as error:
-        print(f"error: {error}", file=sys.stderr)
+        place, remarks = Results(arguments.results).report(arguments.output)
+    except MissingLibraries as missing:
+        print(f"No report: install {' '.join(missing.packages)} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
         return 1
-    except page.MissingLibraries as missing:
-        print(f"No report: install {' '.join(missing.args[0])} (or call scripts/setup.sh), then: scripts/report.py {arguments.results}", file=sys.stderr)
+    except Error as error:
+        print(f"error: {error}", file=sys.stderr)
         return 1
     except ModuleNotFoundError as missing:
         if missing.name != "numpy":

@@ -6,7 +6,7 @@
 #   scripts/setup.sh browser      also the browser in which scripts/test.sh looks at pages of scripts/report.py
 #   scripts/setup.sh pictures     also what scripts/render_*.py need
 #   scripts/setup.sh paraview     also ParaView for scripts/paraview_modes.py
-#   scripts/setup.sh import       also what scripts/import_mesh.py needs
+#   scripts/setup.sh import       also what scripts/import_mesh.py and the fields of the Python module need
 #   scripts/setup.sh peers        also SLEPc for scripts/check_eigenvalues.py
 #
 # When nothing is missing, nothing is downloaded and no privilege is needed.
@@ -20,13 +20,13 @@ squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 packages=(g++ cmake ninja-build git
           libdeal.ii-dev libsuitesparse-dev libmumps-dev libparpack2-dev libgmsh-dev
           libopenblas-dev liblapacke-dev libeigen3-dev libboost-serialization-dev nlohmann-json3-dev libmuparser-dev libnlopt-cxx-dev zlib1g-dev libseccomp-dev
-          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib
+          libgtest-dev openmpi-bin python3 python3-numpy python3-scipy python3-matplotlib python3-pandas python3-yaml
           python3-plotly libjs-three libjs-jquery libjs-jquery-datatables)
 packages_browser=(chromium chromium-driver python3-selenium)
 packages_pictures=(python3-vtk9 libgl1-mesa-dri xvfb xauth)
 # Debian has python3-paraview in the place of python3-vtk9, whose modules it brings as well.
 packages_paraview=(paraview python3-paraview libgl1-mesa-dri xvfb xauth)
-packages_import=(python3-meshio python3-h5py python3-netcdf4 python3-yaml)
+packages_import=(python3-meshio python3-h5py python3-netcdf4)
 packages_peers=(python3-petsc4py python3-slepc4py)
 
 complain() { printf '%s\n' "$*" >&2; }

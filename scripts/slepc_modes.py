@@ -16,7 +16,6 @@ multiple eigenvalues; the number found is printed. Needs Debian's python3-slepc4
 """
 
 import argparse
-import csv
 import importlib.util
 import json
 import math
@@ -32,7 +31,11 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 import scipy.optimize
 
-import exported_matrices
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "python"))
+from squeal import exported_matrices, quadratic
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
+from squeal.results import Table
 
 FORMULATIONS = ("linear", "toar", "q-arnoldi", "linearised")
 
@@ -40,6 +43,10 @@ FORMULATIONS = ("linear", "toar", "q-arnoldi", "linearised")
 def available():
     """Whether SLEPc is installed."""
     return importlib.util.find_spec("petsc4py") is not None and importlib.util.find_spec("slepc4py") is not None
+
+
+def missing():
+    return Error("SLEPc is missing", "slepc4py", "apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
 
 
 def is_undamped(problem):
@@ -67,7 +74,7 @@ class Solution:
         from petsc4py import PETSc
 
         if np.issubdtype(PETSc.ScalarType, np.complexfloating):
-            sys.exit("The PETSc in use is one for complex scalars; choose the one for real scalars.")
+            raise Error("PETSc has complex scalars", "petsc4py", "choose the PETSc for real scalars")
         self.formulation = formulation or applicable(problem)[0]
         self.shift = shift
         wall, cpu = time.perf_counter(), time.process_time()
@@ -186,14 +193,12 @@ def solve_band(problem, band, n_modes, shift=0.0):
                 return solution.eigenvalues[listed], solution.vectors[:, listed]
             n_eigenvalues = n_eigenvalues * 3 // 2
 
-    return exported_matrices.collect(solve)
+    return quadratic.collect(solve)
 
 
 def largest_difference(eigenvalues, table):
     """Largest relative difference to the eigenvalues in a table of modes, matched one to one; None if the numbers differ."""
-    with open(table, newline="", encoding="utf-8") as file:
-        rows = [row for row in csv.DictReader(line for line in file if not line.startswith("#"))]
-    expected = np.array([complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"])) for row in rows])
+    expected = np.array(Table(table).eigenvalues(), dtype=complex)
     if len(expected) != len(eigenvalues):
         return None
     differences = abs(expected[:, None] - eigenvalues[None, :])
@@ -201,6 +206,7 @@ def largest_difference(eigenvalues, table):
     return float((differences[pairs] / abs(expected[pairs[0]])).max(initial=0))
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("directory", metavar="DIRECTORY", help="output of a run with Output/Write matrices = true")
@@ -215,7 +221,7 @@ def main():
     parser.epilog = "Other options are handed to PETSc, for example -st_mat_mumps_icntl_7 5 or -log_view."
     arguments, options = parser.parse_known_args()
     if not available():
-        sys.exit("SLEPc is missing: apt-get install python3-petsc4py python3-slepc4py (or scripts/setup.sh peers)")
+        raise missing()
     import slepc4py
     slepc4py.init([sys.argv[0], *options])
     from petsc4py import PETSc
@@ -230,7 +236,7 @@ def main():
     print(f"coupling them: {time.perf_counter() - start:.2f} s (not counted); {problem.size} dofs, "
           f"{problem.stiffness.nnz} entries in the stiffness")
     if arguments.formulation == "linear" and not is_undamped(problem):
-        sys.exit("With damping the problem is not linear in lambda^2; choose another --formulation.")
+        raise Error("with damping the problem is not linear in lambda^2", "--formulation", "choose another one")
     formulation = arguments.formulation or applicable(problem)[0]
 
     records = []
@@ -239,7 +245,7 @@ def main():
             solution = Solution(problem, n_wanted(formulation, arguments.modes), formulation, tolerance=arguments.tolerance,
                                 basis=arguments.basis, seed=run + 1)
         except PETSc.Error as error:
-            sys.exit(f"SLEPc failed; another --basis may help:\n{error}")
+            raise Error(f"SLEPc failed: {error}", arguments.directory, "give another --basis") from error
         listed = exported_matrices.in_band(solution.eigenvalues, band)
         errors = problem.backward_errors(solution.eigenvalues[listed], solution.vectors[:, listed])
         records.append({"formulation": formulation, "CPU time [s]": solution.cpu, "wall time [s]": solution.wall,

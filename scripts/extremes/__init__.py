@@ -6,3 +6,8 @@
     scaling.py   the small scene in other units of length
     page.py      the table of doc/extremes.md
 """
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))

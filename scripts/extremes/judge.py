@@ -1,24 +1,19 @@
 """Runs a case and says whether the program is right, refuses with a reason, or is wrong."""
 
-import csv
 import dataclasses
 import json
 import math
-import os
-import pathlib
 import re
 import resource
 import subprocess
 
 import numpy as np
 
-import exported_matrices
-import parameter_file
 from extremes import oracle, scaling
 from extremes.cases import BASE, RIGHT
-
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal")).resolve()
+from squeal import exported_matrices, parameter_file
+from squeal.program import find_program, words_of
+from squeal.results import Table, read_table
 
 # Largest relative difference of an eigenvalue from the oracle's
 TOLERANCE = 1e-6
@@ -63,7 +58,7 @@ class Wrong(Exception):
 def call(*arguments, folder):
     """The finished process; one that does not end, crashes, or exits with other than 0 or 1, is wrong."""
     try:
-        process = subprocess.run([str(SQUEAL), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
+        process = subprocess.run([find_program(), *arguments], cwd=folder, text=True, capture_output=True, timeout=TIME_LIMIT, check=False,
                                  stdin=subprocess.DEVNULL, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (CPU_LIMIT, CPU_LIMIT)))
     except subprocess.TimeoutExpired:
         raise Wrong(f"no end within {TIME_LIMIT} s") from None
@@ -73,15 +68,9 @@ def call(*arguments, folder):
     return process
 
 
-def read_table(path):
-    with open(path, newline="", encoding="utf-8") as file:
-        return list(csv.DictReader(file))
-
-
 def eigenvalues_of(folder):
     """lambda of the complex modes and the real eigenvalues in the tables."""
-    modes = [complex(float(row["growth rate [1/s]"]), 2 * math.pi * float(row["frequency [Hz]"]))
-             for row in read_table(folder / "complex_modes.csv")]
+    modes = Table(folder / "complex_modes.csv").eigenvalues()
     path = folder / "real_eigenvalues.csv"
     real = [float(row["growth rate [1/s]"]) for row in read_table(path)] if path.exists() else []
     return np.array(modes, dtype=complex), np.array(real, dtype=float)
@@ -101,8 +90,7 @@ def judge(case, folder):
     row = Row(case.group, case.value)
     (folder / "scene.prm").write_text(BASE, encoding="utf-8")
     try:
-        settings = [word for setting in case.settings for word in ("--set", setting)]
-        process = call("scene.prm", "--output", "run", "--set", "Output/Write matrices=true", *settings, folder=folder)
+        process = call("scene.prm", "--output", "run", *words_of(["Output/Write matrices=true", *case.settings]), folder=folder)
         if process.returncode == 1:
             judge_refusal(case, process, folder, row)
         else:
@@ -186,7 +174,7 @@ def judge_results(case, process, folder, row):
 
 def compare_units(case, folder, row):
     """Holds the tables of a scene against those of the same scene in metres."""
-    process = call("scene.prm", "--output", "metres", *(word for setting in case.unit for word in ("--set", setting)), folder=folder)
+    process = call("scene.prm", "--output", "metres", *words_of(case.unit), folder=folder)
     if process.returncode != 0:
         raise Wrong(f"refused in metres: {process.stderr}")
     largest = max(scaling.difference(read_table(folder / "metres" / name), read_table(folder / "run" / name), case.scale)
@@ -221,7 +209,7 @@ def argument_count(case, folder, modes, band):
     mu = parameters["Operation/Friction coefficient"]
     settings = [*case.settings, "Study=sweep", f"Sweep/First friction coefficient={mu}", f"Sweep/Last friction coefficient={mu}",
                 "Sweep/Number of friction coefficients=1", f"Sweep/Count modes at={mu}", "Sweep/Compare dissipation=false"]
-    process = call("scene.prm", "--output", "count", *(word for setting in settings for word in ("--set", setting)), folder=folder)
+    process = call("scene.prm", "--output", "count", *words_of(settings), folder=folder)
     if process.returncode != 0:
         return f", argument refused ({process.stderr.strip().splitlines()[0][7:]})"
     check_numbers(folder / "count")

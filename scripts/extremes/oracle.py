@@ -22,7 +22,7 @@ import scipy.sparse as sparse
 import scipy.sparse.linalg
 
 import check_eigenvalues
-import exported_matrices
+from squeal import exported_matrices
 
 LARGEST_DENSE = 1600
 # Eigenvalues closer than this part of their modulus are refined together

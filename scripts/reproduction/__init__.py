@@ -3,3 +3,8 @@
 A page has a module of its name here. An entry of it is a function with the decorator `entry(sentence)` that is given the runs
 (runs.Runs) and yields a Number for each number of the sentence. A new number in a page is a new entry.
 """
+
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))

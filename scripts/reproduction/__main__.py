@@ -10,6 +10,8 @@ import textwrap
 from reproduction import pages
 from reproduction.numbers import ENTRIES
 from reproduction.runs import SOURCE, Runs
+from squeal.command_line import exit_on_error
+from squeal.errors import Error
 
 
 def reproduce(runs, page, chosen):
@@ -23,6 +25,7 @@ def reproduce(runs, page, chosen):
     return n_differing
 
 
+@exit_on_error()
 def main():
     parser = argparse.ArgumentParser(prog="scripts/reproduce.sh")
     parser.add_argument("pages", nargs="*", metavar="PAGE")
@@ -34,7 +37,7 @@ def main():
         importlib.import_module(f"reproduction.pages.{module.name}")
     unknown = [page for page in arguments.pages if page not in ENTRIES]
     if unknown:
-        sys.exit(f"No numbers are known of {', '.join(unknown)}; pages are {', '.join(ENTRIES)}.")
+        raise Error(f"no numbers are known of {', '.join(unknown)}", "PAGE", f"name some of {', '.join(ENTRIES)}")
 
     n_differing = 0
     for page in arguments.pages or ENTRIES:

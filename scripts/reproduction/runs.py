@@ -1,14 +1,11 @@
 """Runs of squeal that entries share, kept in results/reproduce/."""
 
-import csv
 import json
-import math
-import os
 import pathlib
 import subprocess
 
-SOURCE = pathlib.Path(__file__).resolve().parents[2]
-SQUEAL = pathlib.Path(os.environ.get("SQUEAL", SOURCE / "build" / "release" / "squeal"))
+from squeal.program import SOURCE, error_of, find_program, words_of
+from squeal.results import Table, read_table
 
 
 class Results:
@@ -20,9 +17,7 @@ class Results:
 
     def table(self, name):
         """Rows of a table as dictionaries; numbers are numbers, empty cells None."""
-        with open(self.folder / name, newline="", encoding="utf-8") as file:
-            return [{column: value_of(cell) for column, cell in row.items()}
-                    for row in csv.DictReader(line for line in file if not line.startswith("#"))]
+        return [{column: value_of(cell) for column, cell in row.items()} for row in read_table(self.folder / name)]
 
     def modes(self, label=None):
         """Complex modes, all or those whose label begins so."""
@@ -30,7 +25,7 @@ class Results:
 
     def eigenvalues(self):
         """lambda of every complex mode."""
-        return [complex(mode["growth rate [1/s]"], 2 * math.pi * mode["frequency [Hz]"]) for mode in self.modes()]
+        return Table(self.folder / "complex_modes.csv").eigenvalues()
 
     def leading(self, label):
         """The mode of that label that grows most."""
@@ -49,13 +44,12 @@ class Runs:
     def __call__(self, name, parameter_file, *settings, environment=None):
         """Results of prm/PARAMETER_FILE with settings "Section/Name=value", in the folder NAME."""
         folder = self.folder / name
-        command = [str(SQUEAL), f"prm/{parameter_file}", "--output", str(folder)]
-        command += [word for setting in settings for word in ("--set", setting)]
+        command = [str(find_program()), f"prm/{parameter_file}", "--output", str(folder), *words_of(settings)]
         if not self.is_done(folder, command):
             print(f"    running {' '.join(command[1:])}", flush=True)
             process = subprocess.run(command, cwd=SOURCE, env=environment, text=True, capture_output=True, check=False)
             if process.returncode != 0:
-                raise RuntimeError(f"squeal failed:\n{process.stdout}{process.stderr}")
+                raise error_of(process, parameter_file)
             (folder / "command.txt").write_text(" ".join(command) + "\n", encoding="utf-8")
         return Results(folder)
 
@@ -63,7 +57,7 @@ class Runs:
     def is_done(folder, command):
         marker = folder / "command.txt"
         return (marker.is_file() and marker.read_text(encoding="utf-8").strip() == " ".join(command)
-                and marker.stat().st_mtime > SQUEAL.stat().st_mtime)
+                and marker.stat().st_mtime > pathlib.Path(command[0]).stat().st_mtime)
 
 
 def value_of(cell):

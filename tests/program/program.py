@@ -16,7 +16,7 @@ import unittest
 EXECUTABLE = os.path.abspath(os.environ["SQUEAL"])
 MPIRUN = os.environ.get("MPIRUN", "mpirun")
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(SOURCE / "scripts"))
+sys.path[:0] = [str(SOURCE / "scripts"), str(SOURCE / "python")]
 
 # Two pins on each side with seven nodes each, large elements: less than a second, 38 modes, unstable ones of disc and pins.
 SCENE = """

@@ -17,7 +17,7 @@ try:
     import numpy as np
 
     from extremes import oracle
-    import exported_matrices
+    from squeal import exported_matrices
 except ImportError:
     raise unittest.SkipTest("NumPy and SciPy are missing") from None
 

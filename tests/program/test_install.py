@@ -1,8 +1,10 @@
 """The installed program, moved to another place."""
 
+import os
 import pathlib
 import shutil
 import subprocess
+import sys
 
 from program import EXECUTABLE, ProgramTest, eigenvalues
 
@@ -37,6 +39,18 @@ class Installed(ProgramTest):
         process = self.squeal("scene.prm", "--dry-run", "--set", "Geometry/File=disc_pad.geo")
         self.assertEqual(process.returncode, 1)
         self.assertIn(str(geometries), process.stderr)
+
+    def test_python_module(self):
+        """Finds the program next to it; the commands find the module."""
+        share = self.prefix / "share" / "squeal"
+        code = 'import squeal; results = squeal.run("scene.prm", output="by_module"); print(len(results.table("complex_modes")), squeal.__file__)'
+        environment = {name: value for name, value in os.environ.items() if name != "SQUEAL"}
+        process = subprocess.run([sys.executable, "-B", "-c", code], cwd=self.folder, text=True, capture_output=True,
+                                 env={**environment, "PYTHONPATH": str(share / "python")})
+        self.assertEqual(process.returncode, 0, process.stderr)
+        self.assertEqual(process.stdout.split(), [str(len(eigenvalues(self.folder / "by_module"))), str(share / "python" / "squeal" / "__init__.py")])
+        process = subprocess.run([share / "scripts" / "plot_results.py", self.folder / "none"], text=True, capture_output=True)
+        self.assertIn("there is no folder", process.stderr)
 
     def test_takes_its_own_mesher(self):
         """Gmsh runs in the installed executable."""

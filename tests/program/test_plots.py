@@ -12,17 +12,16 @@ import unittest
 from program import EXECUTABLE, SOURCE, ProgramTest, read_table
 
 SCRIPTS = SOURCE / "scripts"
-sys.path.insert(0, str(SCRIPTS))
 
 try:
     import matplotlib.image
 
-    import plot_results
-    from plotting.results import Results
+    from squeal.plotting.draw import figures
+    from squeal.results import Results
 except ModuleNotFoundError as missing:
     if missing.name not in ("matplotlib", "numpy"):
         raise
-    plot_results = None
+    figures = None
 
 
 def draw(folder, *options, environment=None):
@@ -31,7 +30,7 @@ def draw(folder, *options, environment=None):
                           timeout=120, env={**os.environ, **(environment or {})})
 
 
-@unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
+@unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Studies(ProgramTest):
     """The pictures of every study; what they show of tables is asserted of small ones by tests/scripts/test_plot_results.py."""
 
@@ -51,16 +50,16 @@ class Studies(ProgramTest):
         for name, (overrides, expected) in self.STUDIES.items():
             with self.subTest(name):
                 results = self.run_scene(name, *overrides)
-                figures = plot_results.figures(Results(results))
-                self.assertEqual({re.sub("_[0-9]+$", "", figure) for figure in figures}, expected)
+                drawn = figures(Results(results))
+                self.assertEqual({re.sub("_[0-9]+$", "", figure) for figure in drawn}, expected)
                 process = draw(results, "--format", "png", "--output", self.folder / "pictures" / name)
                 self.assertEqual(process.returncode, 0, process.stderr)
-                self.assertEqual({path.stem for path in (self.folder / "pictures" / name).iterdir()}, set(figures))
-                for figure in figures:
+                self.assertEqual({path.stem for path in (self.folder / "pictures" / name).iterdir()}, set(drawn))
+                for figure in drawn:
                     self.assert_holds_something(self.folder / "pictures" / name / f"{figure}.png")
-                    self.assert_says_what_it_shows(figure, figures[figure])
+                    self.assert_says_what_it_shows(figure, drawn[figure])
                 if name in self.WITH_NAMES_ABOVE:
-                    getattr(self, f"assert_bars_of_{name}")(results, figures[name].axes)
+                    getattr(self, f"assert_bars_of_{name}")(results, drawn[name].axes)
 
     def assert_holds_something(self, picture):
         """And nothing is cut off at its rim."""
@@ -106,7 +105,7 @@ class Studies(ProgramTest):
             self.assertAlmostEqual(bars[place], expected.get(place, 0.0), places=9)
 
 
-@unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
+@unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Pictures(ProgramTest):
     """What becomes of pictures when they are drawn again and when the run is repeated."""
 
@@ -156,7 +155,7 @@ class Pictures(ProgramTest):
         self.assertEqual(sorted(path.name for path in self.picture.parent.iterdir()), ["complex_plane.svg", kept])
 
 
-@unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
+@unittest.skipIf(figures is None, "python3-matplotlib is not installed")
 class Refusals(ProgramTest):
     def refused(self, folder, *words):
         process = draw(folder)
@@ -184,7 +183,8 @@ class WithoutMatplotlib(ProgramTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.checkout = cls.folder / "checkout"
-        shutil.copytree(SCRIPTS, cls.checkout / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("scripts", "python"):
+            shutil.copytree(SOURCE / name, cls.checkout / name, ignore=shutil.ignore_patterns("__pycache__"))
         (cls.checkout / "scripts" / "setup.sh").write_text(
             'squeal_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)\ncomplain() { printf \'%s\\n\' "$*" >&2; }\nsetup() { :; }\n',
             encoding="utf-8")
@@ -213,7 +213,7 @@ class WithoutMatplotlib(ProgramTest):
             self.assertFalse((results / "plots").exists())
             shutil.rmtree(results)
 
-    @unittest.skipIf(plot_results is None, "python3-matplotlib is not installed")
+    @unittest.skipIf(figures is None, "python3-matplotlib is not installed")
     def test_plots_are_drawn(self):
         self.run_script()
         picture = self.checkout / "results" / "scene" / "plots" / "complex_plane.svg"

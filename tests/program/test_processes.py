@@ -10,7 +10,7 @@ from program import ProgramTest, eigenvalues, read_table, real_frequencies
 from test_sliding import LOAD, SINGLE, STEADY, ContactFaces, SlidingTest, pins
 from test_solvers import DISSIPATION, RESIDUAL_ITERATION
 from test_sweep import DEFAULT_ACCURACY, MAP, SweepTest, by_mu, eigenvalue, grid_of, modes_by_mu, thresholds
-from vtu_file import VtuFile
+from squeal.vtu_file import VtuFile
 
 UNSTABLE_SHAPES = "Output/Mode shapes=unstable"
 COMPONENT_SHAPES = "Output/Component mode shapes=true"

@@ -15,9 +15,8 @@ import unittest
 from program import EXECUTABLE, ProgramTest, read_table, settings
 
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "report.py"
-sys.path.insert(0, str(SCRIPT.parent))
 
-from reporting.page import missing_packages  # noqa: E402
+from squeal.reporting.page import missing_packages  # noqa: E402
 
 LARGEST_FILE = 15e6  # [byte]
 RATE, LARGEST, ONSET, CHANGE = "divergence rate [%]", "largest divergence rate [%]", "mu of 0.01 % [-]", "divergence rate per 1 % [percentage points]"

@@ -11,8 +11,8 @@ import unittest
 import xml.etree.ElementTree
 
 from program import COMPLEX_COLUMNS, EXECUTABLE, SAME, ProgramTest, distance, eigenvalues, header, numbers, read_table, real_frequencies
-from parameter_file import read_parameters
-from vtu_file import VtuFile, arrays
+from squeal.parameter_file import read_parameters
+from squeal.vtu_file import VtuFile, arrays
 
 # Of displacements in files [-]
 STEP = 1 / 65536

@@ -7,7 +7,7 @@ import unittest
 
 from hex_mesh import PARAMETERS, HexMesh, angles
 from program import ProgramTest, eigenvalues, numbers, read_table, real_frequencies
-from vtu_file import VtuFile
+from squeal.vtu_file import VtuFile
 
 STEADY = "Steady sliding/Contact state=steady sliding"
 CONSISTENT = "Operation/Radial dissipation=consistent"

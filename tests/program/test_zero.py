@@ -17,7 +17,7 @@ except ImportError:
     raise unittest.SkipTest("NumPy is missing") from None
 
 sys.path.insert(0, str(SOURCE / "scripts"))
-import exported_matrices
+from squeal import exported_matrices
 
 STIFFNESS = 1e4  # of a very soft mount [N/m³]
 BANDS = (1000, 5000)

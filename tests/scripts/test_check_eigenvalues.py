@@ -10,6 +10,10 @@ import unittest
 
 import two_blocks
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
+import squeal
+from squeal import exported_matrices
+
 SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "scripts" / "check_eigenvalues.py"
 
 
@@ -49,6 +53,19 @@ class CheckEigenvalues(unittest.TestCase):
         self.assert_status(0, r"SciPy: \d\d modes")
         growth_rates = [float(value) for value in re.findall(r"^mode \d+ +\S+ +(\S+)", check(self.run_directory).stdout, re.MULTILINE)]
         self.assertGreater(max(growth_rates), 0.5)
+
+    def test_system(self):
+        """Half of the stiffness has a coefficient, whose value the command line gives."""
+        problem = exported_matrices.couple(exported_matrices.read_matrices(self.run_directory), two_blocks.FRICTION_COEFFICIENT)
+        shutil.rmtree(self.run_directory / "matrices")
+        system = squeal.System({"part": squeal.Parameter(0.3, 0, 1)}, [
+            squeal.Term("M", 2, matrix=problem.mass), squeal.Term("C", 1, matrix=problem.damping),
+            squeal.Term("K", 0, "0.5 + part", problem.stiffness)])
+        system.write(self.run_directory / "system")
+        arguments = ("--system", str(self.run_directory / "system"), "--parameter")
+        self.assert_status(0, r"SciPy: \d\d modes", *arguments, "part=0.5")
+        self.assert_status(1, "too much", *arguments, "part=0.4")
+        self.assert_status(1, "no parameter `parts`", *arguments, "parts=0.4")
 
     def test_refuses_a_wrong_eigenvalue(self):
         self.change_a_mode()

@@ -1,4 +1,4 @@
-"""Tests of scripts/plotting on small tables, where what has to be drawn is known; skipped where matplotlib is missing."""
+"""Tests of squeal.plotting on small tables, where what has to be drawn is known; skipped where matplotlib is missing."""
 
 import math
 import pathlib
@@ -6,12 +6,12 @@ import sys
 import tempfile
 import unittest
 
-SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "scripts"
-sys.path.insert(0, str(SCRIPTS))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "python"))
 
 try:
-    from plotting import branches, charts, complex_plane, reduction, stability_map, style
-    from plotting.results import Results, ResultsError, Table
+    from squeal.plotting import branches, charts, complex_plane, reduction, stability_map, style
+    from squeal.errors import Error
+    from squeal.results import Results, Table
 except ModuleNotFoundError as missing:
     if missing.name not in ("matplotlib", "numpy"):
         raise
@@ -236,7 +236,7 @@ class Reduction(PlotTest):
 
 class Refusals(PlotTest):
     def refused(self, *words):
-        with self.assertRaises(ResultsError) as caught:
+        with self.assertRaises(Error) as caught:
             self.charts()
         for word in words:
             self.assertIn(word, str(caught.exception))

@@ -10,8 +10,8 @@ import two_blocks
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 
-import exported_matrices
-import slepc_modes
+import slepc_modes  # and where the module is
+from squeal import exported_matrices
 
 BAND = 20000.0
 

@@ -3,7 +3,7 @@
 import numpy as np
 import scipy.linalg
 
-import exported_matrices
+from squeal import exported_matrices
 from reproduction.numbers import Number, entry
 from reproduction.sliding_layer import Layer
 

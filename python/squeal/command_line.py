@@ -1,0 +1,38 @@
+"""What scripts share: how they read their command line and how they end."""
+
+import argparse
+import contextlib
+import os
+import shutil
+import sys
+
+from squeal.errors import Error
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser whose errors look like all others."""
+
+    def error(self, message):
+        raise Error(message, "command line", "see --help")
+
+
+@contextlib.contextmanager
+def exit_on_error():
+    """Turns an error into a message and the exit status 1."""
+    try:
+        yield
+    except Error as error:
+        sys.exit(f"error: {error}")
+    except OSError as error:
+        sys.exit(f"error: {error.strerror}\n  where:  {error.filename}\n  change: check the file and its folder, and who may read and write there")
+
+
+def ensure_display(packages, command=(sys.executable,), screen="1280x1024x24"):
+    """Without a screen, starts the script again under a virtual one; for libraries that draw through X."""
+    if os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return
+    if os.environ.get("SQUEAL_RENDER_UNDER_XVFB") or not shutil.which("xvfb-run") or not shutil.which("xauth"):
+        raise Error("there is no X display, and xvfb-run is missing", "environment variable DISPLAY",
+                    f"apt-get install xvfb xauth (or scripts/setup.sh {packages})")
+    os.environ["SQUEAL_RENDER_UNDER_XVFB"] = "1"
+    os.execvp("xvfb-run", ["xvfb-run", "-a", "-s", f"-screen 0 {screen}", *command, *sys.argv])

@@ -1,0 +1,12 @@
+"""The error of the module and of the scripts."""
+
+
+class Error(Exception):
+    """What is wrong, where, and what to change."""
+
+    def __init__(self, what, where, change):
+        super().__init__(what, where, change)
+        self.what, self.where, self.change = what, where, change
+
+    def __str__(self):
+        return f"{self.what}\n  where:  {self.where}\n  change: {self.change}"

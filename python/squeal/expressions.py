@@ -1,0 +1,236 @@
+"""Coefficients: expressions of muParser in named parameters.
+
+Operators are + - * / ^, functions sin, cos, tan, exp, log and ln (natural), sqrt and abs; _pi is pi.
+"""
+
+import ast
+import math
+import operator
+import re
+
+from squeal.errors import Error
+
+FUNCTIONS = {"sin": math.sin, "cos": math.cos, "tan": math.tan, "exp": math.exp, "log": math.log, "ln": math.log, "sqrt": math.sqrt, "abs": abs}
+OPERATORS = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv, ast.Pow: operator.pow}
+CONSTANTS = {"_pi": math.pi}
+TOKEN = re.compile(r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_]\w*)|(?P<operator>[-+*/^()]))", re.ASCII)
+NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+CHANGE = "write + - * / ^, sin, cos, tan, exp, log, sqrt, abs, _pi, numbers and names of parameters"
+# Boxes of parameters are halved this often before a denominator counts as zero somewhere in them
+HALVINGS = 40
+
+
+class Expression:
+    """An expression that has been parsed: `text`, and the `names` of parameters in it."""
+
+    def __init__(self, text, names, where):
+        """Throws Error where the text does not parse or names a parameter that is not among `names`."""
+        self.text, self.where = text, where
+        try:
+            self._tree = ast.parse(python_text(text), mode="eval").body
+            self.names = sorted(names_in(self._tree))
+        except (SyntaxError, ValueError, RecursionError, MemoryError):
+            raise Error(f"`{text}` is not an expression", where, CHANGE) from None
+        if unknown := [name for name in self.names if name not in names]:
+            raise Error(f"`{text}` names the parameter `{unknown[0]}`, which is unknown", where,
+                        f"declare it under `parameters`, or name one of: {', '.join(names) or '(none)'}")
+
+    def __call__(self, values):
+        """The value at the values of parameters, a dictionary. Throws Error where it is not a finite number."""
+        try:
+            result = evaluate(self._tree, values)
+        except ZeroDivisionError:
+            result = None
+        except (ValueError, OverflowError):
+            result = math.nan
+        if isinstance(result, float) and math.isfinite(result):
+            return result
+        place = ", ".join(f"{name} = {values[name]:.17g}" for name in self.names)
+        what = "divides by zero" if result is None else "is not a finite real number"
+        raise Error(f"`{self.text}` {what}" + (f" at {place}" if place else ""), self.where, "change the expression or the values of its parameters")
+
+    def check_range(self, ranges):
+        """Throws Error where the expression divides by zero for parameters in their ranges, a dictionary name -> (lower, upper)."""
+        for node in ast.walk(self._tree):
+            if is_division(node) and (zero := find_zero(divisor(node), {name: ranges[name] for name in self.names})) is not None:
+                place = ", ".join(f"{name} = {value:.6g}" for name, value in zero.items())
+                raise Error(f"`{self.text}` divides by zero" + (f" at {place}, inside the range" if place else ""), self.where,
+                            "change the ranges of the parameters or the expression")
+
+
+def python_text(text):
+    """The expression as Python writes it, parameters with a prefix that keeps them apart from Python's keywords."""
+    words, at = [], 0
+    while at < len(text.rstrip()):
+        match = TOKEN.match(text, at)
+        if not match:
+            raise ValueError(text)
+        at = match.end()
+        word = match[match.lastgroup]
+        words.append(repr(float(word)) if match.lastgroup == "number" else f"v_{word}" if match.lastgroup == "name" else word.replace("^", "**"))
+    return " ".join(words)
+
+
+def names_in(node):
+    """Names of the parameters in a tree. Throws ValueError where it is more than an expression may be."""
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id[2:] in FUNCTIONS and len(node.args) == 1:
+        return names_in(node.args[0])
+    if isinstance(node, ast.Name):
+        return {node.id[2:]} - CONSTANTS.keys()
+    if isinstance(node, ast.UnaryOp):
+        return names_in(node.operand)
+    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
+        return names_in(node.left) | names_in(node.right)
+    if isinstance(node, ast.Constant):
+        return set()
+    raise ValueError(node)
+
+
+def evaluate(node, values, functions=FUNCTIONS):
+    """The value of a tree, of floats or of intervals."""
+    if isinstance(node, ast.Constant):
+        return node.value
+    if isinstance(node, ast.Name):
+        return CONSTANTS.get(node.id[2:], values.get(node.id[2:]))
+    if isinstance(node, ast.UnaryOp):
+        value = evaluate(node.operand, values, functions)
+        return -value if isinstance(node.op, ast.USub) else value
+    if isinstance(node, ast.Call):
+        return functions[node.func.id[2:]](evaluate(node.args[0], values, functions))
+    return OPERATORS[type(node.op)](evaluate(node.left, values, functions), evaluate(node.right, values, functions))
+
+
+def is_division(node):
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Div, ast.Pow))
+
+
+def divisor(node):
+    """What a division divides by; a power divides by its base if its exponent is negative."""
+    return node.right if isinstance(node.op, ast.Div) else ast.IfExp(test=node.right, body=node.left, orelse=ast.Constant(1.0))
+
+
+class Interval:
+    """All numbers from `lower` to `upper`; results of operations contain all results for numbers of the operands."""
+
+    def __init__(self, lower, upper=None):
+        self.lower, self.upper = lower, lower if upper is None else upper
+
+    @classmethod
+    def of(cls, value):
+        return value if isinstance(value, cls) else cls(value)
+
+    @classmethod
+    def around(cls, values):
+        values = list(values)
+        return EVERYTHING if any(math.isnan(value) for value in values) else cls(min(values), max(values))
+
+    def __contains__(self, value):
+        return self.lower <= value <= self.upper
+
+    def __neg__(self):
+        return Interval(-self.upper, -self.lower)
+
+    def __add__(self, other):
+        other = Interval.of(other)
+        return Interval(self.lower + other.lower, self.upper + other.upper)
+
+    def __sub__(self, other):
+        return self + -Interval.of(other)
+
+    def __mul__(self, other):
+        other = Interval.of(other)
+        return Interval.around(a * b for a in (self.lower, self.upper) for b in (other.lower, other.upper))
+
+    def __truediv__(self, other):
+        other = Interval.of(other)
+        return EVERYTHING if 0 in other else Interval.around(a / b for a in (self.lower, self.upper) for b in (other.lower, other.upper))
+
+    def __pow__(self, other):
+        exponent = Interval.of(other)
+        if exponent.lower < 0:
+            return EVERYTHING if 0 in self else Interval(1.0) / self**-exponent
+        if exponent.lower == exponent.upper and exponent.lower.is_integer():
+            ends = (bounded(pow, end, exponent.lower) for end in (self.lower, self.upper))
+            return Interval.around([*ends, 0.0] if exponent.lower > 0 and 0 in self else ends)
+        if self.lower < 0:
+            return EVERYTHING
+        return Interval.around(bounded(pow, a, b) for a in (self.lower, self.upper) for b in (exponent.lower, exponent.upper))
+
+    def __radd__(self, other):
+        return self + other
+
+    def __rsub__(self, other):
+        return -self + other
+
+    def __rmul__(self, other):
+        return self * other
+
+    def __rtruediv__(self, other):
+        return Interval(other) / self
+
+    def __rpow__(self, other):
+        return Interval(other)**self
+
+    def __abs__(self):
+        ends = [abs(self.lower), abs(self.upper)]
+        return Interval(0.0 if 0 in self else min(ends), max(ends))
+
+
+EVERYTHING = Interval(-math.inf, math.inf)
+
+
+def bounded(function, *values):
+    """The value of a function, infinite where it is too large."""
+    try:
+        return function(*values)
+    except OverflowError:
+        return math.inf
+
+
+def monotonic(function, least):
+    """An increasing function of intervals, unknown for numbers up to `least`."""
+    def of(x):
+        x = Interval.of(x)
+        return EVERYTHING if x.lower <= least else Interval(*(bounded(function, end) for end in (x.lower, x.upper)))
+
+    return of
+
+
+def wave(function, top):
+    """Sine or cosine of intervals, 1 at `top`."""
+    def of(x):
+        x = Interval.of(x)
+        if not x.upper - x.lower < 2 * math.pi:
+            return Interval(-1.0, 1.0)
+        values = [function(x.lower), function(x.upper)]
+        for value, place in ((1.0, top), (-1.0, top + math.pi)):
+            if place + 2 * math.pi * math.ceil((x.lower - place) / (2 * math.pi)) in x:
+                values.append(value)
+        return Interval.around(values)
+
+    return of
+
+
+SIN, COS = wave(math.sin, math.pi / 2), wave(math.cos, 0.0)
+OF_INTERVALS = {"sin": SIN, "cos": COS, "tan": lambda x: SIN(x) / COS(x), "exp": monotonic(math.exp, -math.inf), "log": monotonic(math.log, 0.0),
+                "ln": monotonic(math.log, 0.0), "sqrt": monotonic(math.sqrt, -math.ulp(0.0)), "abs": lambda x: abs(Interval.of(x))}
+
+
+def find_zero(node, ranges):
+    """Parameters near which a tree vanishes, None where it vanishes nowhere in the ranges. Ranges are halved until an interval excludes zero."""
+    if isinstance(node, ast.IfExp):
+        exponent = Interval.of(evaluate(node.test, {name: Interval(*ends) for name, ends in ranges.items()}, OF_INTERVALS))
+        return find_zero(node.body, ranges) if exponent.lower < 0 else None
+    boxes = [(0, {name: ranges[name] for name in names_in(node)})]
+    while boxes:
+        halvings, box = boxes.pop()
+        if 0 not in Interval.of(evaluate(node, {name: Interval(*ends) for name, ends in box.items()}, OF_INTERVALS)):
+            continue
+        widths = {name: (upper - lower) / ((ranges[name][1] - ranges[name][0]) or 1.0) for name, (lower, upper) in box.items()}
+        widest = max(widths, key=widths.get, default=None)
+        if widest is None or widths[widest] == 0 or halvings == HALVINGS * len(box):
+            return {name: min(ends, key=abs) for name, ends in box.items()}
+        lower, upper = box[widest]
+        middle = 0.5 * (lower + upper)
+        boxes += [(halvings + 1, {**box, widest: half}) for half in ((middle, upper), (lower, middle))]
+    return None

@@ -1,0 +1,216 @@
+"""Reads nodes, elements, sets, surfaces and elastic materials of an Abaqus input file with its includes."""
+
+import itertools
+import re
+
+from squeal.errors import Error
+from squeal.importing.mesh_shapes import faces_of, read_text, shape_of
+
+# Keywords that make or move nodes and elements in ways that are not read
+GENERATORS = ("NGEN", "NFILL", "NCOPY", "NMAP", "ELGEN", "ELCOPY", "SYSTEM", "IMPORT", "SYMMETRIC MODEL GENERATION", "IMPERFECTION")
+WITHOUT_PARTS = "write the input file with `Do not use parts and assemblies in input files`"
+
+
+def split(line):
+    """Words between commas that stand in no quotes."""
+    words = re.split(r',(?=(?:[^"]*"[^"]*")*[^"]*$)', line) if '"' in line else line.split(",")
+    return [word.strip() for word in words]
+
+
+def axes_of(options, rows):
+    """A vector along axis 1 and one in the plane of axes 1 and 2, () of cylindrical axes about z, None of others."""
+    points, angles = [float(word or 0) for word in rows[0]], [float(word or 0) for row in rows[1:] for word in row[1:]]
+    a, b, c = ((points + [0.0] * 9)[i:i + 3] for i in (0, 3, 6))
+    if options.get("DEFINITION", "COORDINATES") == "COORDINATES" and not any(angles):
+        if options.get("SYSTEM", "RECTANGULAR") == "RECTANGULAR":
+            return tuple(x - origin for point in (a, b) for x, origin in zip(point, c))
+        if options["SYSTEM"] == "CYLINDRICAL" and not any((*a[:2], *b[:2])):
+            return ()
+    return None
+
+
+class AbaqusInput:
+    """points: label -> coordinates; elements: label -> (shape, labels of nodes); element_sets, node_sets: name -> labels;
+    surfaces: name -> [(label of an element, number of its face from 0)]; materials: label of an element -> (constants, rho, axes), as they stand
+    there, or None if that is not all; constants: E, nu, or nine engineering constants; axes: of axes_of(); dropped: what was not read. Names are in capitals, as Abaqus takes them."""
+
+    def __init__(self, path):
+        self.points, self.elements, self.element_sets, self.node_sets = {}, {}, {}, {}
+        self.surfaces, self.materials, self.dropped = {}, {}, []
+        self._path, self._sections, self._properties, self._material = path, [], {}, None
+        self._axes = {None: (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)}
+        self._parts, self._instance, self._of_part = 0, "", set()
+        self._read()
+        for label, (_, nodes) in self.elements.items():
+            for node in nodes:
+                if node not in self.points:
+                    raise self._refused(f"element {label} has node {node}, which is not in the file", "write all nodes out")
+        for sets, known in ((self.element_sets, self.elements), (self.node_sets, self.points)):
+            sets.update({name: self._labels(sets, known, name) for name in sets})
+        faces = {name: [face for entry in entries for face in self._faces(name, *entry)] for name, entries in self.surfaces.items()}
+        self.surfaces = {name: members for name, members in faces.items() if None not in members}
+        self.dropped += [f"surface {name}, which has edges, or faces of elements that are not read" for name in faces if name not in self.surfaces]
+        for elements, material, orientation in self._sections:
+            properties = self._properties.get(material, {})
+            is_isotropic = len(properties.get("constants", ())) == 2
+            axes = None if is_isotropic else self._axes.get(orientation)
+            value = (properties["constants"], properties["rho"], axes) if len(properties) == 2 and (is_isotropic or axes is not None) else None
+            for label in self._known(self.element_sets, elements, "*SOLID SECTION"):
+                self.materials[label] = value if self.materials.get(label, value) == value else None
+
+    def _refused(self, what, change, where=None):
+        return Error(what, where or self._path, change)
+
+    def _lines(self, path, above=()):
+        """(where, line) of a file and of those that it includes, without comments; a keyword line that ends in a comma goes on in the next."""
+        if path in above or not path.is_file():
+            what = "includes itself" if path in above else "is not there"
+            raise self._refused(f"{path}, which is to be included, {what}", "put it beside the file")
+        begun = ""
+        for number, line in enumerate(read_text(path).split("\n"), 1):
+            line = line.strip()
+            if line.startswith("**") or not line:
+                continue
+            if begun and line.startswith("*"):
+                raise self._refused("the keyword line before ends in a comma", "take the comma away", f"{path}, line {number}")
+            begun += line
+            if line.endswith(",") and begun.startswith("*"):
+                continue
+            line, begun = begun, ""
+            if re.match(r"\*\s*INCLUDE\b", line, re.IGNORECASE):
+                name = line.partition("=")[2].strip().strip('"')
+                yield from self._lines(self._path.parent / name, (*above, path))
+            else:
+                yield f"{path}, line {number}", line
+
+    def _read(self):
+        keyword, options, rows, where = "", {}, [], ""
+        for place, line in itertools.chain(self._lines(self._path), [("", "*END")]):
+            if not line.startswith("*"):
+                rows.append([word.strip('"') for word in split(line)])
+                continue
+            try:
+                self._take(keyword, options, rows)
+            except (ValueError, IndexError, KeyError, TypeError) as error:
+                raise self._refused(f"*{keyword} cannot be read ({error})", "check this line and its data lines", where) from error
+            where, (keyword, *words) = place, split(line[1:])
+            keyword = " ".join(keyword.upper().split())
+            options = {key.strip().upper(): value.strip().strip('"') for key, _, value in (word.partition("=") for word in words)}
+            rows = [split(data) for _, data in self._lines(self._path.parent / options["INPUT"])] if "INPUT" in options else []
+            options = {key: value.upper() for key, value in options.items()}
+
+    def _take(self, keyword, options, rows):
+        if keyword in GENERATORS or keyword == "NODE" and options.get("SYSTEM", "R") != "R":
+            raise self._refused(f"*{keyword} generates or moves nodes or elements", "let the pre-processor write them out")
+        if keyword in ("PART", "INSTANCE"):
+            self._parts += keyword == "PART"
+            if self._parts > 1 or keyword == "INSTANCE" and (self._instance or any(float(word) for row in rows for word in row if word)):
+                raise self._refused("there are several parts or instances, or one that is moved", WITHOUT_PARTS)
+            if keyword == "INSTANCE":
+                self._instance = options["NAME"] + "."
+        elif keyword == "END INSTANCE":
+            self._of_part = {(id(sets), name) for sets in (self.element_sets, self.node_sets, self.surfaces) for name in sets}
+        elif keyword == "NODE":
+            new = [(int(label), [float(x), float(y), float(z)]) for label, x, y, z, *_ in rows]
+            self._add_unique(self.points, new, "node", self.node_sets, options.get("NSET"))
+        elif keyword == "ELEMENT":
+            self._take_elements(options, rows)
+        elif keyword in ("NSET", "ELSET"):
+            if "GENERATE" in options:
+                members = [range(int(row[0]), int(row[1]) + 1, *map(int, filter(None, row[2:]))) for row in rows]
+                if any(not member or member.step < 0 for member in members):
+                    raise ValueError("a range runs backwards")
+            else:
+                members = [self._member(word) for row in rows for word in row if word]
+            # A node set may be that of the nodes of a set of elements
+            members += [(options["ELSET"],)] if keyword == "NSET" and "ELSET" in options else []
+            self._add(self.node_sets if keyword == "NSET" else self.element_sets, options[keyword], members)
+        elif keyword == "SURFACE" and options.get("TYPE", "ELEMENT") in ("ELEMENT", "NODE") and not {"COMBINE", "CROP"} & options.keys():
+            sets = self.node_sets if options.get("TYPE") == "NODE" else self.surfaces
+            new = [self._member(row[0]) for row in rows] if sets is self.node_sets else [(self._member(row[0]), *row[1:2]) for row in rows]
+            if options["NAME"] in sets and not (sets is self.node_sets and new == [options["NAME"]]):
+                raise self._refused(f"surface {options['NAME']} is there twice, or is also a set of nodes", "rename one of them")
+            sets.setdefault(options["NAME"], new)
+        elif keyword == "SURFACE":
+            self.dropped.append(f"surface {options['NAME']}, which is neither of faces nor of nodes")
+        elif keyword == "SOLID SECTION":
+            self._sections.append((options["ELSET"], options.get("MATERIAL"), options.get("ORIENTATION")))
+        elif keyword == "ORIENTATION":
+            self._axes[options["NAME"]] = axes_of(options, rows)
+        elif keyword == "MATERIAL":
+            if options["NAME"] in self._properties:
+                raise ValueError(f"{options['NAME']} is there twice")
+            self._material = options["NAME"]
+            self._properties[self._material] = {}
+        elif keyword == "ELASTIC" and options.get("TYPE", "ISOTROPIC") in ("ISOTROPIC", "ISO") and len(rows) == 1:
+            self._properties[self._material].update(constants=(float(rows[0][0]), float(rows[0][1])))
+        elif keyword == "ELASTIC" and options.get("TYPE") == "ENGINEERING CONSTANTS" and len(rows) == 2:
+            self._properties[self._material].update(constants=tuple(float(word) for word in [*rows[0][:8], rows[1][0]]))
+        elif keyword == "DENSITY" and len(rows) == 1:
+            self._properties[self._material].update(rho=float(rows[0][0]))
+
+    def _take_elements(self, options, rows):
+        shape, n_nodes = shape_of(options["TYPE"])
+        new, numbers = [], []
+        for row in rows:
+            numbers += [int(word) for word in row if word]
+            if len(numbers) > n_nodes if n_nodes else row[-1] or len(row) < 9:
+                new.append((numbers[0], (shape, numbers[1:] if n_nodes else [])))
+                if n_nodes and len(numbers) != n_nodes + 1:
+                    break
+                numbers = []
+        if numbers:
+            raise ValueError(f"element {numbers[0]} of type {options['TYPE']} has {len(numbers) - 1} nodes")
+        self._add_unique(self.elements, new, "element", self.element_sets, options.get("ELSET"))
+
+    def _add_unique(self, known, new, what, sets, name):
+        for label, value in new:
+            if label in known:
+                raise self._refused(f"{what} {label} is there twice, as in parts with numbers of their own", WITHOUT_PARTS)
+            known[label] = value
+        if name:
+            self._add(sets, name, [label for label, _ in new])
+
+    def _add(self, sets, name, members):
+        if (id(sets), name) in self._of_part:
+            raise self._refused(f"set {name} is in the part and in the assembly", f"rename one of them, or {WITHOUT_PARTS}")
+        sets.setdefault(name, []).extend(members)
+
+    def _member(self, word):
+        """A label or the name of a set, without that of the instance."""
+        word = word.upper().removeprefix(self._instance)
+        return int(word) if word.isdigit() else word
+
+    def _known(self, sets, name, where):
+        if name not in sets:
+            raise self._refused(f"{where} names `{name}`, which is not in the file", "write it out, or take the name away")
+        return sets[name]
+
+    def _labels(self, sets, known, name, above=()):
+        """Labels of a set, of the sets that it names, and of its ranges, in which numbers may be missing."""
+        labels = {}
+        for member in self._known(sets, name, f"set {above[-1] if above else name}"):
+            if isinstance(member, str):
+                if member in above or member == name:
+                    raise self._refused(f"set {name} is part of itself", "write its members out")
+                member = self._labels(sets, known, member, (*above, name))
+            elif isinstance(member, tuple):
+                member = [node for element in self._known(self.element_sets, member[0], f"set {name}") for node in self.elements[element][1]]
+            elif isinstance(member, range):
+                member = [label for label in known if label in member] if len(member) > len(known) else list(filter(known.__contains__, member))
+            labels.update(dict.fromkeys(member if isinstance(member, list) else [member]))
+        if unknown := [label for label in labels if label not in known]:
+            self.dropped += [] if above else [f"{len(unknown)} members of set {name}, such as {unknown[0]}, that are not in the file"]
+        return [label for label in labels if label in known]
+
+    def _faces(self, surface, elements, side=""):
+        labels = [elements] if isinstance(elements, int) else self._known(self.element_sets, elements, f"surface {surface}")
+        for label in labels:
+            faces = faces_of(self._known(self.elements, label, f"surface {surface}")[0])
+            sides = ["SPOS", "SNEG"] if len(faces) == 1 else [f"S{number + 1}" for number in range(len(faces))]
+            if not faces or len(faces) == 1 and side.upper().startswith("E"):
+                yield None
+            elif side and side.upper() not in sides:
+                raise self._refused(f"surface {surface} names side {side} of element {label}", "give faces of solids, S1 to S6, or SPOS of shells")
+            else:
+                yield from ((label, number) for number in ([sides.index(side.upper()) % len(faces)] if side else range(len(faces))))

@@ -1,0 +1,44 @@
+"""Reads what the user writes about an import, in YAML or JSON."""
+
+import json
+import pathlib
+
+from squeal.errors import Error
+
+
+def read_json(path):
+    """The content of a JSON file, in which no name of an object may appear twice."""
+    def without_repetition(pairs):
+        names = [name for name, _ in pairs]
+        if repeated := next((name for name in names if names.count(name) > 1), None):
+            raise ValueError(f"`{repeated}` appears twice")
+        return dict(pairs)
+
+    try:
+        return json.loads(path.read_text(encoding="utf-8"), object_pairs_hook=without_repetition)
+    except FileNotFoundError:
+        raise Error("the file is missing", path, "check its name") from None
+    except (OSError, ValueError) as problem:
+        raise Error(f"the file cannot be read: {problem}", path, "correct it") from problem
+
+
+def read_yaml(path, what):
+    """The content of a YAML or JSON file; keys that appear twice are rejected, yaml would take the last."""
+    path = pathlib.Path(path)
+    try:
+        import yaml
+    except ImportError as error:
+        if path.suffix == ".json":
+            return read_json(path)
+        raise Error("yaml is missing", path, "apt-get install python3-yaml") from error
+
+    class Loader(yaml.SafeLoader):
+        def construct_mapping(self, node, deep=False):
+            if len({key.value for key, _ in node.value}) < len(node.value):
+                raise ValueError(f"a name stands there twice{node.start_mark}")
+            return super().construct_mapping(node, deep)
+
+    try:
+        return yaml.load(path.read_text(encoding="utf-8").expandtabs(), Loader)
+    except (ValueError, TypeError, yaml.YAMLError) as error:
+        raise Error(f"the {what} cannot be read: " + " ".join(str(error).split()), path, "write YAML or JSON") from error

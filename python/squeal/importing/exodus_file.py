@@ -1,0 +1,61 @@
+"""Reads nodes, element blocks, side sets and node sets of an Exodus II file, of which meshio reads neither names of blocks nor side sets."""
+
+import re
+
+import numpy as np
+
+from squeal.errors import Error
+from squeal.importing.mesh_shapes import SHELLS, SOLIDS, faces_of
+from squeal.importing.nastran_input import ORDER
+
+SHAPES = {"HEX": SOLIDS, "TET": SOLIDS, "WED": SOLIDS, "PYR": SOLIDS, "QUA": SHELLS, "SHE": SHELLS, "TRI": SHELLS}
+
+
+def face_number(shape, side):
+    """Number of a face in faces_of(), for a side from 1 of a solid: sides begin with those that stand on the base."""
+    return (side - 1 + (2 if shape.startswith(("hexahedron", "wedge")) else 1)) % len(faces_of(shape))
+
+
+class ExodusFile:
+    """points, elements, element_sets, node_sets, surfaces, materials and dropped as of AbaqusInput; elements by their place in the file. Sets
+    without a name are called block_3, sideset_3, nodeset_3 by their ID."""
+
+    def __init__(self, path):
+        self.elements, self.element_sets, self.surfaces, self.materials, self.dropped = {}, {}, {}, {}, []
+        try:
+            self._read(path)
+        except ImportError as error:
+            raise Error("netCDF4 is missing", path, "apt-get install python3-netcdf4") from error
+        except (OSError, RuntimeError, AttributeError, LookupError, ValueError) as error:
+            raise Error(f"this Exodus file cannot be read ({error!r})", path, "write it anew") from error
+
+    def _read(self, path):
+        import netCDF4
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            self._variables = {name: np.array(variable[:]) for name, variable in file.variables.items()
+                               if re.match("coord|(connect|node_ns|elem_ss|side_ss)\\d|(eb|ns|ss)_(names|prop1)$", name)}
+            types = {name: file.variables[name].elem_type.upper() for name in self._variables if name.startswith("connect")}
+        coordinates = self._variables["coord"] if "coord" in self._variables else [self._variables[f"coord{x}"] for x in "xyz"]
+        self.points = dict(enumerate(map(list, np.transpose(coordinates)), 1))
+        for name, connect in self._sets("eb", "block", "connect"):
+            first, kind, n_nodes = len(self.elements) + 1, types[connect], self._variables[connect].shape[1]
+            shape = SHAPES.get(kind[:3], {}).get(n_nodes)
+            order = ORDER.get(shape, range(n_nodes))
+            for nodes in self._variables[connect].tolist():
+                self.elements[len(self.elements) + 1] = (shape, [nodes[i] for i in order]) if shape else (kind, [])
+            self.element_sets[name] = list(range(first, len(self.elements) + 1))
+        self.node_sets = {name: self._variables[nodes].tolist() for name, nodes in self._sets("ns", "nodeset", "node_ns")}
+        if unknown := {node for nodes in [*self.node_sets.values(), *(nodes for _, nodes in self.elements.values())] for node in nodes} - self.points.keys():
+            raise LookupError(f"node {min(unknown)} is not in the file")
+        for name, elements in self._sets("ss", "sideset", "elem_ss"):
+            sides = zip(self._variables[elements].tolist(), self._variables[elements.replace("elem", "side")].tolist())
+            solids = [(element, side) for element, side in sides if len(faces_of(self.elements[element][0])) > 1]
+            self.surfaces[name] = [(element, face_number(self.elements[element][0], side)) for element, side in solids]
+
+    def _sets(self, kind, what, variable):
+        """(name, variable of its members) of the sets that have some."""
+        names = [b"".join(row).decode("utf-8", "replace").strip("\0 ") for row in self._variables.get(f"{kind}_names", [])]
+        for number, identity in enumerate(self._variables.get(f"{kind}_prop1", []), 1):
+            if f"{variable}{number}" in self._variables:
+                yield names[number - 1] if len(names) >= number and names[number - 1] else f"{what}_{identity}", f"{variable}{number}"

@@ -1,0 +1,106 @@
+"""A system from matrices of other programs, as a configuration says."""
+
+import csv
+import pathlib
+
+from squeal.errors import Error
+from squeal.expressions import Expression
+from squeal.importing import foreign_mesh, matrices
+from squeal.importing.configuration import read_yaml
+from squeal.system import SYMMETRY_TOLERANCE, Parameter, System, Term, as_kind, check_keys, read_entry, symmetry_defect, unique
+
+OF_FILE = ("file", "variable", "format", "scale")
+DIRECTIONS = {1: "x", 2: "y", 3: "z"}
+KNOWN = ("description", "parameters", "terms", "groups", "nodes", "unit")
+
+
+def number_of(value, where):
+    """A number, or an expression such as 4*_pi."""
+    return float(value) if isinstance(value, (int, float)) else Expression(str(value), [], where)({})
+
+
+def ranges_of(numbers):
+    """Inclusive ranges of increasing numbers."""
+    found = []
+    for number in numbers:
+        if found and number == found[-1][1] + 1:
+            found[-1][1] = number
+        else:
+            found.append([number, number])
+    return found
+
+
+def groups_of(entries, numbering, where):
+    """Ranges of dofs as given, or of the nodes that `nodes` names in ranges."""
+    groups = {}
+    for name, entry in entries.items():
+        if isinstance(entry, dict):
+            check_keys(entry, ("nodes",), f"{where}, group `{name}`")
+            if numbering.labels is None:
+                raise Error("the matrices have rows, not nodes", f"{where}, group `{name}`", "write ranges of dofs")
+            entry = ranges_of([row for row, (node, _) in enumerate(numbering.labels, start=1) if any(a <= node <= b for a, b in entry["nodes"])])
+        groups[name] = entry
+    return groups
+
+
+def dofs_of(config, folder, numbering, where):
+    """Places and directions of the dofs, if the configuration names a file with the nodes."""
+    if "nodes" not in config:
+        return None
+    if numbering.labels is None or config.get("unit") not in foreign_mesh.UNITS:
+        raise Error("`nodes` needs matrices with nodes and dofs, and a unit of length", where, f"write `unit`, one of: {', '.join(foreign_mesh.UNITS)}")
+    path = folder / config["nodes"]
+    reader = foreign_mesh.READERS.get(path.suffix.lower())
+    if reader is None or not path.is_file():
+        raise Error(f"`{path}` is no file with nodes", where, f"name a file that ends in one of: {', '.join(foreign_mesh.READERS)}")
+    points, scale = reader(path).points, foreign_mesh.UNITS[config["unit"]]
+    lost = [node for node, _ in numbering.labels if node > 0 and node not in points]
+    if lost:
+        raise Error(f"node {lost[0]} of the matrices is missing", path, "name the file of the model from which the matrices come")
+    return [{**dict(zip(("x [m]", "y [m]", "z [m]"), (scale * x for x in points.get(node, (0.0, 0.0, 0.0))))), "direction": DIRECTIONS.get(dof, "")}
+            for node, dof in numbering.labels]
+
+
+def import_system(path):
+    """The system of a configuration, remarks, and the numbering of its dofs. Throws Error."""
+    path = pathlib.Path(path)
+    config = as_kind(read_yaml(path, "configuration"), dict, path)
+    check_keys(config, KNOWN, path)
+    parameters = {}
+    for name, entry in as_kind(config.get("parameters", {}), dict, f"{path}, parameters").items():
+        where = f"{path}, parameter `{name}`"
+        parameters[name] = read_entry(Parameter, {key: number_of(value, where) if key in ("value", "lower", "upper") else value
+                                                  for key, value in as_kind(entry, dict, where).items()}, where, needed=("value",))
+    loaded, names = [], set()
+    for number, entry in enumerate(as_kind(config.get("terms"), list, f"{path}, terms"), start=1):
+        where = f"{path}, term {number}"
+        entry = dict(as_kind(entry, dict, where))
+        source = {key: entry.pop(key) for key in OF_FILE if key in entry}
+        if "file" not in source:
+            raise Error("the entry `file` is missing", where, "name the file of the matrix")
+        file = path.parent / source["file"]
+        entry.setdefault("name", unique(source.get("variable") or file.stem, names))
+        term = read_entry(Term, {**entry, "coefficient": str(entry.get("coefficient", "1"))}, where, needed=("power",))
+        found = matrices.read(file, source.get("variable"), source.get("format"))
+        loaded.append((file, found, term, number_of(source.get("scale", 1.0), where)))
+    if not loaded:
+        raise Error("there are no terms", path, "write `terms`, a list")
+    numbering = matrices.Numbering([(str(file), found) for file, found, *_ in loaded])
+    remarks = []
+    if numbering.held:
+        remarks.append(f"{len(numbering.held)} dofs are held ({matrices.HELD:g} on the diagonal) and left out")
+    for file, found, term, scale in loaded:
+        term.matrix = scale * numbering.matrix(found, term.symmetry, file)
+        if term.symmetry == "none" and term.matrix.nnz and term.matrix.shape[0] == term.matrix.shape[1]:
+            remarks += [f"term `{term.name}` is {symmetry}; write `symmetry: {symmetry}` to have it checked" for symmetry, sign in
+                        (("symmetric", 1), ("skew", -1)) if symmetry_defect(term.matrix, sign) < SYMMETRY_TOLERANCE]
+    system = System(parameters, [term for _, _, term, _ in loaded], groups_of(config.get("groups", {}), numbering, path),
+                    dofs_of(config, path.parent, numbering, path), description=config.get("description", ""), where=path)
+    return system, remarks, numbering
+
+
+def write_labels(path, labels):
+    """Node and dof of every row."""
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerows([("row", "node", "dof"), *((row, *label) for row, label in enumerate(labels, start=1))])

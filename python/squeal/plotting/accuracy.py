@@ -1,0 +1,91 @@
+"""What accuracy costs: errors of meshes, elements and bases over time."""
+
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+from squeal.plotting import style
+from squeal.plotting.reduction import in_order, pareto_front
+
+FULL_ORDER = "full order"
+KINDS = ("discretisation", "reduction", "algebraic")
+FLOOR = 1e-12  # errors below it [%] are rounding; zero has no place on a logarithmic axis
+TIME = "processor time [s]"
+FREQUENCY, DIVERGENCE = "frequency error [%]", "divergence error [percentage points]"
+TITLES = {FREQUENCY: "largest frequency error [%]", DIVERGENCE: "largest divergence error [points]"}
+
+
+class Solution:
+    """A mesh with an element, solved by a method."""
+
+    def __init__(self, row):
+        self.family = row["element"] + ("" if row["outlines"] == "curved" else f", {row['outlines']}")
+        self.method, self.on_front = row["method"], row["Pareto front"] == "yes"
+        self.seconds = float(row["CPU time [s]"])
+        self.is_complete = row["modes without counterpart [-]"] == "0"
+        self.errors = {column: max(float(row[column]), FLOOR) for column in row if column.endswith((FREQUENCY, DIVERGENCE))}
+
+
+def logarithmic(panel):
+    panel.set_xscale("log")
+    panel.set_yscale("log")
+    panel.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    panel.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    panel.xaxis.set_minor_formatter(NullFormatter())
+
+
+def draw_front(panel, solutions, column):
+    front = pareto_front((solution.seconds, solution.errors[column]) for solution in solutions if solution.is_complete)
+    if front:
+        panel.plot(*zip(*front), color=style.GREY, linewidth=1.6, label="Pareto front of those with all modes", zorder=1)
+
+
+def cost_figure(solutions):
+    """A panel for frequencies and one for divergence rates; a line from mesh to mesh for each family at full order."""
+    picture = style.Picture("What accuracy costs", 2, 2, (5.6, 4.4))
+    families = in_order(solution.family for solution in solutions)
+    for panel, column in zip(picture.panels, (FREQUENCY, DIVERGENCE)):
+        style.prepare(panel, "", TIME, TITLES[column])
+        if all(solution.errors[column] <= FLOOR for solution in solutions):
+            panel.text(0.5, 0.5, "none beyond rounding outside of clusters", transform=panel.transAxes, ha="center", color=style.GREY)
+            panel.set_xticks([])
+            panel.set_yticks([])
+            continue
+        draw_front(panel, solutions, column)
+        for number, family in enumerate(families):
+            look = style.mark_of(number)
+            own = sorted((s for s in solutions if s.family == family), key=lambda solution: solution.seconds)
+            full = [(s.seconds, s.errors[column]) for s in own if s.method == FULL_ORDER]
+            reduced = [(s.seconds, s.errors[column]) for s in own if s.method != FULL_ORDER]
+            if full:
+                panel.plot(*zip(*full), linestyle=":", linewidth=1, label=f"{family}, {FULL_ORDER}", markersize=6, **look)
+            if reduced:
+                panel.plot(*zip(*reduced), linestyle="none", label=f"{family}, reduced", markersize=6,
+                           **{**look, "markerfacecolor": "white"})
+        logarithmic(panel)
+    return picture.add_key()
+
+
+def kind_figure(solutions):
+    """A panel for each method and quantity, one mark for each kind of error of every mesh; rounding errors are left out."""
+    methods = in_order(solution.method for solution in solutions)
+    picture = style.Picture("Errors by their kinds", 2 * len(methods), len(methods), (4.4, 3.6))
+    panels = iter(picture.panels)
+    for column in (FREQUENCY, DIVERGENCE):
+        for method in methods:
+            panel = next(panels)
+            style.prepare(panel, method, TIME, TITLES[column])
+            own = [solution for solution in solutions if solution.method == method]
+            for number, kind in enumerate(KINDS):
+                points = [(solution.seconds, solution.errors[f"{kind} {column}"]) for solution in own]
+                points = [(seconds, error) for seconds, error in points if error > FLOOR]
+                if points:
+                    panel.plot(*zip(*points), linestyle="none", label=kind, markersize=6, **style.mark_of(number))
+            logarithmic(panel)
+    return picture.add_key()
+
+
+def figures(results):
+    """Of a study of accuracy."""
+    if not results.has("accuracy"):
+        return {}
+    solutions = [Solution(row) for row in results.table("accuracy").rows]
+    return {"accuracy": cost_figure(solutions), "accuracy_kinds": kind_figure(solutions)}

@@ -1,0 +1,188 @@
+"""Frequencies and divergence rates over the friction coefficient, as in figures 7 to 9 of the paper."""
+
+import math
+
+from squeal.plotting import charts, complex_plane, style
+
+FAMILIES_PER_PICTURE = 3
+NAME_LENGTH = 0.2  # of a panel, beside which a curve must not cross its name
+NAME_MARGIN = 0.1  # room for names above and below the frequencies of a family, in shares of their range
+
+# Of the charts without and with dissipation; the first one lies on top, and the other one is wider, to be seen beside it
+LOOKS = ({"color": style.BLACK, "linestyle": "-"}, {"color": style.GREY, "linestyle": (0, (4, 1.5))})
+GROWING_LOOKS = ({"color": style.VERMILLION, "linestyle": "-"}, {"color": style.ORANGE, "linestyle": (0, (3, 1))})
+WIDTHS, GROWING_WIDTHS = (0.9, 1.5), (2.4, 4.2)  # [points]
+EVENTS = {"onset": "^", "restabilisation": "v"}
+
+
+class Curves:
+    """Branches of a chart with what grows of them, as lines of one quantity broken by NaN."""
+
+    def __init__(self, chart, branches, quantity):
+        self.all, self.growing = [], []
+        for branch in branches:
+            points = chart.curve(branch)
+            for k, point in enumerate(points):
+                if not point.is_shown:
+                    self.end(self.all)
+                    self.end(self.growing)
+                    continue
+                place = point.mu, getattr(point, quantity)
+                self.all.append(place)
+                # From the threshold to the threshold, which are neutral points beside growing ones
+                reaches_here = point.grows or (k > 0 and points[k - 1].grows)
+                leaves_here = k + 1 < len(points) and points[k + 1].grows
+                if reaches_here or leaves_here:
+                    self.growing.append(place)
+                if not point.grows and not leaves_here:
+                    self.end(self.growing)
+            self.end(self.all)
+            self.end(self.growing)
+
+    @staticmethod
+    def end(line):
+        if line and not math.isnan(line[-1][0]):
+            line.append((math.nan, math.nan))
+
+
+def titles_of(all_charts):
+    return list(dict.fromkeys(chart.title for chart in all_charts))
+
+
+def draw_curves(panel, all_charts, chosen, quantity, width):
+    """Chosen branches of each chart, their growing parts and their thresholds."""
+    titles = titles_of(all_charts)
+    for chart, branches in zip(all_charts, chosen):
+        number = titles.index(chart.title)
+        curves = Curves(chart, branches, quantity)
+        # A line needs two points
+        marks = {"marker": "o", "markersize": 4} if len(chart.mus) == 1 else {}
+        layer = 4 - number
+        if curves.all:
+            panel.plot(*zip(*curves.all), label=chart.title, linewidth=WIDTHS[number] * width, zorder=layer, **LOOKS[number], **marks)
+        if curves.growing:
+            panel.plot(*zip(*curves.growing), label="growing, " + chart.title, linewidth=GROWING_WIDTHS[number] * width,
+                       zorder=layer + 0.5, **GROWING_LOOKS[number], **marks)
+    for chart, branches in zip(all_charts, chosen):
+        number = titles.index(chart.title)
+        for event, marker in EVENTS.items():
+            places = [(threshold.mu, threshold.frequency if quantity == "frequency" else 0.0)
+                      for threshold in chart.thresholds if threshold.event == event and threshold.branch in branches]
+            if places:
+                panel.plot(*zip(*places), linestyle="none", marker=marker, markersize=5.5 * width, color=LOOKS[number]["color"],
+                           markerfacecolor="white", zorder=7 - number,
+                           label=event + (", " + chart.title if len(titles) > 1 else ""))
+
+
+def add_names(panel, chart, branches):
+    """Names where branches begin, above their curves, the lowest one below."""
+    labels = [chart.labels[branch] for branch in branches]
+    length = NAME_LENGTH * (chart.mus[-1] - chart.mus[0])
+    starts = []
+    for branch in branches:
+        # A name that many branches share says no more than the title
+        if labels.count(chart.labels[branch]) == 1:
+            points = [point for point in chart.curve(branch) if point.is_shown]
+            beside = [point.frequency for point in points if point.mu <= points[0].mu + length]
+            starts.append((points[0].frequency, points[0].mu, beside, chart.labels[branch]))
+    for i, (_, mu, beside, label) in enumerate(sorted(starts)):
+        is_below = i == 0 and len(starts) > 1
+        panel.annotate(label, (mu, min(beside) if is_below else max(beside)), xytext=(4, -4 if is_below else 4), textcoords="offset points",
+                       fontsize=style.SMALL, verticalalignment="top" if is_below else "bottom", zorder=8)
+
+
+def growing_families(all_charts):
+    """Families of which a branch grows somewhere, ascending by the lowest frequency [Hz] at which one begins to."""
+    lowest = {}
+    for chart in all_charts:
+        for branch, label in chart.labels.items():
+            start = next((point.frequency for point in chart.curve(branch) if point.grows), None)
+            if start is not None:
+                name = charts.family(label)
+                lowest[name] = min(start, lowest.get(name, math.inf))
+    return sorted(lowest, key=lambda name: (lowest[name], name))
+
+
+def partners_of(all_charts, name):
+    """Labels of branches that those of a family coalesce with."""
+    return {chart.labels[threshold.partner] for chart in all_charts for threshold in chart.thresholds
+            if threshold.partner in chart.labels and charts.family(chart.labels[threshold.branch]) == name}
+
+
+def members(chart, name, partners):
+    """Branches of a family, and those of other families that they meet in one of the charts."""
+    labels = list(chart.labels.values())
+    result = []
+    for branch, label in chart.labels.items():
+        # Of branches without a name only those that grow
+        is_member = charts.family(label) == name and (name != charts.NO_LABEL or chart.grows_somewhere(branch))
+        # Of many branches of one name it is not known which one it is that is met in the other chart
+        is_partner = label in partners and labels.count(label) == 1
+        meets = any(threshold.partner == branch and charts.family(chart.labels[threshold.branch]) == name for threshold in chart.thresholds)
+        if is_member or is_partner or meets:
+            result.append(branch)
+    return result
+
+
+def leave_room(panel):
+    """Room for the names above the highest and below the lowest curve."""
+    values = [value for line in panel.get_lines() for value in line.get_ydata() if not math.isnan(value)]
+    low, high = min(values), max(values)
+    if low < high:
+        panel.set_ylim(low - NAME_MARGIN * (high - low), high + NAME_MARGIN * (high - low))
+
+
+def family_picture(all_charts, names):
+    """For each family its frequencies and below them, of a single one beside them, its divergence rates."""
+    picture = style.Picture("Branches that grow, with their families", 2 * len(names), len(names) if len(names) > 1 else 2)
+    for name, upper, lower in zip(names, picture.panels, picture.panels[len(names):]):
+        partners = partners_of(all_charts, name)
+        chosen = [members(chart, name, partners) for chart in all_charts]
+        style.prepare(upper, name, style.FRICTION, style.FREQUENCY)
+        style.prepare(lower, name, style.FRICTION, style.DIVERGENCE)
+        draw_curves(upper, all_charts, chosen, "frequency", 1.0)
+        draw_curves(lower, all_charts, chosen, "divergence", 1.0)
+        leave_room(upper)
+        style.zero_line(lower)
+        add_names(upper, all_charts[0], chosen[0])
+        set_friction_range((upper, lower), all_charts)
+        upper.ticklabel_format(useOffset=False)
+    return picture.add_key()
+
+
+def set_friction_range(panels, all_charts):
+    first, last = charts.friction_range(all_charts)
+    for panel in panels:
+        if first < last:
+            panel.set_xlim(first, last)
+
+
+def family_figures(all_charts):
+    """Families that grow, three to a picture."""
+    names = growing_families(all_charts)
+    parts = [names[i:i + FAMILIES_PER_PICTURE] for i in range(0, len(names), FAMILIES_PER_PICTURE)]
+    return {"sweep_families" + (f"_{number}" if len(parts) > 1 else ""): family_picture(all_charts, part)
+            for number, part in enumerate(parts, start=1)}
+
+
+def overview_figure(all_charts, band_end):
+    """All modes of the band."""
+    picture = style.Picture("Modes of the band over the friction coefficient", 2, 2, (5.4, 5.2))
+    for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
+                                             (style.FREQUENCY, style.DIVERGENCE)):
+        style.prepare(panel, title, style.FRICTION, label)
+        draw_curves(panel, all_charts, [list(chart.labels) for chart in all_charts], quantity, 0.75)
+    picture.panels[0].set_ylim(0, band_end)
+    style.zero_line(picture.panels[1])
+    set_friction_range(picture.panels, all_charts)
+    return picture.add_key()
+
+
+def figures(results):
+    """Of a sweep."""
+    all_charts = charts.read_charts(results)
+    if not all_charts:
+        return {}
+    band_end = results.number("Band/Maximum frequency")
+    return {**family_figures(all_charts), "complex_plane": complex_plane.sweep_figure(results, all_charts, band_end),
+            "overview": overview_figure(all_charts, band_end)}

@@ -1,0 +1,200 @@
+"""The complex plane, as in figure 6 of the paper: divergence rate over frequency."""
+
+import dataclasses
+
+from squeal.plotting import charts, style
+
+ROUNDING = 1e-6  # largest divergence rate [%] that is no reason to cut the axis
+SAME_PLACE = 0.05  # share of the width within which a name serves modes of two series
+
+
+@dataclasses.dataclass
+class Series:
+    """Modes of one reading of the dissipation."""
+
+    title: str
+    modes: list
+
+
+class NameRoom:
+    """Places for names beside marks such that none covers another or a mark; in points of the panel."""
+
+    LETTER, LINE, GAP = 0.58 * style.SMALL, 1.25 * style.SMALL, 5.0
+
+    def __init__(self, width):
+        self.width = width
+        self.boxes = []
+
+    def occupy(self, x, y):
+        self.boxes.append((x - self.GAP, x + self.GAP, y - self.GAP, y + self.GAP))
+
+    def find(self, x, y, text):
+        """Offset and horizontal alignment of a text beside a point, or None if there is no room."""
+        length = self.LETTER * len(text)
+        for below in (False, True):
+            for alignment in ("left", "right"):
+                left = x + self.GAP if alignment == "left" else x - self.GAP - length
+                low = y - self.LINE if below else y
+                box = (left, left + length, low, low + self.LINE)
+                if left > 0 and box[1] < self.width and not any(self.overlap(box, other) for other in self.boxes):
+                    self.boxes.append(box)
+                    return (self.GAP if alignment == "left" else -self.GAP, low - y + 0.3 * self.LINE), alignment
+        return None
+
+    @staticmethod
+    def overlap(one, other):
+        return one[0] < other[1] and other[0] < one[1] and one[2] < other[3] and other[2] < one[3]
+
+
+class Limits:
+    """Of divergence rates; modes that decay much faster than any grows would squeeze the others and lie at the lower edge."""
+
+    def __init__(self, series):
+        rates = [mode.divergence for one in series for mode in one.modes] + [0.0]
+        highest, lowest = max(rates), min(rates)
+        is_cut = highest > ROUNDING and lowest < -4 * highest
+        self.edge = -2.5 * highest if is_cut else lowest
+        if is_cut:
+            self.ends = 1.08 * self.edge, 1.25 * highest
+        elif highest > ROUNDING:
+            self.ends = 1.15 * self.edge - 0.1 * highest, 1.25 * highest
+        elif lowest < -ROUNDING:
+            self.ends = 1.15 * lowest, -0.15 * lowest
+        else:
+            self.ends = -1, 1
+
+
+class Plane:
+    """A panel with its limits."""
+
+    def __init__(self, panel, size, series, band_end, limits):
+        self.panel, self.series, self.edge = panel, series, limits.edge
+        panel.set_ylim(*limits.ends)
+        panel.set_xlim(0, 1e-3 * band_end)
+        # What labels and title take of the panel
+        self.points = ((size[0] - 0.9) * style.INCH, (size[1] - 0.9) * style.INCH)
+
+    def place(self, mode):
+        """Where a mode is drawn [kHz, %]."""
+        return 1e-3 * mode.frequency, max(mode.divergence, self.edge)
+
+    def in_points(self, mode):
+        x, y = self.place(mode)
+        low, high = self.panel.get_ylim()
+        return x / self.panel.get_xlim()[1] * self.points[0], (y - low) / (high - low) * self.points[1]
+
+    def draw_modes(self):
+        looks = ({"color": style.BLACK, "marker": "o", "markersize": 3.5}, {"color": style.GREY, "marker": "D", "markersize": 3.5})
+        for number, (one, look) in enumerate(zip(self.series, looks)):
+            inside = [self.place(mode) for mode in one.modes if mode.divergence >= self.edge]
+            faster = [self.place(mode) for mode in one.modes if mode.divergence < self.edge]
+            if inside:
+                self.panel.plot(*zip(*inside), linestyle="none", label=one.title, zorder=4 - number, **look)
+            if faster:
+                self.panel.plot(*zip(*faster), linestyle="none", label="faster decay, " + one.title, zorder=4 - number, color=look["color"],
+                                marker="v", markersize=6, clip_on=False)
+
+    def draw_marks(self):
+        """Rings about growing modes, squares about undecided ones."""
+        growing = [self.place(mode) for one in self.series for mode in one.modes if mode.grows and not mode.is_undecided]
+        undecided = [self.place(mode) for one in self.series for mode in one.modes if mode.is_undecided]
+        for places, label, marker, colour in ((growing, "growing", "o", style.VERMILLION), (undecided, "undecided", "s", style.BLUE)):
+            if places:
+                self.panel.plot(*zip(*places), linestyle="none", label=label, marker=marker, markersize=9, markerfacecolor="none",
+                                color=colour, markeredgewidth=1.3, zorder=5)
+
+    def draw_names(self):
+        """Names of growing modes, where there is room, those that grow most first."""
+        room = NameRoom(self.points[0])
+        for one in self.series:
+            for mode in one.modes:
+                room.occupy(*self.in_points(mode))
+        named = []
+        for one in self.series:
+            for mode in sorted((mode for mode in one.modes if mode.grows and not mode.is_undecided), key=lambda mode: -mode.divergence):
+                x, y = self.in_points(mode)
+                # The name beside the mode of another series serves both
+                serves = any(other is not one and name == mode.label and abs(x - place) < SAME_PLACE * self.points[0]
+                             for other, name, place in named)
+                if not serves and (found := room.find(x, y, mode.label)):
+                    offset, alignment = found
+                    self.panel.annotate(mode.label, self.place(mode), xytext=offset, textcoords="offset points", fontsize=style.SMALL,
+                                        horizontalalignment=alignment)
+                    named.append((one, mode.label, x))
+
+
+def draw(panel, size, title, series, band_end, limits=None):
+    """Draws modes up to `band_end` [Hz] into a panel of a picture; `limits` that it shares with others."""
+    style.prepare(panel, title, "frequency [kHz]", style.DIVERGENCE)
+    style.zero_line(panel)
+    plane = Plane(panel, size, series, band_end, limits or Limits(series))
+    plane.draw_modes()
+    plane.draw_marks()
+    plane.draw_names()
+
+
+def planes_of_table(table):
+    """Series by friction coefficient, in the order of a table complex_plane, without radial dissipation first."""
+    planes = {}
+    columns = (table.numbers("mu [-]"), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
+               table.numbers("divergence rate [%]"), table.texts("verdict"))
+    for mu, dissipation, label, frequency, divergence, verdict in zip(*columns):
+        title = charts.WITHOUT if dissipation == "none" else charts.WITH
+        mode = charts.Mode(label, frequency, divergence, verdict == "unstable", verdict == "undecided")
+        planes.setdefault(mu, {}).setdefault(title, []).append(mode)
+    return {mu: [Series(title, found[title]) for title in (charts.WITHOUT, charts.WITH) if title in found] for mu, found in planes.items()}
+
+
+def last_plane(all_charts):
+    """Series at the last value of a sweep."""
+    mu = max(mu for chart in all_charts for mu in chart.mus)
+    return {mu: [Series(chart.title, chart.modes_at(mu)) for chart in all_charts if mu in chart.mus]}
+
+
+def sweep_figure(results, all_charts, band_end):
+    """A panel for each friction coefficient of the complex plane; where none is asked for, one for the last of the sweep."""
+    planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
+    picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
+    for panel, (mu, series) in zip(picture.panels, planes.items()):
+        draw(panel, picture.size, f"\u03bc = {mu:.6g}", series, band_end)
+    return picture.add_key()
+
+
+def modes_of_run(table):
+    columns = (table.texts("label"), table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.flags("unstable [-]"))
+    return [charts.Mode(*row, False) for row in zip(*columns)]
+
+
+def series_of_run(results):
+    """Modes of a run at one friction coefficient."""
+    title = charts.WITHOUT if results.parameter("Operation/Radial dissipation") == "none" else charts.WITH
+    return Series(title, modes_of_run(results.table("complex_modes")))
+
+
+def paper_figure(without, damped):
+    """Figure 6 of the paper: results without and with radial dissipation, next to each other with the same axes."""
+    series = [series_of_run(results) for results in (without, damped)]
+    picture = style.Picture(f"Stability charts for \u03bc = {without.number('Operation/Friction coefficient'):g}", 2, 2, (5.6, 4.4))
+    for panel, caption, one in zip(picture.panels, ("(a) $C_b = 0$", "(b) $C_b \\neq 0$"), series):
+        draw(panel, picture.size, caption, [one], without.number("Band/Maximum frequency"), Limits(series))
+    return picture.add_key()
+
+
+def run_figure(results):
+    """The complex modes of a run at one friction coefficient."""
+    picture = style.Picture("Modes in the complex plane", 1, 1, (7.0, 4.4))
+    draw(picture.panels[0], picture.size, f"\u03bc = {results.number('Operation/Friction coefficient'):g}", [series_of_run(results)],
+         results.number("Band/Maximum frequency"))
+    if results.has("real_eigenvalues"):
+        rates = [rate for rate in results.table("real_eigenvalues").numbers("growth rate [1/s]") if rate > 0]
+        if rates:
+            text = f"and {len(rates)} real \u03bb > 0 (static divergence), up to {max(rates):.4g} 1/s"
+            picture.panels[0].text(0.02, 0.97, text, transform=picture.panels[0].transAxes, verticalalignment="top", color=style.VERMILLION)
+    return picture.add_key()
+
+
+def figures(results):
+    """Of a run at one friction coefficient."""
+    if not results.has("complex_modes"):
+        return {}
+    return {"complex_plane": run_figure(results)}

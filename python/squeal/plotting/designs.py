@@ -1,0 +1,65 @@
+"""What each variable of a study of designs does to the onset of squeal and to the largest divergence rate."""
+
+import math
+
+from squeal.plotting import style
+
+ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
+MOST_VARIABLES, MOST_LABELS = 8, 10
+
+
+def variables_of(table):
+    """Columns of the variables: those between number and outcome."""
+    return table.columns[1:table.columns.index("outcome")]
+
+
+def positions(texts):
+    """Places of values on an axis, with names of the ticks where they are no numbers."""
+    try:
+        return [float(text) for text in texts], None
+    except ValueError:
+        names = list(dict.fromkeys(texts))
+        return [names.index(text) for text in texts], names
+
+
+def short(name):
+    """The name of a variable for an axis."""
+    words = name.split(" + ")[0].split("/")[-1]
+    return words + (" ..." if " + " in name else "")
+
+
+def figures(results):
+    """Of a study of designs."""
+    if not results.has("designs"):
+        return {}
+    table = results.table("designs")
+    variables = variables_of(table)[:MOST_VARIABLES]
+    solved = [outcome == "solved" for outcome in table.texts("outcome")]
+    if not variables or not any(solved):
+        return {}
+    end = results.number("Sweep/Last friction coefficient")
+    panels = ((ONSET, "label at 0.01 %", "\u03bc of 0.01 % [-]"), (LARGEST, "label of largest", "largest divergence rate [%]"))
+    labels = list(dict.fromkeys(label for _, column, _ in panels for label in table.texts(column) if label))
+    marks = {label: style.mark_of(min(number, MOST_LABELS)) for number, label in enumerate(sorted(labels))}
+    others = set(sorted(labels)[MOST_LABELS:])
+
+    picture = style.Picture("Designs: where squeal begins, and how fast it grows at most", 2 * len(variables), len(variables), (3.6, 3.0))
+    for row, (column, label_column, title) in enumerate(panels):
+        values, names = table.numbers(column), table.texts(label_column)
+        for number, variable in enumerate(variables):
+            panel = picture.panels[row * len(variables) + number]
+            style.prepare(panel, "", short(variable) if row else "", title if number == 0 else "")
+            places, ticks = positions(table.texts(variable))
+            for x, y, name, is_solved in zip(places, values, names, solved):
+                if not is_solved:
+                    continue
+                if math.isnan(y):
+                    # Quiet up to the end: no threshold, and nothing that grows
+                    panel.plot(x, end if row == 0 else 0, linestyle="", marker="o", markersize=6, color=style.BLACK, markerfacecolor="white",
+                               label="quiet")
+                else:
+                    panel.plot(x, y, linestyle="", markersize=5, label="others" if name in others else name, **marks[name])
+            if ticks:
+                panel.set_xticks(range(len(ticks)), ticks, fontsize=style.SMALL)
+            panel.set_ylim(bottom=0)
+    return {"designs": picture.add_key()}

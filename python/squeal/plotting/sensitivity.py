@@ -1,0 +1,38 @@
+"""What one per cent of each parameter changes of the divergence rates of the growing modes."""
+
+import math
+
+from squeal.plotting import style
+
+ROW_HEIGHT = 0.24  # of a bar [inches]
+MOST_MODES = 4
+CHANGE = "divergence rate per 1 % [percentage points]"
+
+
+def figures(results):
+    """Of a study of sensitivities."""
+    if not results.has("sensitivities"):
+        return {}
+    table = results.table("sensitivities")
+    columns = [table.texts(name) for name in ("mode [-]", "label", "parameter", "only of")]
+    rows = [row for row in zip(*columns, table.numbers("frequency [Hz]"), table.numbers("divergence rate [%]"), table.numbers(CHANGE))
+            if row[3] == "" and not math.isnan(row[6])]
+    modes = list(dict.fromkeys(row[0] for row in rows))[:MOST_MODES]
+    changes = {mode: {row[2]: row[6] for row in rows if row[0] == mode} for mode in modes}
+    names = sorted(changes[modes[0]], key=lambda name: -abs(changes[modes[0]][name]))
+
+    picture = style.Picture("What one per cent of each parameter changes", len(modes), len(modes), (3.9, ROW_HEIGHT * len(names) + 1.3))
+    for panel, mode in zip(picture.panels, modes):
+        _, label, _, _, frequency, divergence, _ = next(row for row in rows if row[0] == mode)
+        style.prepare(panel, f"{label}, {frequency:.0f} Hz, {divergence:.3g} %", "change of divergence rate [points]", "")
+        for colour, hatch, text, sign in ((style.VERMILLION, None, "more of it: grows more", 1), (style.BLUE, "///", "more of it: grows less", -1)):
+            chosen = [(place, changes[mode][name]) for place, name in enumerate(names) if sign * changes[mode][name] > 0]
+            if chosen:
+                panel.barh(*zip(*chosen), height=0.62, color=colour, hatch=hatch, edgecolor="white", linewidth=0, label=text)
+        panel.axvline(0, color=style.GREY, linewidth=1.1)
+        panel.set_ylim(len(names) - 0.4, -0.6)
+        panel.set_yticks(range(len(names)), names if panel is picture.panels[0] else [""] * len(names), fontsize=style.SMALL)
+        panel.ticklabel_format(axis="x", style="plain", useOffset=False)
+        panel.locator_params(axis="x", nbins=5)
+        panel.grid(axis="y", visible=False)
+    return {"sensitivity": picture.add_key()}

@@ -1,0 +1,63 @@
+"""Finds the program and runs it."""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+from squeal.errors import Error
+from squeal.results import Results
+
+PACKAGE = pathlib.Path(__file__).resolve().parent
+SOURCE = PACKAGE.parents[1]
+# In the folder of an installation, and of a checkout
+PLACES = (PACKAGE.parents[3] / "bin" / "squeal", SOURCE / "build" / "release" / "squeal")
+
+
+def find_program():
+    """The executable: SQUEAL of the environment, that of the installation or of the checkout, or one in PATH. Throws Error if there is none."""
+    if given := os.environ.get("SQUEAL"):
+        if not pathlib.Path(given).is_file():
+            raise Error(f"there is no program {given}", "environment variable SQUEAL", "name the executable")
+        return pathlib.Path(given).resolve()
+    found = next((path for path in PLACES if path.is_file()), None) or shutil.which("squeal")
+    if not found:
+        raise Error(f"there is no program {PLACES[1]}", "squeal.run()", "build it with scripts/setup.sh, or set the environment variable SQUEAL")
+    return pathlib.Path(found)
+
+
+def text_of(value):
+    """A value as a parameter file has it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (list, tuple)):
+        return ", ".join(map(text_of, value))
+    return repr(float(value)) if isinstance(value, float) else str(value)
+
+
+def words_of(settings):
+    """Words of the command line for settings "Section/Name=value"."""
+    return [word for setting in settings for word in ("--set", setting)]
+
+
+def run(prm, overrides=None, output=None, n_processes=1):
+    """Results of a parameter file with parameters "Section/Name" -> value that differ from it.
+
+    The results are in the folder `output`, otherwise in results/ with the name of the file. Throws Error with what the program says.
+    """
+    output = pathlib.Path(output) if output else pathlib.Path("results") / pathlib.Path(prm).stem
+    launcher = ["mpirun", "-np", str(n_processes)] if n_processes > 1 else []
+    settings = words_of(f"{name}={text_of(value)}" for name, value in (overrides or {}).items())
+    process = subprocess.run([*launcher, find_program(), prm, "--output", output, *settings], text=True, capture_output=True, check=False)
+    if process.returncode != 0:
+        raise error_of(process, prm)
+    return Results(output)
+
+
+def error_of(process, prm):
+    """The error of a run that failed."""
+    if match := re.search(r"^error: (.*?)\n  where: *(.*?)\n  change: *(.*?)(?:\n\S|\Z)", process.stderr, re.DOTALL | re.MULTILINE):
+        return Error(*(part.strip() for part in match.groups()))
+    last = process.stderr.strip().splitlines()[-10:]
+    return Error("\n".join([f"squeal ended with the exit status {process.returncode}", *last]), prm, "see the message")

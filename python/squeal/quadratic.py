@@ -1,0 +1,288 @@
+"""Eigenvalues of quadratic pencils Q(λ) = λ² M + λ C + K.
+
+Matrices are scaled as by Fan, Lin and Van Dooren, λ = γ μ with γ² = |K| / |M|, before they are linearised. Small problems are solved by the QZ
+algorithm, others by ARPACK about shifts σ with a sparse LU decomposition of Q(σ) each.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse as sparse
+import scipy.sparse.linalg
+
+from squeal.errors import Error
+
+# Size up to which all eigenvalues are computed by dense matrices
+DENSE_SIZE = 200
+# Eigenvalues of one shift at first, and at most before the region is divided
+FIRST_NUMBER, LARGEST_NUMBER = 24, 160
+# Relative distance of eigenvalues that may be copies of one
+EQUAL = 1e-8
+# Smallest new component of a vector of length one that is independent of others
+INDEPENDENT = 1e-3
+# Relative change of the entries of Q(s) at an arbitrary s that makes it singular, up to which it counts as singular
+SINGULAR = 1e-13
+
+
+@dataclasses.dataclass
+class Eigenpairs:
+    """Eigenvalues λ (m) [1/s], right vectors (n x m) of length one, and two measures of error for each.
+
+    residuals: |Q(λ) x| / (|λ² M x| + |λ C x| + |K x|); backward_errors: |Q(λ) x| / ((|λ|² |M| + |λ| |C| + |K|) |x|) with Frobenius norms.
+    """
+
+    eigenvalues: np.ndarray
+    vectors: np.ndarray
+    residuals: np.ndarray
+    backward_errors: np.ndarray
+
+    def __len__(self):
+        return len(self.eigenvalues)
+
+
+def eigenpairs(M, C, K, eigenvalues, vectors):
+    """Eigenpairs by increasing imaginary part with their errors."""
+    order = np.lexsort((eigenvalues.real, eigenvalues.imag))
+    eigenvalues, vectors = eigenvalues[order], vectors[:, order]
+    vectors = vectors / np.linalg.norm(vectors, axis=0)
+    return Eigenpairs(eigenvalues, vectors, *errors(M, C, K, eigenvalues, vectors))
+
+
+def errors(M, C, K, eigenvalues, vectors):
+    """Residuals and backward errors as in Eigenpairs."""
+    parts = [M @ (vectors * eigenvalues**2), C @ (vectors * eigenvalues), K @ vectors]
+    defects, sizes = np.linalg.norm(sum(parts), axis=0), abs(eigenvalues)
+    norms = [scipy.sparse.linalg.norm(matrix) for matrix in (M, C, K)]
+    scales = (sizes**2 * norms[0] + sizes * norms[1] + norms[2]) * np.linalg.norm(vectors, axis=0)
+    tiny = np.finfo(float).tiny
+    return defects / np.maximum(sum(np.linalg.norm(part, axis=0) for part in parts), tiny), defects / np.maximum(scales, tiny)
+
+
+def scaling(M, C, K):
+    """γ and δ of Fan, Lin and Van Dooren: γ² δ M, γ δ C and δ K have norms about one."""
+    norms = [scipy.sparse.linalg.norm(matrix) for matrix in (M, C, K)]
+    if norms[2] == 0:
+        gamma = norms[1] / norms[0] or 1.0
+        return gamma, 1.0 / (gamma**2 * norms[0])
+    gamma = math.sqrt(norms[2] / norms[0])
+    return gamma, 2.0 / (norms[2] + norms[1] * gamma)
+
+
+def linearise(M, C, K):
+    """A and B of the first companion form A z = λ B z, z = (x, λ x)."""
+    unit = sparse.identity(M.shape[0], format="csr")
+    return sparse.bmat([[None, unit], [-K, -C]], format="csr"), sparse.block_diag([unit, M], format="csr")
+
+
+def solve_dense(M, C, K, where):
+    """All finite eigenvalues and vectors by QZ. Throws Error where the pencil is singular."""
+    n, (gamma, delta) = M.shape[0], scaling(M, C, K)
+    A, B = (matrix.toarray() for matrix in linearise(gamma**2 * delta * M, gamma * delta * C, delta * K))
+    pairs, vectors = scipy.linalg.eig(A, B, homogeneous_eigvals=True)
+    rounding = 10 * n * np.finfo(float).eps
+    is_infinite = abs(pairs[1]) <= rounding * np.linalg.norm(B)
+    if np.any(is_infinite & (abs(pairs[0]) <= rounding * np.linalg.norm(A))):
+        raise singular(where)
+    finite = ~is_infinite
+    eigenvalues = pairs[0][finite] / pairs[1][finite]
+    # The larger one of x and λ x has the smaller relative error
+    parts = np.where(abs(eigenvalues) <= 1, vectors[:n, finite], vectors[n:, finite])
+    return gamma * eigenvalues, parts
+
+
+def singular(where):
+    return Error("the pencil is singular: det Q(λ) = 0 for every λ", where, "remove dofs without stiffness, damping and mass, and redundant constraints")
+
+
+class ShiftInvert:
+    """ARPACK about shifts: eigenvalues that are closest to a shift σ, by the largest 1 / (λ - σ) of the companion form."""
+
+    def __init__(self, M, C, K, where):
+        self.M, self.C, self.K, self.where = M, C, K, where
+        self.gamma, _ = scaling(M, C, K)
+
+    def check(self):
+        """Throws Error where Q(σ) is singular to working precision at an arbitrary σ.
+
+        By Oettli and Prager, changes of the entries by max |Q x| / (|Q| |x|) make it singular; x comes from inverse iteration.
+        """
+        sigma, lu = self.factor(self.gamma * (0.6 + 0.7j))
+        Q = self.K + sigma * self.C + sigma**2 * self.M
+        x = np.random.default_rng(0).standard_normal(Q.shape[0]).astype(complex)
+        for _ in range(2):
+            x = lu.solve(x)
+            x /= np.linalg.norm(x)
+        if not np.max(abs(Q @ x) / np.maximum(abs(Q) @ abs(x), np.finfo(float).tiny)) > SINGULAR:
+            raise singular(self.where)
+
+    def factor(self, sigma):
+        """σ and the LU decomposition of Q(σ); σ is moved slightly where Q(σ) is singular."""
+        for step in range(4):
+            moved = sigma + step * 1e-4 * (1 + 1j if np.iscomplex(sigma) else 1) * (abs(sigma) + 1e-2 * self.gamma)
+            matrix = (self.K + moved * self.C + moved**2 * self.M).tocsc()
+            try:
+                return moved, scipy.sparse.linalg.splu(matrix, permc_spec="COLAMD" if matrix.shape[0] < 50 else "MMD_AT_PLUS_A",
+                                                       diag_pivot_thresh=0.1, options={"SymmetricMode": True})
+            except RuntimeError:  # exactly singular
+                continue
+        raise singular(self.where)
+
+    def nearest(self, sigma, number, seed, factor=None):
+        """At least `number` eigenvalues with their vectors, and the radius about the shift inside which there are no others."""
+        n, scale = self.M.shape[0], self.gamma
+        if number >= n:
+            return *solve_dense(self.M, self.C, self.K, self.where), math.inf
+        sigma, lu = factor or self.factor(sigma)
+        damping = self.C + sigma * self.M
+
+        def apply(state):
+            u, w = state[:n], state[n:]
+            x = -lu.solve(scale * (self.M @ w) + damping @ u)
+            return scale * np.concatenate([x, (u + sigma * x) / scale])
+
+        is_complex = np.iscomplex(sigma)
+        operator = scipy.sparse.linalg.LinearOperator((2 * n, 2 * n), matvec=apply, dtype=complex if is_complex else float)
+        start = np.random.default_rng(seed).standard_normal((2, 2 * n))
+        try:
+            inverse, vectors = scipy.sparse.linalg.eigs(operator, k=number, v0=start[0] + 1j * start[1] if is_complex else start[0],
+                                                        ncv=min(2 * number + 20, 2 * n - 1), tol=0, maxiter=1000)
+        except scipy.sparse.linalg.ArpackNoConvergence as problem:
+            raise Error(f"ARPACK does not converge about {sigma:.6g}: {problem}", self.where, "choose another shift or fewer eigenvalues") from problem
+        finite = abs(inverse) > 1e-14 * abs(inverse).max(initial=0.0)
+        eigenvalues = sigma + scale / inverse[finite]
+        radius = abs(eigenvalues - sigma).max() if finite.all() else math.inf
+        return eigenvalues, vectors[:n, finite], radius
+
+
+class Rectangle:
+    """A region of the complex plane, `(lower, upper)` real and imaginary parts [1/s]."""
+
+    def __init__(self, real, imaginary):
+        self.real, self.imaginary = real, imaginary
+
+    @property
+    def centre(self):
+        return complex(sum(self.real) / 2, sum(self.imaginary) / 2)
+
+    @property
+    def radius(self):
+        return 0.5 * math.hypot(self.real[1] - self.real[0], self.imaginary[1] - self.imaginary[0])
+
+    def contains(self, eigenvalues, margin=0.0):
+        return ((eigenvalues.real >= self.real[0] - margin) & (eigenvalues.real <= self.real[1] + margin)
+                & (eigenvalues.imag >= self.imaginary[0] - margin) & (eigenvalues.imag <= self.imaginary[1] + margin))
+
+    def halves(self):
+        along_real = self.real[1] - self.real[0] > self.imaginary[1] - self.imaginary[0]
+        lower, upper = self.real if along_real else self.imaginary
+        parts = ((lower, 0.5 * (lower + upper)), (0.5 * (lower + upper), upper))
+        return [Rectangle(part, self.imaginary) if along_real else Rectangle(self.real, part) for part in parts]
+
+
+def solve_region(solver, region, seed):
+    """Eigenvalues and vectors in a rectangle; it is divided while one shift would need too many eigenvalues."""
+    sigma = region.centre if region.centre.imag else region.centre.real
+    factor, number = solver.factor(sigma), FIRST_NUMBER
+    while True:
+        eigenvalues, vectors, radius = solver.nearest(sigma, number, seed, factor)
+        reach = region.radius + abs(factor[0] - region.centre)
+        if radius > reach:
+            inside = region.contains(eigenvalues, EQUAL * solver.gamma)
+            return eigenvalues[inside], vectors[:, inside]
+        # Eigenvalues per area stay about equal
+        number = max(2 * number, math.ceil(1.2 * number * (reach / radius)))
+        if number > LARGEST_NUMBER:
+            parts = [solve_region(solver, half, seed) for half in region.halves()]
+            eigenvalues, vectors = np.concatenate([part[0] for part in parts]), np.hstack([part[1] for part in parts])
+            kept = merge(eigenvalues, vectors)
+            return eigenvalues[kept], vectors[:, kept]
+
+
+def merge(eigenvalues, vectors, tolerance=EQUAL):
+    """Of pairs found in several runs each mode once: which to keep.
+
+    Pairs with the same eigenvalue are copies of one mode, or members of a multiple eigenvalue; a member is kept when its
+    vector does not depend on those kept before.
+    """
+    kept, left = [], list(np.argsort(eigenvalues.imag, kind="stable"))
+    unit = vectors / np.linalg.norm(vectors, axis=0)
+    while left:
+        cluster = [left[0]]
+        for candidate in left[1:]:
+            if eigenvalues[candidate].imag - eigenvalues[cluster[-1]].imag > tolerance * abs(eigenvalues[candidate]):
+                break
+            cluster.append(candidate)
+        left = left[len(cluster):]
+        # Eigenvalues of equal frequency may still differ in growth rate: -R and R at least.
+        while cluster:
+            equal = [i for i in cluster if abs(eigenvalues[i] - eigenvalues[cluster[0]]) <= 10 * tolerance * abs(eigenvalues[i])]
+            cluster = [i for i in cluster if i not in equal]
+            _, triangle, order = scipy.linalg.qr(unit[:, equal], mode="economic", pivoting=True)
+            rank = int(np.sum(abs(np.diagonal(triangle)) > INDEPENDENT))
+            kept.extend(equal[i] for i in order[:rank])
+    return np.array(kept, dtype=int)
+
+
+def collect(solve, n_agreeing=2, n_runs=8):
+    """Eigenvalues and vectors from runs with different starting vectors.
+
+    A Krylov method that starts from one vector may miss members of multiple eigenvalues, so runs are repeated, and what
+    they find is merged, until `n_agreeing` runs in a row (the first one counts) bring nothing new. solve(seed) gives a
+    pair or, where it failed, None.
+    """
+    pairs, agreeing = None, 0
+    for seed in range(1, n_runs + 1):
+        found = solve(seed)
+        if found is None:
+            continue
+        n_before = 0 if pairs is None else len(pairs[0])
+        if pairs is not None:
+            found = np.concatenate([pairs[0], found[0]]), np.hstack([pairs[1], found[1]])
+        keep = merge(*found)
+        pairs = found[0][keep], found[1][:, keep]
+        agreeing = agreeing + 1 if len(keep) == n_before else 1
+        if agreeing == n_agreeing:
+            return pairs
+    if pairs is None:
+        raise Error("the eigensolver fails with every starting vector", "eigensolver", "check the matrices")
+    raise Error("further starting vectors keep bringing new eigenvalues", "eigensolver", "select fewer eigenvalues")
+
+
+def solve(M, C, K, number=None, largest=None, region=None, shift=None, where="system"):
+    """Eigenpairs of a quadratic pencil of real sparse matrices: those selected, or all of a small system.
+
+    region: ((lower, upper) real part, (lower, upper) imaginary part) [1/s]; largest: those with |λ| up to it; number: so many that are closest
+    to `shift` (0). Throws Error where M = 0, where the pencil is singular or where nothing is selected from a large system.
+    """
+    n = M.shape[0]
+    if M.nnz == 0 or not abs(M.data).max(initial=0.0):
+        raise Error("the mass is zero: Q(λ) is not quadratic", where, "add a term of power 2")
+    if empty := np.flatnonzero(sum(abs(matrix).sum(axis=1).A1 for matrix in (M, C, K)) == 0).tolist():
+        raise Error(f"row {empty[0] + 1} of Q(λ) is zero, det Q(λ) = 0 for every λ", where, "remove this dof")
+    if sum(choice is not None for choice in (number, largest, region)) > 1:
+        raise Error("`number`, `largest` and `region` exclude each other", where, "give one of them")
+    if n <= DENSE_SIZE or (number or 0) > n:
+        eigenvalues, vectors = solve_dense(M, C, K, where)
+    elif region is None and largest is None and number is None:
+        raise Error(f"all eigenvalues of {n} dofs are too many", where, "give `number`, `largest` or `region`")
+    else:
+        solver = ShiftInvert(M, C, K, where)
+        solver.check()
+        if number is not None:
+            eigenvalues, vectors = collect(lambda seed: solver.nearest(shift or 0.0, number + 8, seed)[:2])
+        else:
+            rectangle = Rectangle((-largest, largest), (0.0, largest)) if region is None else Rectangle(*region)
+            eigenvalues, vectors = collect(lambda seed: solve_region(solver, rectangle, seed))
+            if region is None:
+                above = eigenvalues.imag > EQUAL * abs(eigenvalues)
+                eigenvalues = np.concatenate([eigenvalues[above].conj(), eigenvalues])
+                vectors = np.hstack([vectors[:, above].conj(), vectors])
+    if region is not None:
+        chosen = Rectangle(*region).contains(eigenvalues)
+    elif largest is not None:
+        chosen = abs(eigenvalues) <= largest
+    else:
+        chosen = np.argsort(abs(eigenvalues - (shift or 0.0)), kind="stable")[:number]
+    return eigenpairs(M, C, K, eigenvalues[chosen], vectors[:, chosen])

@@ -1,0 +1,83 @@
+"""What a page says of a run: verdict, sections, tables, what was checked, and how to repeat it. Everything is read from the results, nothing is
+computed anew.
+
+Each kind of results has a module in PAGES: whether it is there (`is_of`), its `verdict`, its `sections` with charts, what was checked
+(`checks`), titles of its tables (`TITLES`), and plots that its charts replace (`REPLACED`).
+"""
+
+import base64
+import math
+
+from squeal.reporting import designs, search, sensitivity, stability, stability_map, sweep
+from squeal.reporting.charts import digits
+
+PAGES = (sweep, stability_map, stability, search, designs, sensitivity)
+LARGEST_TABLE = 2500  # rows
+
+
+def verdict(results, pages):
+    """Level and sentence."""
+    found = [said for page in pages if (said := page.verdict(results))]
+    if not found:
+        return "none", f"Results of Study = {results.parameter('Study')}: see the tables."
+    return found[0][0], " ".join(sentence for _, sentence in found)
+
+
+def tables(results, pages):
+    """All tables but those with a row for every point of a chart, the most important ones first; and the names of those that are too long."""
+    titles = {name: title for page in pages for name, title in page.TITLES.items()}
+    order = {name: place for place, name in enumerate(titles)}
+    found, too_long = [], []
+    for name in sorted(results.names(), key=lambda name: (order.get(name, len(order)), name)):
+        table = results.table(name)
+        if len(table) > LARGEST_TABLE or name.startswith("branches"):
+            too_long.append(name)
+        elif len(table):
+            found.append({"id": name, "title": titles.get(name, name.replace("_", " ").capitalize()), "columns": table.columns,
+                          "rows": [[row[column] for column in table.columns] for row in table.rows]})
+    return found, too_long
+
+
+def pictures(results, pages):
+    """Plots of the run that no chart replaces, as data."""
+    replaced = tuple(name for page in pages for name in page.REPLACED)
+    return [{"id": "plot-" + path.stem, "title": path.stem.replace("_", " ").capitalize(),
+             "picture": "data:image/svg+xml;base64," + base64.b64encode(path.read_bytes()).decode()}
+            for path in sorted((results.folder / "plots").glob("*.svg")) if not path.stem.startswith(replaced)]
+
+
+def checks(results, pages):
+    """What was checked, and how accurate it is: pairs of what and how much."""
+    record = results.record
+    counts, quantities = record.get("counts", {}), record.get("quantities", {})
+    found = [check for page in pages for check in page.checks(results)]
+    for step in record.get("steps", []):
+        if step["name"] in ("Mode count", "Real modes"):
+            found.append((step["name"].lower(), step["result"]))
+    for name in ("digits of the eigenvalues [-]", "largest condition number of an eigenvalue [-]", "largest estimated error of lambda [-]",
+                 "largest estimated error of a frequency by the mesh [-]", "largest estimated error of a divergence rate by the mesh [-]",
+                 "largest difference of a divergence rate from what its powers add up to [-]"):
+        if name in quantities:
+            found.append((name.removesuffix(" [-]"), digits(quantities[name], 3)))
+    for name in ("dofs", "contact nodes", "modes converged on the mesh"):
+        if name in counts:
+            found.append((name, str(counts[name])))
+    if "largest estimated error of a frequency by the mesh [-]" not in quantities:
+        found.append(("error of the mesh", "not estimated; set Accuracy = 1 % or Discretization/Coarser mesh"))
+    return found
+
+
+def repeat(results):
+    record = results.record
+    return {"command": record.get("command", ""), "finished": record.get("finished", ""), "time": f"{record.get('wall time [s]', math.nan):.1f} s",
+            "versions": ", ".join(f"{name} {version}" for name, version in record.get("versions", {}).items()),
+            "warnings": record.get("warnings", []), "parameters": (results.folder / "parameters.prm").read_text(encoding="utf-8", errors="replace")}
+
+
+def content(results):
+    pages = [page for page in PAGES if page.is_of(results)]
+    level, sentence = verdict(results, pages)
+    shown, too_long = tables(results, pages)
+    return {"title": results.folder.resolve().name, "study": results.parameter("Study"), "level": level, "verdict": sentence,
+            "sections": [section for page in pages for section in page.sections(results)] + pictures(results, pages), "tables": shown,
+            "too long": too_long, "checks": checks(results, pages), "repeat": repeat(results)}

@@ -1,0 +1,116 @@
+"""The page of a study of designs: where squeal begins, how fast it grows, and which values make a design quiet."""
+
+from squeal.reporting.charts import WEAK, digits, layout, number, plain, short
+
+TITLES = {"designs": "Designs", "design_thresholds": "Where modes of designs begin and cease to grow", "design_modes": "Modes of designs"}
+REPLACED = ("designs",)
+ONSET, LARGEST = "mu of 0.01 % [-]", "largest divergence rate [%]"
+
+
+def is_of(results):
+    return results.has("designs")
+
+
+def variables_of(table):
+    return table.columns[1:table.columns.index("outcome")]
+
+
+def name_of(variable):
+    """The name of a variable for an axis; of several that take the same value the first."""
+    first, *others = variable.split(" + ")
+    return first.split("/")[-1] + (" …" if others else "")
+
+
+def solved(table):
+    return [row for row in table.rows if row["outcome"] == "solved"]
+
+
+def design_text(row, variables):
+    return "design " + row["design [-]"] + " (" + "; ".join(f"{name_of(name)} = {plain(row[name])}" for name in variables) + ")"
+
+
+def end_of_sweep(results):
+    return float(results.parameter("Sweep/Last friction coefficient"))
+
+
+def verdict(results):
+    """None of a search, which says which design is the best."""
+    if results.has("search"):
+        return None
+    table = results.table("designs")
+    rows = solved(table)
+    left = len(table) - len(rows)
+    outcome = f"{len(rows)} of {len(table)} designs solved" + (f", {left} refused or failed" if left else "")
+    if not rows:
+        return "none", outcome + "."
+    end = end_of_sweep(results)
+    quiet = [row for row in rows if not row[ONSET]]
+    best = max(rows, key=lambda row: (number(row[ONSET] or "inf"), -number(row[LARGEST] or "0")))
+    name = design_text(best, variables_of(table))
+    if quiet:
+        return "stable", f"{len(quiet)} of {len(rows)} designs stay below a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}."
+    return "unstable", (f"All {len(rows)} designs exceed a divergence rate of {WEAK} % up to μ = {end:g}; the quietest is {name}, from "
+                        f"μ = {digits(number(best[ONSET]), 3)} on ({best['label at 0.01 %']}), with {digits(number(best[LARGEST] or '0'), 3)} % at most."
+                        + (f" {outcome}." if left else ""))
+
+
+def sections(results):
+    return [onset_section(results), lines_section(results)] if solved(results.table("designs")) else []
+
+
+def checks(results):
+    rows = solved(results.table("designs"))
+    found = [("designs of which all modes were found that were counted", f"{sum(row['complete [-]'] == '1' for row in rows)} of {len(rows)}")]
+    for column, text in (("estimated error of lambda [-]", "largest estimated error of λ"), ("eps_res [-]", "largest residual of a mode, eq. (16)")):
+        found.append((text, digits(max((number(row[column]) for row in rows), default=0), 2)))
+    return found
+
+
+def about(row, variables, end):
+    """What is known of a solved design."""
+    return "<br>".join([f"<b>design {row['design [-]']}</b>", *(f"{name}: {plain(row[name])}" for name in variables),
+                        f"from μ = {digits(number(row[ONSET]))} on ({row['label at 0.01 %']})" if row[ONSET] else f"quiet up to μ = {end:g}",
+                        f"{digits(number(row[LARGEST] or '0'))} % at most ({row['label of largest']} at "
+                        f"{digits(number(row['frequency of largest [Hz]']), 5)} Hz)" if row[LARGEST] else "no mode grows"])
+
+
+def onset_section(results):
+    """Onset over growth: what lies to the right and low is quiet."""
+    table = results.table("designs")
+    variables, end, rows = variables_of(table), end_of_sweep(results), solved(table)
+    traces = []
+    for label in sorted({row["label of largest"] or "none" for row in rows}):
+        own = [row for row in rows if (row["label of largest"] or "none") == label]
+        traces.append({"type": "scatter", "mode": "markers", "name": label, "x": [short(row[ONSET] or end) for row in own],
+                       "y": [short(row[LARGEST] or "0") for row in own], "marker": {"size": 10},
+                       "customdata": [about(row, variables, end) for row in own], "hovertemplate": "%{customdata}<extra></extra>"})
+    return {"id": "designs_chart", "title": "Designs: where squeal begins, and how fast it grows",
+            "caption": "Each point is a design, named by the mode that grows fastest, over the μ from which on a divergence rate exceeds 0.01 %; what "
+                       f"lies to the right and low is quiet. At μ = {end:g} the study ends.",
+            "data": traces, "layout": layout("μ of 0.01 %", "largest divergence rate [%]", showlegend=True)}
+
+
+def lines_section(results):
+    """Every design as a line through its values; ranges of an axis can be chosen with the mouse."""
+    table = results.table("designs")
+    rows, end = solved(table), end_of_sweep(results)
+    dimensions = []
+    for name in variables_of(table):
+        texts = [row[name] for row in rows]
+        try:
+            dimensions.append({"label": name_of(name), "values": [float(text) for text in texts], "tickformat": ".4~g"})
+        except ValueError:
+            names = list(dict.fromkeys(texts))
+            dimensions.append({"label": name_of(name), "values": [names.index(text) for text in texts], "tickvals": list(range(len(names))),
+                               "ticktext": names})
+    onset, largest = [number(row[ONSET] or end) for row in rows], [number(row[LARGEST] or "0") for row in rows]
+    dimensions += [{"label": "μ of 0.01 %", "values": onset, "tickformat": ".4~g"},
+                   {"label": "largest rate [%]", "values": largest, "tickformat": ".4~g"}]
+    by_rate = results.has("search") and results.parameter("Search/Goal") == "divergence rate"
+    return {"id": "variables_chart", "title": "Which values make a design quiet",
+            "caption": "Each line is a design; drag along an axis to choose a range. Colour is the "
+                       + ("largest divergence rate [%]." if by_rate else "μ from which on it exceeds 0.01 %."),
+            "data": [{"type": "parcoords", "dimensions": dimensions, "line": {"color": largest if by_rate else onset, "colorscale": "Viridis",
+                                                                              "reversescale": by_rate, "showscale": True}}],
+            "least width": 110 * len(dimensions) + 100,
+            "layout": layout("", "", margin={"l": 70, "r": 60, "t": 50, "b": 30})}

@@ -1,0 +1,157 @@
+"""The page of a search: its history, the best design with what full order says of it, and all designs over their variables."""
+
+import re
+import shlex
+import textwrap
+
+from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, WEAK, digits, layout, number, plain, short
+from squeal.reporting.designs import LARGEST, ONSET, about, design_text, end_of_sweep, name_of
+
+TITLES = {"search": "Designs in the order of their evaluation", "full_order": "The best design at full order"}
+REPLACED = ()
+GOALS = {LARGEST: "largest divergence rate [%]", ONSET: "μ of 0.01 %"}
+
+
+class Search:
+    """Evaluations with their goal, and the best of them."""
+
+    def __init__(self, results):
+        self.table = results.table("search")
+        self.goal = self.table.columns[-2]
+        self.variables = self.table.columns[2:-2]
+        self.designs = {row["design [-]"]: row for row in results.table("designs").rows}
+        self.solved = [row for row in self.table.rows if row[self.goal]]
+        self.end = end_of_sweep(results)
+        better = max if self.goal == ONSET else min
+        self.best = better(self.solved, key=self.value) if self.solved else None
+        samples = [row for row in self.solved if row["phase"] == "sample"]
+        self.best_sample = better(samples, key=self.value) if samples else None
+
+    def value(self, row):
+        return number(row[self.goal])
+
+    def text(self, row):
+        """The goal that a design reaches."""
+        return f"{digits(self.value(row))} %" if self.goal == LARGEST else f"μ = {digits(self.value(row))}"
+
+
+def is_of(results):
+    return results.has("search")
+
+
+def verdict(results):
+    search = Search(results)
+    if search.best is None:
+        return "none", f"None of {len(search.table)} designs could be solved."
+    row = search.designs[search.best["design [-]"]]
+    grows = number(row[LARGEST] or "0") > WEAK
+    text = f"Of {len(search.table)} designs the best is {design_text(row, search.variables)}: "
+    if grows:
+        text += (f"a divergence rate of {digits(number(row[LARGEST]), 3)} % at most ({row['label of largest']}), "
+                 f"and 0.01 % from μ = {digits(number(row[ONSET]), 3)} on.")
+    else:
+        text += f"it stays below a divergence rate of {WEAK} % up to μ = {search.end:g}."
+    if search.best_sample is not None and search.best_sample is not search.best:
+        text += f" The best of the samples reaches {search.text(search.best_sample)}, this one {search.text(search.best)}."
+    elif len(search.table) > sum(row["phase"] == "sample" for row in search.table.rows):
+        text += " It is one of the samples: the searches from the best two of them found none better."
+    return "unstable" if grows else "stable", text
+
+
+def sections(results):
+    search = Search(results)
+    found = [history_section(search)]
+    if search.best is not None:
+        found += [best_section(results, search), variables_section(results, search)]
+    return found
+
+
+def checks(results):
+    if not results.has("full_order"):
+        return []
+    rows = results.table("full_order")
+    return [("largest residual of the best design's modes at full order", digits(max(rows.numbers(rows.columns[-1]), default=0), 2))]
+
+
+def history_section(search):
+    """The goal over the number of the evaluation, and the best so far."""
+    first = search.table.rows.index(search.solved[0]) if search.solved else len(search.table)
+    best = search.table.rows[first:]
+    traces = [{"type": "scatter", "mode": "lines", "name": "best so far", "x": [int(row["design [-]"]) for row in best],
+               "y": [short(row["best " + search.goal]) for row in best], "line": {"color": "#222", "width": 1.6, "shape": "hv"},
+               "hovertemplate": "best of %{x} designs: %{y:.4g}<extra></extra>"}]
+    for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond")):
+        traces.append(designs_trace(search, [row for row in search.solved if row["phase"] == phase], title, colour, symbol,
+                                    lambda row: int(row["design [-]"])))
+    left = [row for row in search.table.rows if not row[search.goal]]
+    if left:
+        worst = (min if search.goal == ONSET else max)(map(search.value, search.solved), default=0)
+        traces.append({"type": "scatter", "mode": "markers", "name": "refused or failed", "x": [int(row["design [-]"]) for row in left],
+                       "y": [worst] * len(left), "marker": {"symbol": "x", "color": "#8a939c", "size": 9},
+                       "customdata": [f"<b>design {row['design [-]']}</b><br>{lines(search.designs[row['design [-]']]['reason'])}" for row in left],
+                       "hovertemplate": "%{customdata}<extra></extra>"})
+    caption = ("Each mark is a design, the line is the best so far: first samples of the ranges, then searches that go on from the best two of them."
+               + (" Crosses have no value: a search turns back from them." if left else ""))
+    axes = layout("evaluation", GOALS[search.goal])
+    return {"id": "history", "title": "History of the search", "caption": caption, "data": traces, "layout": axes}
+
+
+def lines(text):
+    return "<br>".join(textwrap.wrap(text, 44))
+
+
+def designs_trace(search, rows, title, colour, symbol, place):
+    return {"type": "scatter", "mode": "markers", "name": title, "x": [place(row) for row in rows], "y": [short(row[search.goal]) for row in rows],
+            "marker": {"color": colour, "size": 8, "symbol": symbol},
+            "customdata": [about(search.designs[row["design [-]"]], search.variables, search.end) for row in rows],
+            "hovertemplate": "%{customdata}<extra></extra>"}
+
+
+def best_section(results, search):
+    """Values of the best design beside those of the scene, and what full order says of it."""
+    ranges = dict(re.findall(r"\s*([^;=]+?)\s*=\s*([^;]+?)\s*(?:;|$)", results.parameter("Designs/Variables")))
+    facts, notes = [], []
+    for name in search.variables:
+        value = number(search.best[name])
+        facts.append([name, plain(value_of_scene(results, name)), ranges.get(name, "").replace(" to ", " … "), plain(search.best[name], 4)])
+        ends = [float(end) for end in re.findall(r"[-+.\deE]+", ranges.get(name, "").replace(" to ", " "))[:2]]
+        if value in ends:
+            notes.append(f"{name} is at the {'lower' if value == ends[0] else 'upper'} end of its range: a wider one may have a better design.")
+    row = search.designs[search.best["design [-]"]]
+    for full in results.table("full_order").rows if results.has("full_order") else []:
+        text = (f"At full order, μ = {number(full['mu [-]']):.4g}: {full['unstable modes [-]']} of {full['modes [-]']} modes grow, at most with "
+                f"{digits(number(full[RATE]))} % ({full['label']} at {number(full[FREQUENCY]):.1f} Hz)")
+        if row[LARGEST] and abs(number(full["mu [-]"]) - number(row["mu of largest [-]"])) < 1e-9:
+            text += f"; the sweep of the search has {digits(number(row[LARGEST]))} % there"
+        notes.append(text + ".")
+    # The first word of the command, in which blanks may stand between quotes
+    program = re.match(r"(?:[^\s'\\]|\\.|'[^']*')*", results.record.get("command", ""))[0] or "squeal"
+    return {"id": "best", "title": f"The best design, number {search.best['design [-]']}",
+            "facts": {"columns": ["parameter", "scene", "range", "best"], "rows": facts}, "notes": notes,
+            "caption": "Its parameter file is best.prm beside this page; to sweep it by itself:",
+            "command": f"{program} {shlex.quote(str(results.folder / 'best.prm'))}"}
+
+
+def value_of_scene(results, name):
+    """The value of a variable in the scene as the parameter file describes it."""
+    match = re.fullmatch(r"([^+\[]+?)(?:\[(\d+)\])?(?:\s*\+.*)?", name)
+    text = results.parameters.get(match[1], "") if match else ""
+    if match and match[2]:
+        numbers = re.findall(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", text)
+        text = numbers[int(match[2]) - 1] if int(match[2]) <= len(numbers) else ""
+    return text
+
+
+def variables_section(results, search):
+    """The goal over each variable."""
+    choices = []
+    for name in search.variables:
+        traces = [designs_trace(search, [row for row in search.solved if row["phase"] == phase], title, colour, symbol,
+                                lambda row: number(row[name]))
+                  for phase, title, colour, symbol in (("sample", "samples", STABLE, "circle"), ("search", "search", UNSTABLE, "diamond"))]
+        traces.append({"type": "scatter", "mode": "markers", "name": "the best", "x": [number(search.best[name])],
+                       "y": [short(search.best[search.goal])], "marker": {"symbol": "circle-open", "size": 17, "color": "#222", "line": {"width": 2}},
+                       "hoverinfo": "skip"})
+        choices.append({"key": name, "name": name_of(name), "data": traces, "layout": layout(name, GOALS[search.goal])})
+    return {"id": "over_variables", "title": "Designs over their variables", "choices": choices, "chosen": search.variables[0],
+            "caption": "Each mark is a design that was solved; a ring is around the best one. Variable:"}

@@ -1,0 +1,194 @@
+"""What one per cent of each parameter changes: of modes, of thresholds; pairs of modes that coalesce, and how accurate derivatives are."""
+
+from squeal.reporting.charts import FREQUENCY, RATE, STABLE, UNSTABLE, digits, layout, number, short
+
+TITLES = {"sensitivity_ranking": "What one per cent changes of the mode that grows fastest", "sensitivities": "What one per cent changes of each mode",
+          "sensitivities_thresholds": "How far one per cent moves thresholds"}
+REPLACED = ("sensitivity",)
+CHANGE, FREQUENCY_CHANGE, MU_CHANGE = "divergence rate per 1 % [percentage points]", "frequency per 1 % [Hz]", "mu per 1 % [-]"
+MOST_BARS = 16
+ROUNDING = 1e-8  # of R/ω, as include/squeal/modes/verdict.h has it
+LEAST_CHANGE = 1e-4  # [percentage points]
+ROUGH = 0.01  # of the largest derivative of a threshold, from which its estimated error is worth a note
+BAR, AXES = 30, 130  # heights [pixels]
+
+
+def is_of(results):
+    return results.has("sensitivities")
+
+
+def verdict(results):
+    rows = modes_of(results.table("sensitivities"))[0]
+    error = results.record.get("quantities", {}).get("largest estimated error of lambda [-]", 0)
+    grows = number(rows[0][RATE]) / 100 - 3 * error > ROUNDING
+    text = f"At μ = {results.number('Operation/Friction coefficient'):g} {rows[0]['label']} at {number(rows[0][FREQUENCY]):.0f} Hz "
+    text += (f"grows fastest, with a divergence rate of {digits(number(rows[0][RATE]), 3)} %. " if grows else
+             "is the least damped mode, and none grows. ")
+    first, second = (*ranking(rows), None, None)[:2]
+    if first is None or abs(number(first[CHANGE])) < LEAST_CHANGE:
+        text += f"One per cent of no parameter changes its divergence rate by {LEAST_CHANGE:g} percentage points."
+    else:
+        text += f"Of all parameters {first['parameter']} changes that most: one per cent more by {signed(first[CHANGE])} percentage points"
+        text += f", then {second['parameter']} by {signed(second[CHANGE])}." if second else "."
+    return "unstable" if grows else "stable", text
+
+
+def sections(results):
+    found = [modes_section(modes_of(results.table("sensitivities")))]
+    if results.has("sensitivities_thresholds"):
+        found += thresholds_sections(thresholds_of(results.table("sensitivities_thresholds")))
+    return found + notes_sections(results)
+
+
+def checks(results):
+    worst = max(relative_error(rows, "growth rate per unit [1/s]", "estimated error of the growth rate per unit [1/s]")
+                for rows in modes_of(results.table("sensitivities")))
+    found = [("largest estimated error of a mode's derivatives, beside the largest of them", digits(worst, 2))]
+    if results.has("sensitivities_thresholds"):
+        thresholds = thresholds_of(results.table("sensitivities_thresholds"))
+        known = [rows for rows in thresholds if rows[0]["derivative of"] != "none"]
+        found.append(("thresholds with derivatives", f"{len(known)} of {len(thresholds)}"))
+        if known:
+            worst = max(relative_error(rows, "mu per unit [-]", "estimated error per unit [-]") for rows in known)
+            found.append(("largest estimated error of a threshold's derivatives, beside the largest of them", digits(worst, 2)))
+    for step in results.record.get("steps", []):
+        if step["name"].startswith("Derivatives of "):
+            found.append((step["name"].lower(), step["result"]))
+    return found
+
+
+def groups(table, columns):
+    """Rows with the same values in some columns, in the order of the table."""
+    found = {}
+    for row in table.rows:
+        found.setdefault(tuple(row[column] for column in columns), []).append(row)
+    return list(found.values())
+
+
+def modes_of(table):
+    """Rows of each mode, the one that grows fastest first."""
+    return sorted(groups(table, ("mode [-]",)), key=lambda rows: -number(rows[0][RATE]))
+
+
+def thresholds_of(table):
+    """Rows of each threshold, by ascending friction coefficient."""
+    return groups(table, ("mu [-]", "event", "label", "label of partner", FREQUENCY))
+
+
+def ranking(rows, change=CHANGE):
+    """Rows of parameters of all pins together that have a per cent, the largest change first."""
+    return sorted((row for row in rows if row[change] and not row["only of"]), key=lambda row: -abs(number(row[change])))
+
+
+def signed(text):
+    return f"{number(text):+.4f}".replace("-", "−")
+
+
+def relative_error(rows, derivative, error):
+    """Largest estimated error of what one per cent changes, beside the largest change."""
+    values = [(abs(number(row["value"])), row) for row in rows if row[derivative] and row[error]]
+    largest = max((value * abs(number(row[derivative])) for value, row in values), default=0)
+    return max((value * number(row[error]) for value, row in values), default=0) / largest if largest else 0
+
+
+def bars(rows, change, title, about, squeals):
+    """A bar for each parameter, the largest change on top."""
+    shown = ranking(rows, change)[:MOST_BARS]
+    traces = []
+    for sign in (1, -1):
+        own = [row for row in shown if sign * number(row[change]) > 0 or sign == 1 and number(row[change]) == 0]
+        traces.append({"type": "bar", "orientation": "h", "y": [in_two_lines(row["parameter"]) for row in own],
+                       "x": [short(row[change]) for row in own], "marker": {"color": UNSTABLE if sign == squeals else STABLE},
+                       "customdata": [about(row) for row in own], "hovertemplate": "%{customdata}<extra></extra>"})
+    axes = layout(title, "", bargap=0.25, showlegend=False)
+    axes["yaxis"].update(categoryorder="array", categoryarray=[in_two_lines(row["parameter"]) for row in reversed(shown)], tickfont={"size": 11},
+                         ticks="", showgrid=False)
+    axes["xaxis"].update(zeroline=True, zerolinecolor="#444", nticks=5, tickangle=0, exponentformat="power")
+    axes["margin"].update(l=10, t=10)
+    return traces, axes
+
+
+def in_two_lines(parameter):
+    """Of mounts the name of the parameter and the direction, of others section and name."""
+    return parameter.split("/", 1)[1].replace(": ", "<br>") if ": " in parameter else parameter.replace("/", "<br>", 1)
+
+
+def height_of(groups_of_rows, change):
+    return AXES + BAR * max((min(MOST_BARS, len(ranking(rows, change))) for rows in groups_of_rows), default=1)
+
+
+def modes_section(modes):
+    choices = []
+    for rows in modes:
+        data, axes = bars(rows, CHANGE, "change [% points]", about_mode, squeals=1)
+        choices.append({"key": rows[0]["mode [-]"], "data": data, "layout": axes,
+                        "name": f"{rows[0]['label']}, {number(rows[0][FREQUENCY]):.0f} Hz, ξ = {digits(number(rows[0][RATE]), 3)} %"})
+    return {"id": "sensitivity", "title": "What one per cent of each parameter changes of growth", "choices": choices, "chosen": choices[0]["key"],
+            "height": height_of(modes, CHANGE),
+            "caption": "How much one per cent more of each parameter changes the divergence rate: red bars let the mode grow more, blue ones less. "
+                       "Mode:"}
+
+
+def about_mode(row):
+    parts = [f"<b>{row['parameter']}</b> = {value_text(row)}", f"one per cent more: {signed(row[CHANGE])} percentage points of divergence rate",
+             f"{digits(number(row[FREQUENCY_CHANGE]))} Hz, {digits(number(row['growth rate per 1 % [1/s]']))} 1/s"]
+    if row["derivative of"] != "lambda":
+        parts.append("of the " + row["derivative of"])
+    return "<br>".join(parts)
+
+
+def value_text(row):
+    return f"{digits(number(row['value']))} {row['unit']}".rstrip(" -")
+
+
+def thresholds_sections(thresholds):
+    known = [rows for rows in thresholds if rows[0]["derivative of"] != "none"]
+    if not known:
+        return []
+    choices = []
+    for i, rows in enumerate(known):
+        data, axes = bars(rows, MU_CHANGE, "change of μ", about_threshold, squeals=-1)
+        choices.append({"key": str(i), "name": threshold_text(rows[0]), "data": data, "layout": axes})
+    moves = [max((abs(number(row[MU_CHANGE])) for row in ranking(rows, MU_CHANGE)), default=0) for rows in known]
+    most = max(range(len(known)), key=lambda i: (known[i][0]["event"] == "onset", moves[i]))
+    return [{"id": "sensitivity_thresholds", "title": "How far one per cent moves a threshold", "choices": choices, "chosen": str(most),
+             "height": height_of(known, MU_CHANGE),
+             "caption": "How much one per cent more of each parameter changes the friction coefficient of a threshold: red bars to a smaller one, blue ones "
+                        "to a larger one. The first shown is the onset that moves most. Threshold:"}]
+
+
+def threshold_text(row):
+    partner = f" with {row['label of partner']}" if row["label of partner"] else ""
+    return f"μ = {digits(number(row['mu [-]']))}: {row['event']} of {row['label'] or 'unnamed'}{partner}, {number(row[FREQUENCY]):.0f} Hz"
+
+
+def about_threshold(row):
+    share = number(row[MU_CHANGE]) / number(row["mu [-]"])
+    return "<br>".join([f"<b>{row['parameter']}</b> = {value_text(row)}",
+                        f"one per cent more: μ changes by {digits(number(row[MU_CHANGE]))}, {100 * share:.3g} % of it",
+                        "from the " + row["derivative of"]])
+
+
+def notes_sections(results):
+    """Pairs near exceptional points, where two modes become one, and what has no derivative."""
+    notes = []
+    modes = modes_of(results.table("sensitivities"))
+    for rows in modes:
+        if rows[0]["derivative of"] != "lambda":
+            notes.append(f"{rows[0]['label']} at {number(rows[0][FREQUENCY]):.1f} Hz: its derivatives are those of the {rows[0]['derivative of']}.")
+    if results.has("sensitivities_thresholds"):
+        thresholds = thresholds_of(results.table("sensitivities_thresholds"))
+        pairs = sum(rows[0]["derivative of"] == "squared difference of the pair" for rows in thresholds)
+        if pairs:
+            notes.append(f"{pairs} of {len(thresholds)} thresholds are exceptional points, where two modes become one and no single λ has a derivative: "
+                         "they are differentiated by the squared difference of the pair, (λ₁ − λ₂)², which is smooth there.")
+        for rows in thresholds:
+            error = relative_error(rows, "mu per unit [-]", "estimated error per unit [-]")
+            if rows[0]["derivative of"] == "none":
+                notes.append(f"{threshold_text(rows[0])} has no derivative: {rows[0]['remark']}.")
+            elif error > ROUGH:
+                notes.append(f"{threshold_text(rows[0])}: estimated errors reach {100 * error:.2g} % of the largest derivative.")
+    if all(rows[0]["derivative of"] == "lambda" for rows in modes):
+        notes.insert(0, "No mode here is close to coalescing with another one: all derivatives of modes are those of simple eigenvalues.")
+    return [{"id": "sensitivity_notes", "title": "Pairs near exceptional points, and limits", "notes": notes,
+             "caption": "One per cent is a small change only where modes are well apart: a derivative holds as far as the distance to the next one."}]

@@ -1,0 +1,216 @@
+"""The files of a run: tables, parameters, fields and the record."""
+
+import csv
+import functools
+import json
+import math
+import os
+import pathlib
+import re
+
+from squeal.errors import Error
+from squeal.parameter_file import read_parameters
+
+FILES = "files [byte]"  # in run.json
+
+
+class Table:
+    """The rows of a CSV table, by the names of its columns. Lines that begin with # are comments."""
+
+    def __init__(self, path):
+        """Throws Error where it cannot be read."""
+        self.path = path
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                reader = csv.DictReader(line for line in file if not line.startswith("#"))
+                self.columns = list(reader.fieldnames or [])
+                self.rows = list(reader)
+        except (OSError, UnicodeDecodeError, csv.Error) as problem:
+            raise Error(f"the table cannot be read: {problem}", f"file {path}", "run squeal again") from problem
+        for number, row in enumerate(self.rows, start=2):
+            if None in row or None in row.values():
+                raise Error("a row has not one cell for each column", f"file {path}, line {number}", "run squeal again")
+
+    def __len__(self):
+        return len(self.rows)
+
+    def texts(self, column):
+        """Cells of a column. Throws Error if there is no such column."""
+        if column not in self.columns:
+            raise Error(f"there is no column `{column}`", f"file {self.path}", "run squeal again: it writes this column now")
+        return [row[column] for row in self.rows]
+
+    def numbers(self, column):
+        """Numbers of a column, NaN for an empty cell. Throws Error if a cell holds something else."""
+        result = []
+        for line, text in enumerate(self.texts(column), start=2):
+            try:
+                result.append(float(text) if text else math.nan)
+            except ValueError:
+                where = f"file {self.path}, line {line}, column `{column}`"
+                raise Error(f"`{text}` is no number", where, "run squeal again") from None
+        return result
+
+    def flags(self, column):
+        """Whether the number in each cell of a column is not zero."""
+        return [number != 0 for number in self.numbers(column)]
+
+    def eigenvalues(self):
+        """λ [1/s] of the modes in the rows."""
+        return [complex(rate, 2 * math.pi * frequency) for rate, frequency in zip(self.numbers("growth rate [1/s]"), self.numbers("frequency [Hz]"))]
+
+    def frame(self):
+        """A data frame of pandas. `attrs["units"]` has the unit of each column that has one; the names of columns are without units where these
+        tell no columns apart. Columns of numbers are numbers, NaN where a cell is empty."""
+        import pandas
+
+        parts = [re.fullmatch(r"(.*?)(?: \[([^\]]*)\])?", column).groups() for column in self.columns]
+        short = [name for name, _ in parts]
+        names = [name if short.count(name) == 1 else column for name, column in zip(short, self.columns)]
+        columns = {}
+        for name, column in zip(names, self.columns):
+            try:
+                columns[name] = [float(cell) if cell else math.nan for cell in self.texts(column)]
+                if all(value.is_integer() for value in columns[name]):
+                    columns[name] = [int(value) for value in columns[name]]
+            except ValueError:
+                columns[name] = self.texts(column)
+        frame = pandas.DataFrame(columns, columns=names)
+        frame.attrs["units"] = {name: unit for name, (_, unit) in zip(names, parts) if unit}
+        return frame
+
+
+def read_table(path):
+    """Rows of a table as dictionaries of texts."""
+    return Table(path).rows
+
+
+def shape_files(folder):
+    """Files of the shapes of complex modes by rows of complex_modes.csv."""
+    return {int(match[1]): path for path in sorted((pathlib.Path(folder) / "modes").glob("complex_*.vtu"))
+            if (match := re.match(r"complex_(\d+)_", path.name)) and not path.stem.endswith("_contact")}
+
+
+class Results:
+    """A folder of results. Throws Error if it is none."""
+
+    def __init__(self, folder):
+        self.folder = pathlib.Path(folder)
+        if not self.folder.is_dir():
+            raise Error(f"there is no folder `{folder}`", "RESULTS", "name the folder in which a run has left its results")
+        for name in ("run.json", "parameters.prm"):
+            if not (self.folder / name).is_file():
+                raise Error(f"`{folder}` holds no results: {name} is missing", "RESULTS", "name the folder in which a run has left its results")
+        try:
+            self.record = dict(json.loads(self.record_file.read_text(encoding="utf-8")))
+            self.parameters = read_parameters(self.folder / "parameters.prm")
+        except (OSError, TypeError, ValueError) as problem:
+            what = f"the record of the run or its parameters cannot be read: {problem}"
+            raise Error(what, f"folder {folder}", "run squeal again") from problem
+
+    @property
+    def record_file(self):
+        return self.folder / "run.json"
+
+    def has(self, name):
+        return (self.folder / f"{name}.csv").is_file()
+
+    def table(self, name):
+        return Table(self.folder / f"{name}.csv")
+
+    def names(self):
+        """Names of the tables."""
+        return sorted(path.stem for path in self.folder.glob("*.csv"))
+
+    def frame(self, name):
+        """A table as a data frame of pandas, see Table.frame(). Throws Error where the run has no such table."""
+        if not self.has(name):
+            raise Error(f"there is no table `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.names()) or '(none)'}")
+        return self.table(name).frame()
+
+    modes = functools.cached_property(lambda self: self.frame("complex_modes"))
+    branches = functools.cached_property(lambda self: self.frame("branches"))
+    thresholds = functools.cached_property(lambda self: self.frame("thresholds"))
+    designs = functools.cached_property(lambda self: self.frame("designs"))
+
+    def field_names(self):
+        """Files of fields, relative to the folder without their ending, such as `modes/complex_001_A0-4`."""
+        return sorted(str(path.relative_to(self.folder).with_suffix("")) for path in self.folder.rglob("*.vtu")
+                      if ".unfinished" not in path.parts)
+
+    def fields(self, name):
+        """A file of fields as a Mesh of meshio: points, cells, and arrays in point_data and cell_data."""
+        from squeal.vtu_file import VtuFile
+
+        path = self.folder / f"{name}.vtu"
+        if not path.is_file():
+            raise Error(f"there are no fields `{name}`", f"folder {self.folder}", f"name one of: {', '.join(self.field_names()) or '(none)'}")
+        try:
+            return VtuFile(path).as_meshio()
+        except ModuleNotFoundError as missing:
+            raise Error(f"Python has no {missing.name}", path, f"apt-get install python3-{missing.name}") from missing
+
+    def system(self):
+        """The system of matrices that the run has written. Throws Error if there is none."""
+        from squeal.system import FILE, System
+
+        path = self.folder / "system" / FILE
+        if not path.is_file():
+            raise Error("the run has written no system", f"folder {self.folder}", "run squeal with Output/Write system = full or reduced")
+        return System.read(path)
+
+    def parameter(self, name):
+        """The text of a parameter "Section/Name"."""
+        if name not in self.parameters:
+            raise Error(f"the parameter {name} is missing", f"file {self.folder / 'parameters.prm'}", "run squeal again")
+        return self.parameters[name]
+
+    def number(self, name):
+        return self.number_list(name)[0]
+
+    def number_list(self, name):
+        """The numbers of a parameter, separated by commas; none if it is empty."""
+        text = self.parameter(name)
+        try:
+            return [float(word) for word in text.split(",")] if text.strip() else []
+        except ValueError:
+            where = f"file {self.folder / 'parameters.prm'}, parameter {name}"
+            raise Error(f"`{text}` is no list of numbers", where, "run squeal again") from None
+
+    def plot(self, ending="svg", output=None):
+        """Draws the plots of the tables; returns their files and remarks on files that were renamed."""
+        from squeal.plotting import draw
+
+        return draw.draw(self, ending, output)
+
+    def report(self, output=None):
+        """Writes the report; returns its file and remarks on files that were renamed."""
+        from squeal.reporting import write
+
+        return write.write(self, output)
+
+    def enlist(self, files):
+        """Adds pictures, or a report, to the files of the run in run.json; returns what to say."""
+        known = self.record[FILES]
+        remarks = [make_way(self.folder / name) for name in files if name not in known and (self.folder / name).exists()]
+        self.record[FILES] = dict(sorted({**known, **{name: len(content) for name, content in files.items()}}.items()))
+        replace(self.record_file, (json.dumps(self.record, indent=2, ensure_ascii=False) + "\n").encode())
+        return remarks
+
+
+def replace(path, content):
+    """Writes a file in one step."""
+    temporary = path.with_name(path.name + ".unfinished")
+    temporary.write_bytes(content)
+    os.replace(temporary, path)
+
+
+def make_way(path):
+    """Renames a file of the user whose name is needed; returns what to say."""
+    kept = path.with_name(path.name + ".kept")
+    number = 1
+    while kept.exists():
+        number += 1
+        kept = path.with_name(f"{path.name}.kept-{number}")
+    path.rename(kept)
+    return f"note: {path} is no file of this run and is {kept.name} now"

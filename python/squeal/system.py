@@ -1,0 +1,409 @@
+"""Systems Q(λ; p) = Σ θ_k(p) λ^(power_k) A_k, in a folder with `system.json` and Matrix Market files."""
+
+import csv
+import dataclasses
+import json
+import math
+import numbers
+import pathlib
+import re
+
+import numpy as np
+import scipy.io
+import scipy.sparse as sparse
+
+from squeal import quadratic
+from squeal.errors import Error
+from squeal.expressions import NAME, Expression
+from squeal.importing.configuration import read_json
+
+FORMAT, VERSION, FILE = "squeal system", 1, "system.json"
+SYMMETRIES = {"none": 0, "symmetric": 1, "skew": -1}
+KINDS = ("body", "mount", "rotation", "friction", "circulatory", "contact damping", "modal damping")
+# Largest entry of A - A^T, or of A + A^T, relative to that of A
+SYMMETRY_TOLERANCE = 1e-12
+DOF_COLUMNS = ("x [m]", "y [m]", "z [m]", "direction")
+# Dofs up to which M(p), C(p) and K(p) are written out as dense matrices
+LARGEST_DENSE = 5000
+
+
+@dataclasses.dataclass
+class Parameter:
+    """The value of a parameter, and its range, unit and meaning where they are known."""
+
+    value: float
+    lower: float = None
+    upper: float = None
+    unit: str = ""
+    description: str = ""
+
+    def as_json(self):
+        return {name: float(value) if is_number(value) else value for name, value in dataclasses.asdict(self).items() if value not in (None, "")}
+
+
+@dataclasses.dataclass
+class Term:
+    """θ(p) λ^power A with A = `matrix`, or A = left diag(weights) right^T; all matrices sparse, weights a vector."""
+
+    name: str
+    power: int
+    coefficient: str = "1"
+    matrix: sparse.csr_matrix = None
+    left: sparse.csr_matrix = None
+    right: sparse.csr_matrix = None
+    weights: np.ndarray = None
+    symmetry: str = "none"
+    kind: str = ""
+
+    def __post_init__(self):
+        for name in ("matrix", "left", "right"):
+            if getattr(self, name) is not None:
+                setattr(self, name, sparse.csr_matrix(getattr(self, name), dtype=float))
+        if self.left is not None and self.right is not None:
+            self.weights = np.ones(self.left.shape[1]) if self.weights is None else np.asarray(self.weights, dtype=float).ravel()
+
+    @property
+    def product(self):
+        """A as a sparse matrix."""
+        return self.matrix if self.matrix is not None else sparse.csr_matrix(self.left @ sparse.diags(self.weights) @ self.right.T)
+
+
+class System:
+    """Parameters by their names, terms, groups of dofs (name -> ranges from 1), `dofs` (dictionaries of DOF_COLUMNS), and of a reduced model
+    its `reduction` with the basis.
+
+    Wherever `p` is an argument, it is a dictionary of values that differ from those of the file.
+    """
+
+    def __init__(self, parameters, terms, groups=None, dofs=None, reduction=None, description="", where=FILE):
+        """Throws Error where something is wrong; `where` names the file for it."""
+        self.parameters = {name: parameter if isinstance(parameter, Parameter) else Parameter(parameter) for name, parameter in parameters.items()}
+        self.terms, self.groups, self.dofs, self.reduction = list(terms), dict(groups or {}), dofs, reduction
+        self.description, self.where = description, where
+        self._check_parameters()
+        if not self.terms:
+            raise Error("the system has no terms", where, "add at least a mass and a stiffness")
+        self._expressions = [self._checked_term(term, f"{where}, term `{term.name}`") for term in self.terms]
+        for name, ranges in self.groups.items():
+            if not (isinstance(ranges, list) and all(is_range(ends, self.size) for ends in ranges)):
+                raise Error(f"`{name}` is not a list of ranges of dofs", f"{where}, groups",
+                            f"write [[first, last], ...] with dofs from 1 to {self.size}")
+        if dofs is not None and len(dofs) != self.size:
+            raise Error(f"there are {len(dofs)} rows of dofs for {self.size} dofs", f"{where}, dofs", "write a row for each dof")
+
+    @property
+    def size(self):
+        """Number of dofs."""
+        first = self.terms[0]
+        return (first.matrix if first.matrix is not None else first.left).shape[0]
+
+    def _check_parameters(self):
+        for name, parameter in self.parameters.items():
+            where = f"{self.where}, parameter `{name}`"
+            if not NAME.fullmatch(name) or name == "_pi":
+                raise Error(f"`{name}` is not a name of a parameter", where, "write letters, digits and _, a letter first")
+            for key in ("value", "lower", "upper"):
+                value = getattr(parameter, key)
+                if not (value is None and key != "value") and not (is_number(value) and math.isfinite(value)):
+                    raise Error(f"`{key}` is {value!r}, which is not a finite number", where, "write a number")
+            lower, upper = self.range(name)
+            if not lower <= parameter.value <= upper:
+                raise Error(f"the value {parameter.value:g} is outside the range {lower:g} to {upper:g}", where, "change the value or the range")
+
+    def range(self, name):
+        """Ends of the range of a parameter; without one, its value twice."""
+        parameter = self.parameters[name]
+        return (parameter.value if parameter.lower is None else parameter.lower, parameter.value if parameter.upper is None else parameter.upper)
+
+    def _checked_term(self, term, where):
+        """The coefficient of a term as an expression."""
+        if not isinstance(term.power, int) or isinstance(term.power, bool) or not 0 <= term.power <= 2:
+            raise Error(f"the power is {term.power!r}", where, "write 0, 1 or 2")
+        if term.symmetry not in SYMMETRIES:
+            raise Error(f"the symmetry is `{term.symmetry}`", where, f"write one of: {', '.join(SYMMETRIES)}")
+        if term.kind and term.kind not in KINDS:
+            raise Error(f"the kind is `{term.kind}`", where, f"write one of: {', '.join(KINDS)}")
+        if (term.matrix is None) != (term.left is not None and term.right is not None) or (term.matrix is not None) == (term.left is not None):
+            raise Error("a term has either `matrix`, or `left` and `right`", where, "give a matrix, or both factors")
+        for name in ("matrix", "left", "right"):
+            if (matrix := getattr(term, name)) is not None:
+                self._check_matrix(term, name, matrix, where)
+        if term.matrix is None and not np.isfinite(term.weights).all():
+            raise Error(f"weight {np.flatnonzero(~np.isfinite(term.weights))[0] + 1} is not finite", f"{where}, weights", "write finite numbers")
+        expression = Expression(str(term.coefficient), list(self.parameters), f"{where}, coefficient")
+        expression.check_range({name: self.range(name) for name in self.parameters})
+        expression({name: parameter.value for name, parameter in self.parameters.items()})
+        return expression
+
+    def _check_matrix(self, term, name, matrix, where):
+        where = f"{where}, {name}"
+        n_columns = self.size if name == "matrix" else term.left.shape[1]
+        if matrix.shape != (self.size, n_columns) or name != "matrix" and len(term.weights) != n_columns:
+            found = f"{matrix.shape[0]} x {matrix.shape[1]}" + ("" if name == "matrix" else f" with {len(term.weights)} weights")
+            raise Error(f"the matrix is {found}, expected {self.size} x {n_columns}", where, "write matrices of one size")
+        if not np.isfinite(matrix.data).all():
+            entries = matrix.tocoo()
+            first = np.flatnonzero(~np.isfinite(entries.data))[0]
+            raise Error(f"entry ({entries.row[first] + 1}, {entries.col[first] + 1}) is {entries.data[first]}", where, "write finite numbers")
+        if sign := SYMMETRIES[term.symmetry]:
+            if name != "matrix":
+                raise Error("symmetry is claimed for a product of factors", where, "leave `symmetry` out")
+            if (defect := symmetry_defect(matrix, sign)) > SYMMETRY_TOLERANCE:
+                raise Error(f"the matrix is not {term.symmetry}: the largest difference to its transpose is {defect:.1e} of the largest entry", where,
+                            "write symmetry `none` or correct the matrix")
+
+    @classmethod
+    def read(cls, path):
+        """The system of a folder, or of its system.json. Throws Error where a file is missing or wrong."""
+        path = pathlib.Path(path)
+        path = path / FILE if path.is_dir() else path
+        data = read_json(path)
+        if not isinstance(data, dict) or data.get("format") != FORMAT or data.get("version") != VERSION:
+            raise Error(f"the file is not a `{FORMAT}` of version {VERSION}", path, f'write "format": "{FORMAT}", "version": {VERSION}')
+        known = ("format", "version", "description", "parameters", "terms", "groups", "dofs", "reduction")
+        check_keys(data, known, path)
+        parameters = {}
+        for name, entry in as_kind(data.get("parameters", {}), dict, f"{path}, parameters").items():
+            parameters[name] = read_entry(Parameter, entry, f"{path}, parameter `{name}`", needed=("value",))
+        terms = []
+        for number, entry in enumerate(as_kind(data.get("terms", []), list, f"{path}, terms"), start=1):
+            where = f"{path}, term {number}"
+            entry = dict(as_kind(entry, dict, where))
+            entry.setdefault("name", f"term {number}")
+            where = f"{path}, term `{entry['name']}`"
+            for key in ("matrix", "left", "right", "weights"):
+                if key in entry:
+                    entry[key] = read_matrix(path.parent, entry[key], f"{where}, {key}")
+                    entry[key] = entry[key].toarray() if key == "weights" else entry[key]
+            terms.append(read_entry(Term, entry, where, needed=("power",)))
+        reduction = data.get("reduction")
+        if reduction is not None:
+            reduction = dict(as_kind(reduction, dict, f"{path}, reduction"))
+            if "basis" in reduction:
+                reduction["basis"] = read_matrix(path.parent, reduction["basis"], f"{path}, reduction, basis").toarray()
+            if "points" in reduction:
+                reduction["points"] = read_rows(path.parent, reduction["points"], f"{path}, reduction, points")
+        dofs = read_rows(path.parent, data["dofs"], f"{path}, dofs") if data.get("dofs") else None
+        return cls(parameters, terms, as_kind(data.get("groups", {}), dict, f"{path}, groups"), dofs, reduction, data.get("description", ""), path)
+
+    def write(self, folder):
+        """Writes the folder, which is made if it is not there."""
+        folder = pathlib.Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        names, entries = set(), []
+        for term in self.terms:
+            stem = unique(re.sub(r"[^\w.-]+", "_", term.name) or "term", names)
+            entry = {"name": term.name, "power": term.power, "coefficient": str(term.coefficient)}
+            if term.matrix is not None:
+                entry.update(matrix=f"{stem}.mtx", **({} if term.symmetry == "none" else {"symmetry": term.symmetry}))
+                write_matrix(folder / entry["matrix"], term.matrix, term.symmetry)
+            else:
+                entry.update({key: f"{stem}_{key}.mtx" for key in ("left", "right", "weights")})
+                for key in ("left", "right"):
+                    write_matrix(folder / entry[key], getattr(term, key))
+                write_array(folder / entry["weights"], term.weights.reshape(-1, 1))
+            entries.append({**entry, **({"kind": term.kind} if term.kind else {})})
+        data = {"format": FORMAT, "version": VERSION, "description": self.description,
+                "parameters": {name: parameter.as_json() for name, parameter in self.parameters.items()}, "terms": entries}
+        if self.groups:
+            data["groups"] = {name: [[int(end) for end in ends] for ends in ranges] for name, ranges in self.groups.items()}
+        if self.dofs is not None:
+            data["dofs"] = "dofs.csv"
+            write_rows(folder / "dofs.csv", self.dofs)
+        if self.reduction is not None:
+            data["reduction"] = dict(self.reduction)
+            if "basis" in self.reduction:
+                data["reduction"]["basis"] = "basis.mtx"
+                write_array(folder / "basis.mtx", self.reduction["basis"])
+            if "points" in self.reduction:
+                data["reduction"]["points"] = "points.csv"
+                write_rows(folder / "points.csv", self.reduction["points"])
+        (folder / FILE).write_text(json.dumps(data, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+    def values(self, p=None):
+        """Values of all parameters as a dictionary. Throws Error for an unknown name and for a value outside the range, if the file has one."""
+        values = {name: parameter.value for name, parameter in self.parameters.items()}
+        for name, value in (p or {}).items():
+            if name not in values:
+                raise Error(f"there is no parameter `{name}`", self.where, f"name one of: {', '.join(values) or '(none)'}")
+            lower, upper = self.parameters[name].lower, self.parameters[name].upper
+            if not is_number(value):
+                raise Error(f"{name} = {value!r} is not a number", f"{self.where}, parameter `{name}`", "give a number")
+            if not math.isfinite(value) or lower is not None and value < lower or upper is not None and value > upper:
+                ends = f"{'-inf' if lower is None else format(lower, 'g')} to {'inf' if upper is None else format(upper, 'g')}"
+                raise Error(f"{name} = {value:g} is outside the range {ends}", f"{self.where}, parameter `{name}`", "change the value or the range")
+            values[name] = float(value)
+        return values
+
+    def term(self, name):
+        """The term of a name."""
+        found = [term for term in self.terms if term.name == name]
+        if not found:
+            raise Error(f"there is no term `{name}`", self.where, f"name one of: {', '.join(term.name for term in self.terms)}")
+        return found[0]
+
+    def coefficient(self, term, p=None):
+        """θ(p) of a term, given itself or by its name."""
+        term = self.term(term) if isinstance(term, str) else term
+        index = next(index for index, other in enumerate(self.terms) if other is term)
+        return self._expressions[index](self.values(p))
+
+    def matrices(self, p=None):
+        """M, C and K as sparse matrices: Q(λ; p) = λ² M + λ C + K."""
+        values = self.values(p)
+        sums = [sparse.csr_matrix((self.size, self.size)) for _ in range(3)]
+        for term, expression in zip(self.terms, self._expressions):
+            sums[term.power] = sums[term.power] + expression(values) * term.product
+        return sums[2], sums[1], sums[0]
+
+    def Q(self, lam, p=None):
+        """Q(λ; p) as a sparse matrix."""
+        M, C, K = self.matrices(p)
+        return lam**2 * M + lam * C + K
+
+    def linearise(self, p=None):
+        """A and B (2n x 2n, sparse) of the first companion form A z = λ B z, z = (x, λ x)."""
+        return quadratic.linearise(*self.matrices(p))
+
+    def solve(self, p=None, number=None, largest=None, region=None, shift=None):
+        """Eigenvalues and right vectors with their errors, as `quadratic.Eigenpairs`; the arguments select them as in `quadratic.solve`."""
+        return quadratic.solve(*self.matrices(p), number=number, largest=largest, region=region, shift=shift, where=self.where)
+
+    def _dense(self, position, p):
+        if self.size > LARGEST_DENSE:
+            raise Error(f"a dense matrix of {self.size} dofs is too large", self.where, "use `matrices(p)`, or a reduced model")
+        return self.matrices(p)[position].toarray()
+
+    def M(self, p=None):
+        """The mass as a dense array."""
+        return self._dense(0, p)
+
+    def C(self, p=None):
+        """The damping as a dense array."""
+        return self._dense(1, p)
+
+    def K(self, p=None):
+        """The stiffness as a dense array."""
+        return self._dense(2, p)
+
+    def to_pymor(self, B=None, Cp=None):
+        """A SecondOrderModel of pyMOR with the parameters of the system; inputs B (n x m) and outputs Cp (l x n), the identity by default."""
+        try:
+            from pymor.models.iosys import SecondOrderModel
+            from pymor.operators.constructions import LincombOperator
+            from pymor.operators.numpy import NumpyMatrixOperator
+            from pymor.parameters.functionals import GenericParameterFunctional
+        except ImportError as error:
+            raise Error(f"Python has no {error.name}", "System.to_pymor()", "install pyMOR: pip install pymor") from error
+
+        def operator(power):
+            terms = [(term, expression) for term, expression in zip(self.terms, self._expressions) if term.power == power]
+            if not terms:
+                return NumpyMatrixOperator(sparse.csr_matrix((self.size, self.size)))
+            coefficients = []
+            for _, expression in terms:
+                def value(mu, expression=expression):
+                    return expression({name: float(mu[name][0]) for name in expression.names})
+
+                coefficients.append(GenericParameterFunctional(value, {name: 1 for name in expression.names}, name=expression.text)
+                                    if expression.names else expression({}))
+            return LincombOperator([NumpyMatrixOperator(term.product) for term, _ in terms], coefficients)
+
+        unit = sparse.identity(self.size, format="csr")
+        ends = [NumpyMatrixOperator(unit if matrix is None else matrix) for matrix in (B, Cp)]
+        return SecondOrderModel(operator(2), operator(1), operator(0), *ends, name=self.description or "system")
+
+
+def is_number(value):
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def is_range(ends, size):
+    """Whether this is [first, last], dofs from 1 to `size`."""
+    is_pair = isinstance(ends, (list, tuple)) and len(ends) == 2 and all(isinstance(end, numbers.Integral) for end in ends)
+    return is_pair and 1 <= ends[0] <= ends[1] <= size
+
+
+def symmetry_defect(matrix, sign):
+    """Largest entry of A - sign A^T relative to that of A."""
+    difference = abs(matrix - sign * matrix.T)
+    return float(difference.max() / abs(matrix).max()) if difference.nnz else 0.0
+
+
+def as_kind(value, kind, where):
+    if not isinstance(value, kind):
+        raise Error(f"this is {value!r}", where, f"write {'an object' if kind is dict else 'a list'}")
+    return value
+
+
+def check_keys(entry, known, where):
+    if unknown := [key for key in entry if key not in known]:
+        raise Error(f"the entry `{unknown[0]}` is unknown", where, f"write some of: {', '.join(known)}")
+
+
+def read_entry(kind, entry, where, needed):
+    """A Parameter or a Term of an object of JSON."""
+    check_keys(as_kind(entry, dict, where), [field.name for field in dataclasses.fields(kind)], where)
+    if missing := [key for key in needed if key not in entry]:
+        raise Error(f"the entry `{missing[0]}` is missing", where, "add it")
+    return kind(**entry)
+
+
+def inside(folder, name, where):
+    if not isinstance(name, str) or not (folder / name).is_file():
+        raise Error(f"the file {name if not isinstance(name, str) else folder / name} is missing", where, "put it there, or correct its name")
+    return folder / name
+
+
+def read_matrix(folder, name, where):
+    """A Matrix Market file of real numbers."""
+    path = inside(folder, name, where)
+    try:
+        matrix = scipy.io.mmread(path)
+    except (OSError, ValueError, IndexError, TypeError, OverflowError, StopIteration) as problem:
+        raise Error(f"{path} cannot be read: {problem}", where, "write a Matrix Market file") from problem
+    if np.iscomplexobj(matrix):
+        raise Error(f"{path} has complex entries", where, "write real matrices; structural damping has to be a term of power 1")
+    return sparse.csr_matrix(matrix, dtype=float)
+
+
+def read_rows(folder, name, where):
+    """Rows of a CSV file as dictionaries, numbers as such."""
+    path = inside(folder, name, where)
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    try:
+        return [{key: text if key == "direction" else float(text) for key, text in row.items()} for row in rows]
+    except (TypeError, ValueError) as problem:
+        raise Error(f"{path} cannot be read: {problem}", where, "write a number for each column of a row") from problem
+
+
+def write_rows(path, rows):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]) if rows else DOF_COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows({key: value if isinstance(value, str) else repr(float(value)) for key, value in row.items()} for row in rows)
+
+
+def write_matrix(path, matrix, symmetry="none"):
+    if sign := SYMMETRIES[symmetry]:
+        matrix = 0.5 * (matrix + sign * matrix.T)
+    matrix = sparse.coo_matrix(matrix)
+    matrix.eliminate_zeros()
+    with open(path, "wb") as file:  # a path would get an ending
+        scipy.io.mmwrite(file, matrix, precision=17, symmetry={0: "general", 1: "symmetric", -1: "skew-symmetric"}[sign])
+
+
+def write_array(path, array):
+    with open(path, "wb") as file:
+        scipy.io.mmwrite(file, np.asarray(array, dtype=float), precision=17, symmetry="general")
+
+
+def unique(name, names):
+    """A name that is not among those taken, to which it is added."""
+    found, number = name, 1
+    while found.lower() in names:
+        number += 1
+        found = f"{name}_{number}"
+    names.add(found.lower())
+    return found

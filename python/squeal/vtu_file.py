@@ -1,0 +1,72 @@
+"""Reads the .vtu files of a run without VTK."""
+
+import array
+import re
+import struct
+import xml.etree.ElementTree
+import zlib
+
+# Names of VTK's types
+SHAPES = {5: "triangle", 9: "quad", 10: "tetra", 12: "hexahedron", 13: "wedge", 14: "pyramid"}
+TYPE_CODES = {"Float32": "f", "Int32": "i", "UInt8": "B"}
+
+
+class VtuFile:
+    """
+    Points and point fields, as tuples of three numbers and as numbers; cells as lists of their points, with their fields and VTK types: 5
+    is a triangle, 9 a quadrilateral, 10 a tetrahedron, 12 a hexahedron, 13 a wedge, 14 a pyramid. Coincident points of several pieces are repeated. The title, or None.
+    """
+
+    def __init__(self, path):
+        head, _, self.data = path.read_bytes().partition(b'<AppendedData encoding="raw">\n_')
+        root = xml.etree.ElementTree.fromstring(head + b"</VTKFile>")
+        assert root.get("compressor") == "vtkZLibDataCompressor" and root.get("header_type") == "UInt64", path
+        title = root.find(".//FieldData/DataArray[@Name='mode']")
+        self.title = None if title is None else bytes(map(int, title.text.split()[:-1])).decode()
+        self.points, self.fields, self.cells, self.cell_fields, self.cell_types = [], {}, [], {}, []
+        self.n_pieces = 0
+        for piece in root.iter("Piece"):
+            self.n_pieces += 1
+            first, (n_points, n_cells) = len(self.points), (int(piece.get(f"NumberOf{what}")) for what in ("Points", "Cells"))
+            cells = {data.get("Name"): self.values(data) for data in piece.findall("Cells/DataArray")}
+            self.points += self.values(piece.find("Points/DataArray"))
+            starts = [0, *cells["offsets"]]
+            self.cells += [[first + vertex for vertex in cells["connectivity"][a:b]] for a, b in zip(starts, starts[1:])]
+            self.cell_types += cells["types"]
+            for place, fields, n in (("PointData", self.fields, n_points), ("CellData", self.cell_fields, n_cells)):
+                for data in piece.findall(f"{place}/DataArray"):
+                    values = self.values(data)
+                    assert len(values) == n, (path, data.get("Name"))
+                    fields.setdefault(data.get("Name"), []).extend(values)
+            assert starts[-1] == len(cells["connectivity"]) and len(starts) == n_cells + 1, path
+            assert all(0 <= vertex < n_points for vertex in cells["connectivity"]) and len(self.points) == first + n_points, path
+
+    def values(self, data):
+        """Numbers, or triples, of an array: a single block compressed by zlib behind its sizes."""
+        offset = int(data.get("offset"))
+        n_blocks, size, _, length = struct.unpack_from("<4Q", self.data, offset)
+        plain = zlib.decompress(self.data[offset + 32:offset + 32 + length])
+        assert n_blocks == 1 and len(plain) == size, data.get("Name")
+        values = array.array(TYPE_CODES[data.get("type")], plain).tolist()
+        return list(zip(values[0::3], values[1::3], values[2::3])) if data.get("NumberOfComponents") == "3" else values
+
+    def as_meshio(self):
+        """A Mesh of meshio."""
+        import meshio
+
+        blocks, of_blocks = [], []
+        for kind in sorted(set(self.cell_types)):
+            numbers = [cell for cell, of_cell in enumerate(self.cell_types) if of_cell == kind]
+            blocks.append((SHAPES[kind], [self.cells[cell] for cell in numbers]))
+            of_blocks.append(numbers)
+        cell_data = {name: [[values[cell] for cell in numbers] for numbers in of_blocks] for name, values in self.cell_fields.items()}
+        return meshio.Mesh(self.points, blocks, point_data=dict(self.fields), cell_data=cell_data)
+
+    def corners(self, cell):
+        return [self.points[vertex] for vertex in self.cells[cell]]
+
+
+def arrays(path):
+    """Names of the fields of a file."""
+    return set(re.findall(r'<DataArray[^>]* Name="([^"]+)"', path.read_bytes().partition(b"<AppendedData")[0].decode())) - {
+        "points", "connectivity", "offsets", "types", "mode"}
