@@ -115,7 +115,7 @@ TEST(ParameterFiles, RefusedValuesAreAnsweredWithWhatIsAccepted)
     {"Study=noise",
      {"Study must be one of stability, reduction, sweep, sensitivity, accuracy, ingredients, geometry, search, not `noise`\n"}},
     {"Geometry/Top pin radii=0.2, x", {"Geometry/Top pin radii, value 2, must be a number >= 0 m, not `x`\n"}},
-    {"Sweep/Count modes at=0.1, 11", {"Sweep/Count modes at, value 2, must lie in 0 ... 10, not 11\n"}}};
+    {"Sweep/Mode shapes at=0.1, 11", {"Sweep/Mode shapes at, value 2, must lie in 0 ... 10, not 11\n"}}};
   expect_refused(refusals);
   for (const auto &[setting, mentions] : refusals)
     expect_mentions(refusal("", {setting}), {"--set \"" + setting + "\""});

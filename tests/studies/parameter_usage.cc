@@ -58,7 +58,7 @@ namespace
 
     std::set<std::string> expected() const
     {
-      Paths beginnings;
+      Paths beginnings = {"System values", "Sweep/Parameter", "Sweep/Second parameter"}; // of a system file
       for (const char *section : {"Accuracy study/", "Designs/", "Ingredients/", "Reduction/", "Search/", "Sensitivity/", "Sweep/"})
         if (std::find(sections.begin(), sections.end(), section) == sections.end())
           beginnings.emplace_back(section);
@@ -94,6 +94,16 @@ TEST(ParameterUsage, EveryStudyIsFoundByItsNameAndUsesItsDefaults)
             (std::set<std::string>{"accuracy", "geometry", "ingredients", "reduction", "search", "sensitivity", "stability", "sweep"}));
 }
 
+TEST(ParameterUsage, OfASystemFile)
+{
+  const auto paths = names(unused_among({"Operation/Friction coefficient", "Geometry/File", "Sweep/Parameter", "Sweep/Map parameter",
+                                         "Band/Maximum frequency", "Output/Write system", "Sensitivity/Thresholds"},
+                                        parameters_of({"Study=sweep", "System=brake"})));
+  EXPECT_EQ(paths,
+            (std::set<std::string>{"Operation/Friction coefficient", "Geometry/File", "Sweep/Map parameter", "Sensitivity/Thresholds"}));
+  EXPECT_THROW(parameters_of({"Study=reduction", "System=brake"}), ParameterError);
+}
+
 TEST(ParameterUsage, OfEveryStudy)
 {
   const std::string dissipation = "Operation/Radial dissipation=consistent", steady = "Steady sliding/Contact state=steady sliding";
@@ -103,12 +113,13 @@ TEST(ParameterUsage, OfEveryStudy)
   const Paths krylov     = {"Complex modes/Iteration", "Complex modes/Maximum"};
   const Paths no_shapes  = {"Output/", "Complex modes/Iteration"};
   const Paths reduced    = {"Output/", "Complex modes/"};
-  const Paths no_map     = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
-  const Paths no_sweep   = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
-  const Paths no_bases   = {"Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"};
-  const Paths design     = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
-  const Paths own_meshes = {"Discretization/Element", "Geometry/Outlines"};
-  const Paths one_mu     = {"Operation/Friction coefficient"};
+  const Paths no_stability = {"Output/Write matrices", "Output/Component", "Output/Real"};
+  const Paths no_map       = {"Sweep/First map", "Sweep/Last map", "Sweep/Number of map", "Sweep/Map friction"};
+  const Paths no_sweep     = joined(no_map, {"Sweep/Compare", "Sweep/Mode", "Sweep/Complex", "Sweep/Count", "Sweep/Map parameter"});
+  const Paths no_bases     = {"Reduction/Grown", "Reduction/Snapshots", "Reduction/POD"};
+  const Paths design       = {"Study=geometry", "Designs/Variables=Geometry/Pin height = 0.03 to 0.04 in 2"};
+  const Paths own_meshes   = {"Discretization/Element", "Geometry/Outlines"};
+  const Paths one_mu       = {"Operation/Friction coefficient"};
 
   const std::vector<Usage> table = {
     {{}, {}, {no_sliding, undamped, krylov}},
@@ -139,10 +150,12 @@ TEST(ParameterUsage, OfEveryStudy)
      {"Reduction/"},
      {reduced, no_sliding, no_bases, {"Operation/", "Damping/", "Disc material/Rayleigh", "Pin material/Rayleigh", "Reduction/Coupled"}}},
 
-    {{"Study=sweep"}, {"Sweep/"}, {reduced, no_map, no_sliding, undamped, one_mu}},
+    {{"Study=sweep"},
+     {"Sweep/"},
+     {{"Complex modes/", "Output/Mode", "Output/Animation"}, no_stability, no_map, no_sliding, undamped, one_mu}},
     {{"Study=sweep", "Sweep/Mode shapes at=0.1", dissipation, "Sweep/Map parameter=speed"},
      {"Sweep/"},
-     {{"Complex modes/", "Output/Write", "Output/Component", "Output/Real"}, no_sliding, one_mu}},
+     {{"Complex modes/"}, no_stability, no_sliding, one_mu}},
 
     {{"Study=sensitivity"}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding, undamped}},
     {{"Study=sensitivity", dissipation}, {"Sensitivity/", "Sweep/"}, {reduced, no_sweep, no_sliding}},
@@ -176,7 +189,7 @@ TEST(ParameterUsage, OfEveryStudy)
   for (const std::string &path : all_paths())
     {
       const auto slash          = path.find('/');
-      const bool is_always_used = path == "Study" || path == "Accuracy" || path == "Steady sliding/Contact state" ||
+      const bool is_always_used = path == "Study" || path == "Accuracy" || path == "System" || path == "Steady sliding/Contact state" ||
                                   always.count(path.substr(0, slash)) > 0 || of_materials.count(path.substr(slash + 1)) > 0;
       EXPECT_TRUE(is_always_used || conditional.count(path) > 0) << path << " has no rule of when it is used";
     }

@@ -87,7 +87,12 @@ namespace Squeal
            {"System", "System values", "Study", "Band/", "Real modes/", "Complex modes/", "Linear algebra/", "Output/Write system"})
         if (concerns(used, path))
           return true;
-      return concerns("Sweep/", path) && parameters.study->has(path);
+      for (const char *of_sweep : {"Sweep/Parameter", "Sweep/Second parameter", "Sweep/First friction coefficient",
+                                   "Sweep/Last friction coefficient", "Sweep/Number of friction coefficients", "Sweep/Tolerance",
+                                   "Sweep/Maximum basis", "Sweep/Threshold tolerance", "Sweep/Complex plane at", "Sweep/Count modes at"})
+        if (path == of_sweep)
+          return parameters.study->run_of_system != nullptr && parameters.study->has("Sweep/Parameter");
+      return false;
     }
 
     /// Why a run leaves a parameter unused, but for those of the geometry; empty if it does not.
