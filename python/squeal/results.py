@@ -12,6 +12,17 @@ from squeal.errors import Error
 from squeal.parameter_file import read_parameters
 
 FILES = "files [byte]"  # in run.json
+MU = "mu [-]"
+
+
+def axis_title(column):
+    """The column of a parameter as the title of an axis."""
+    return "friction coefficient μ" if column == MU else column.removesuffix(" [-]")
+
+
+def symbol(column):
+    """The same for a sentence: `μ = 0.4`."""
+    return "μ" if column == MU else column.split(" [")[0]
 
 
 class Table:
@@ -33,6 +44,11 @@ class Table:
 
     def __len__(self):
         return len(self.rows)
+
+    @property
+    def parameter(self):
+        """The first column: in tables of a sweep the parameter that varies, such as `mu [-]`."""
+        return self.columns[0]
 
     def texts(self, column):
         """Cells of a column. Throws Error if there is no such column."""

@@ -2,6 +2,7 @@
 
 import math
 
+from squeal.results import axis_title
 from squeal.plotting import charts, complex_plane, style
 
 FAMILIES_PER_PICTURE = 3
@@ -138,8 +139,8 @@ def family_picture(all_charts, names):
     for name, upper, lower in zip(names, picture.panels, picture.panels[len(names):]):
         partners = partners_of(all_charts, name)
         chosen = [members(chart, name, partners) for chart in all_charts]
-        style.prepare(upper, name, style.FRICTION, style.FREQUENCY)
-        style.prepare(lower, name, style.FRICTION, style.DIVERGENCE)
+        style.prepare(upper, name, axis_title(all_charts[0].parameter), style.FREQUENCY)
+        style.prepare(lower, name, axis_title(all_charts[0].parameter), style.DIVERGENCE)
         draw_curves(upper, all_charts, chosen, "frequency", 1.0)
         draw_curves(lower, all_charts, chosen, "divergence", 1.0)
         leave_room(upper)
@@ -167,10 +168,10 @@ def family_figures(all_charts):
 
 def overview_figure(all_charts, band_end):
     """All modes of the band."""
-    picture = style.Picture("Modes of the band over the friction coefficient", 2, 2, (5.4, 5.2))
+    picture = style.Picture("Modes of the band over " + axis_title(all_charts[0].parameter).removesuffix(" μ"), 2, 2, (5.4, 5.2))
     for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
                                              (style.FREQUENCY, style.DIVERGENCE)):
-        style.prepare(panel, title, style.FRICTION, label)
+        style.prepare(panel, title, axis_title(all_charts[0].parameter), label)
         draw_curves(panel, all_charts, [list(chart.labels) for chart in all_charts], quantity, 0.75)
     picture.panels[0].set_ylim(0, band_end)
     style.zero_line(picture.panels[1])

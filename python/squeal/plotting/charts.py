@@ -51,14 +51,15 @@ class Chart:
 
     def __init__(self, title, branches, thresholds, counts, band_end):
         self.title = title
-        self.mus = counts.numbers("mu [-]")
+        self.parameter = counts.parameter
+        self.mus = counts.numbers(self.parameter)
         self.labels, self.modes = {}, {}
-        columns = (branches.numbers("branch [-]"), branches.numbers("mu [-]"), branches.texts("label"), branches.numbers("frequency [Hz]"),
+        columns = (branches.numbers("branch [-]"), branches.numbers(self.parameter), branches.texts("label"), branches.numbers("frequency [Hz]"),
                    branches.numbers("divergence rate [%]"), branches.flags("growing [-]"), branches.texts("verdict"))
         for branch, mu, label, frequency, divergence, grows, verdict in zip(*columns):
             self.labels[int(branch)] = label
             self.modes.setdefault(int(branch), {})[mu] = Mode(label, frequency, divergence, grows, verdict == "undecided")
-        columns = (thresholds.numbers("mu [-]"), thresholds.texts("event"), thresholds.numbers("branch [-]"),
+        columns = (thresholds.numbers(self.parameter), thresholds.texts("event"), thresholds.numbers("branch [-]"),
                    thresholds.texts("partner [-]"), thresholds.numbers("frequency [Hz]"))
         self.thresholds = [Threshold(mu, event, int(branch), int(partner) if partner else None, frequency)
                            for mu, event, branch, partner, frequency in zip(*columns) if frequency <= band_end]

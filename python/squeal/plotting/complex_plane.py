@@ -3,6 +3,7 @@
 import dataclasses
 
 from squeal.plotting import charts, style
+from squeal.results import symbol
 
 ROUNDING = 1e-6  # largest divergence rate [%] that is no reason to cut the axis
 SAME_PLACE = 0.05  # share of the width within which a name serves modes of two series
@@ -136,7 +137,7 @@ def draw(panel, size, title, series, band_end, limits=None):
 def planes_of_table(table):
     """Series by friction coefficient, in the order of a table complex_plane, without radial dissipation first."""
     planes = {}
-    columns = (table.numbers("mu [-]"), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
+    columns = (table.numbers(table.parameter), table.texts("radial dissipation"), table.texts("label"), table.numbers("frequency [Hz]"),
                table.numbers("divergence rate [%]"), table.texts("verdict"))
     for mu, dissipation, label, frequency, divergence, verdict in zip(*columns):
         title = charts.WITHOUT if dissipation == "none" else charts.WITH
@@ -156,7 +157,7 @@ def sweep_figure(results, all_charts, band_end):
     planes = planes_of_table(results.table("complex_plane")) if results.has("complex_plane") else last_plane(all_charts)
     picture = style.Picture("Modes in the complex plane", len(planes), 2, (5.2, 3.6))
     for panel, (mu, series) in zip(picture.panels, planes.items()):
-        draw(panel, picture.size, f"\u03bc = {mu:.6g}", series, band_end)
+        draw(panel, picture.size, f"{symbol(all_charts[0].parameter)} = {mu:.6g}", series, band_end)
     return picture.add_key()
 
 

@@ -15,11 +15,12 @@ ORDINATES = ("load per side [N]", "rotation speed [rad/s]")
 
 
 class StabilityMap:
-    """The cells of a map as arrays, rows by load or speed, columns by friction coefficient."""
+    """The cells of a map as arrays, rows by its second parameter, columns by its first."""
 
     def __init__(self, table):
-        self.ordinate = next((name for name in ORDINATES if name in table.columns), ORDINATES[0])
-        abscissae, ordinates = table.numbers("mu [-]"), table.numbers(self.ordinate)
+        self.abscissa, self.ordinate = table.columns[:2]
+        self.is_logarithmic = self.ordinate in ORDINATES  # values of equal ratio
+        abscissae, ordinates = table.numbers(self.abscissa), table.numbers(self.ordinate)
         self.mus, self.values = sorted(set(abscissae)), sorted(set(ordinates))
         shape = len(self.values), len(self.mus)
         place = [(self.values.index(value), self.mus.index(mu)) for mu, value in zip(abscissae, ordinates)]
@@ -38,7 +39,7 @@ class StabilityMap:
         self.is_known = ~np.isnan(self.n_unstable)
         self.is_unstable = np.nan_to_num(self.n_unstable) > 0
         self.is_undecided = self.is_known & ~self.is_unstable & (np.nan_to_num(self.n_undecided) > 0)
-        self.x_edges, self.y_edges = cell_edges(self.mus, False), cell_edges(self.values, True)
+        self.x_edges, self.y_edges = cell_edges(self.mus, False), cell_edges(self.values, self.is_logarithmic)
 
     def cells(self):
         return [(row, column) for row in range(len(self.values)) for column in range(len(self.mus))]

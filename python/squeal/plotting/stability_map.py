@@ -8,6 +8,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from squeal.plotting import style
 from squeal.plotting.stability_cells import COLOURS, StabilityMap, limits, logarithmic_ticks, place_of_name, regions
+from squeal.results import axis_title
 
 SCALE = LinearSegmentedColormap.from_list("growth", COLOURS)
 MOST_STEPS = 12  # numbers of modes up to this have a colour each
@@ -61,13 +62,16 @@ def draw_counts(panel, stability, size):
 
 
 def prepare(panel, stability, title):
-    style.prepare(panel, title, style.FRICTION, stability.ordinate)
+    style.prepare(panel, title, axis_title(stability.abscissa), stability.ordinate)
     panel.grid(False)
     for spine in panel.spines.values():
         spine.set_visible(True)
-    panel.set_yscale("log")
     panel.set_xlim(stability.x_edges[0], stability.x_edges[-1])
+    if stability.is_logarithmic:
+        panel.set_yscale("log")
     panel.set_ylim(stability.y_edges[0], stability.y_edges[-1])
+    if not stability.is_logarithmic:
+        return
     panel.yaxis.set_major_locator(FixedLocator(logarithmic_ticks(*panel.get_ylim())))
     panel.yaxis.set_minor_locator(NullLocator())
     panel.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
@@ -76,7 +80,7 @@ def prepare(panel, stability, title):
 def map_figure(table):
     """Divergence rate of the most unstable mode, and number of unstable modes."""
     stability = StabilityMap(table)
-    picture = style.Picture("Stability over friction coefficient and " + stability.ordinate.split(" [")[0], 2, 2, (6.2, 4.6))
+    picture = style.Picture(f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {stability.ordinate.split(' [')[0]}", 2, 2, (6.2, 4.6))
     rates, counts = picture.panels
     largest = np.where(stability.is_unstable, stability.rate, 0.0).max()
     n_largest = int(max(1, np.nan_to_num(stability.n_unstable).max()))

@@ -15,7 +15,7 @@ FONT_SIZE, SMALL = 10, 8  # [points]
 INCH = 72  # [points]
 KEY_LINE, KEY_MARK, KEY_LETTER, TITLE = 0.22, 0.75, 0.063, 0.35  # [inches]
 
-FRICTION, FREQUENCY, DIVERGENCE = "friction coefficient \u03bc [-]", "frequency [Hz]", "divergence rate R/\u03c9 [%]"
+FREQUENCY, DIVERGENCE = "frequency [Hz]", "divergence rate R/\u03c9 [%]"
 
 
 def mark_of(number):

@@ -8,7 +8,7 @@ RATE, DAMPING, FREQUENCY = "divergence rate [%]", "effective damping ratio -2R/o
 
 
 def number(text):
-    return float(text) if text else math.nan
+    return math.nan if text == "" else float(text)
 
 
 def short(text, n=6):

@@ -4,6 +4,7 @@ import math
 
 from squeal.plotting import stability_cells as cells
 from squeal.reporting.charts import FREQUENCY, RATE, digits, layout, number
+from squeal.results import axis_title, symbol
 
 TITLES = {"map": "Stability map"}
 REPLACED = ("map",)
@@ -18,12 +19,12 @@ def verdict(results):
     table = results.table("map")
     stability = cells.StabilityMap(table)
     growing = [row for row in table.rows if number(row["unstable modes [-]"] or "0") > 0]
-    where = f"of {len(table)} points of the map over μ and {ordinate(stability)} ({spanned(stability)})"
+    where = f"of {len(table)} points of the map over {symbol(stability.abscissa)} and {ordinate(stability)} ({spanned(stability)})"
     if not growing:
         return "stable", f"None {where} is unstable."
     worst = max(growing, key=lambda row: number(row[RATE]))
     return "unstable", (f"{len(growing)} {where} are unstable; the largest divergence rate is {digits(number(worst[RATE]), 3)} % "
-                        f"({worst['label'] or 'unnamed'}), at μ = {number(worst['mu [-]']):g} and {text_of(number(worst[stability.ordinate]), stability)}.")
+                        f"({worst['label'] or 'unnamed'}), at {symbol(stability.abscissa)} = {number(worst[stability.abscissa]):g} and {text_of(number(worst[stability.ordinate]), stability)}.")
 
 
 def sections(results):
@@ -40,16 +41,17 @@ def sections(results):
     meanings = [f"{'pale blue' if colour == STABLE else 'grey'}: {name}" for name, mask, colour in masks if mask.any()]
     if not stability.is_known.all():
         meanings.append("empty: not computed")
-    axes = layout("friction coefficient μ", stability.ordinate, margin={"l": 60, "r": 8, "t": 30, "b": 50})
+    axes = layout(axis_title(stability.abscissa), stability.ordinate, margin={"l": 60, "r": 8, "t": 30, "b": 50})
     axes["xaxis"].update(range=[stability.x_edges[0], stability.x_edges[-1]], showgrid=False)
     ends = [float(edge) for edge in (stability.y_edges[0], stability.y_edges[-1])]
-    ticks = cells.logarithmic_ticks(*ends)
+    ticks = cells.logarithmic_ticks(*ends) if stability.is_logarithmic else []
     # Loads and speeds of a map are of equal ratio
-    axes["yaxis"].update(type="log", range=[math.log10(edge) for edge in ends], tickvals=ticks,
-                         ticktext=[f"{tick:g}" for tick in ticks], showgrid=False)
+    axes["yaxis"].update({"range": ends, "showgrid": False} if not stability.is_logarithmic else
+                         {"type": "log", "range": [math.log10(edge) for edge in ends], "tickvals": ticks,
+                          "ticktext": [f"{tick:g}" for tick in ticks], "showgrid": False})
     caption = ("Colour: divergence rate of the mode that grows fastest, whose name is in its region; " + "; ".join(meanings) +
                ". The black line is the limit of stability.")
-    return [{"id": "map", "title": f"Stability over friction coefficient and {ordinate(stability)}", "caption": caption, "data": traces,
+    return [{"id": "map", "title": f"Stability over {axis_title(stability.abscissa).split(' [')[0]} and {ordinate(stability)}", "caption": caption, "data": traces,
              "layout": axes}]
 
 
@@ -71,7 +73,7 @@ def text_of(value, stability):
 
 def spanned(stability):
     first, last = stability.values[0], text_of(stability.values[-1], stability)
-    return f"up to μ = {stability.mus[-1]:g}, " + (f"from {first:.6g} to {last}" if len(stability.values) > 1 else last)
+    return f"up to {symbol(stability.abscissa)} = {stability.mus[-1]:g}, " + (f"from {first:.6g} to {last}" if len(stability.values) > 1 else last)
 
 
 def heatmap(stability, texts, mask, **look):
@@ -91,8 +93,8 @@ def texts_of(stability, table):
     """What is known of each cell, by rows."""
     found = [[""] * len(stability.mus) for _ in stability.values]
     for row in table.rows:
-        mu, value = number(row["mu [-]"]), number(row[stability.ordinate])
-        found[stability.values.index(value)][stability.mus.index(mu)] = about(row, f"μ = {mu:.4g}, {text_of(value, stability)}")
+        mu, value = number(row[stability.abscissa]), number(row[stability.ordinate])
+        found[stability.values.index(value)][stability.mus.index(mu)] = about(row, f"{symbol(stability.abscissa)} = {mu:.4g}, {text_of(value, stability)}")
     return found
 
 

@@ -1,6 +1,7 @@
 """The page of a sweep: growth over the friction coefficient, and which modes meet."""
 
 from squeal.reporting.charts import FREQUENCY, PALE, RATE, UNSTABLE, WEAK, digits, end_of_band, layout, names_apart, number, short
+from squeal.results import MU, axis_title, symbol
 
 TITLES = {"onsets": "Where squeal begins", "thresholds": "Where modes begin and cease to grow"}
 REPLACED = ("complex_plane", "overview")
@@ -13,22 +14,25 @@ def is_of(results):
 
 def verdict(results):
     table = results.table("branches")
-    rates, mus = table.numbers(RATE), table.numbers("mu [-]")
+    parameter, name = table.parameter, symbol(table.parameter)
+    rates, mus = table.numbers(RATE), table.numbers(parameter)
     strong = [row for rate, row in zip(rates, table.rows) if rate > WEAK]
     first = [row for row in results.table("onsets").rows if number(row["divergence rate beyond [%]"]) == WEAK] if results.has("onsets") else []
-    span = f"from μ = {min(mus):g} to {max(mus):g}, up to {end_of_band(results)}"
+    span = f"from {name} = {min(mus):g} to {max(mus):g}, up to {end_of_band(results)}"
     if not first:
         weak = any(row["growing [-]"] not in ("", "0") for row in table.rows)
         return "stable", f"No mode grows {span}" + (f" by more than a divergence rate of {WEAK} %." if weak else ".")
     worst = max(strong, key=lambda row: number(row[RATE]))
     return "unstable", (f"{len({row['branch [-]'] for row in strong})} modes grow by more than {WEAK} % {span}: {first[0]['label']} at "
-                        f"{number(first[0][FREQUENCY]):.0f} Hz from μ = {number(first[0]['mu [-]']):.3g} on; {worst['label']} at "
+                        f"{number(first[0][FREQUENCY]):.0f} Hz from {name} = {number(first[0][parameter]):.3g} on; {worst['label']} at "
                         f"{number(worst[FREQUENCY]):.0f} Hz "
-                        f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at μ = {number(worst['mu [-]']):g}.")
+                        f"grows fastest, with a divergence rate of {digits(number(worst[RATE]), 3)} % at {name} = {number(worst[parameter]):g}.")
 
 
 def sections(results):
-    found = [branch_section(results, "branches", "Growth over the friction coefficient")]
+    parameter = results.table("branches").parameter
+    growth_over = "the friction coefficient" if parameter == MU else symbol(parameter)
+    found = [branch_section(results, "branches", "Growth over " + growth_over)]
     if results.has("branches_without_dissipation"):
         found.append(branch_section(results, "branches_without_dissipation", "The same without radial dissipation"))
     return found + bifurcation_sections(results)
@@ -37,8 +41,9 @@ def sections(results):
 def checks(results):
     if not results.has("argument_counts"):
         return []
-    return [(f"modes at μ = {number(row['mu [-]']):g} by the argument principle, and found",
-             f"{row['modes counted [-]']}, {row['modes of the sweep [-]']}") for row in results.table("argument_counts").rows]
+    table = results.table("argument_counts")
+    return [(f"modes at {symbol(table.parameter)} = {number(row[table.parameter]):g} by the argument principle, and found",
+             f"{row['modes counted [-]']}, {row['modes of the sweep [-]']}") for row in table.rows]
 
 
 def branches_of(results, name):
@@ -51,7 +56,7 @@ def branches_of(results, name):
 
 def branch_section(results, name, title):
     """Divergence rate of every branch over the friction coefficient."""
-    branches = branches_of(results, name)
+    branches, parameter = branches_of(results, name), results.table(name).parameter
     peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
     lowest = min(number(row[RATE]) for rows in branches.values() for row in rows)
     named = names_apart({branch: peak for branch, peak in peaks.items() if peak > WEAK}, max(peaks.values()) - lowest)
@@ -61,28 +66,28 @@ def branch_section(results, name, title):
         peak = max(range(len(rows)), key=lambda i: number(rows[i][RATE]))
         traces.append({
             "type": "scatter", "mode": "lines+text" if is_named else "lines", "showlegend": False, "name": f"{rows[0]['label']} ({branch})",
-            "x": [short(row["mu [-]"]) for row in rows], "y": [short(row[RATE]) for row in rows],
+            "x": [short(row[parameter]) for row in rows], "y": [short(row[RATE]) for row in rows],
             "text": [rows[0]["label"] if is_named and i == peak else "" for i in range(len(rows))], "textposition": "top left",
             "customdata": [[short(row[FREQUENCY]), row["verdict"], short(row["estimated error of lambda [-]"], 2)] for row in rows],
-            "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>μ = %{x:.4g}<br>%{customdata[0]:.2f} Hz<br>divergence rate %{y:.4g} %<br>"
+            "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>" + symbol(parameter) + " = %{x:.4g}<br>%{customdata[0]:.2f} Hz<br>divergence rate %{y:.4g} %<br>"
                              "%{customdata[1]}, estimated error of λ %{customdata[2]}<extra></extra>",
             "line": {"color": UNSTABLE if peaks[branch] > WEAK else PALE, "width": 1.8 if peaks[branch] > WEAK else 1}})
     events = results.table(name.replace("branches", "thresholds")).rows if results.has(name.replace("branches", "thresholds")) else []
-    for event, symbol in (("onset", "triangle-up"), ("restabilisation", "triangle-down")):
+    for event, marker in (("onset", "triangle-up"), ("restabilisation", "triangle-down")):
         own = [row for row in events if row["event"] == event]
-        traces.append({"type": "scatter", "mode": "markers", "name": event, "x": [number(row["mu [-]"]) for row in own], "y": [0] * len(own),
+        traces.append({"type": "scatter", "mode": "markers", "name": event, "x": [number(row[parameter]) for row in own], "y": [0] * len(own),
                        "customdata": [[row["label"], row["mechanism"], number(row[FREQUENCY]), row["uncertainty [-]"]] for row in own],
-                       "hovertemplate": "<b>%{customdata[0]}</b> " + event + "<br>μ = %{x:.6g} ± %{customdata[3]}<br>%{customdata[2]:.2f} Hz"
+                       "hovertemplate": "<b>%{customdata[0]}</b> " + event + "<br>" + symbol(parameter) + " = %{x:.6g} ± %{customdata[3]}<br>%{customdata[2]:.2f} Hz"
                                         "<br>%{customdata[1]}<extra></extra>",
-                       "marker": {"symbol": symbol, "size": 9, "color": "white", "line": {"color": "#222", "width": 1.3}}})
+                       "marker": {"symbol": marker, "size": 9, "color": "white", "line": {"color": "#222", "width": 1.3}}})
     return {"id": name, "title": title, "caption": f"Every mode is a curve; red ones reach more than {WEAK} %. Triangles are thresholds.",
-            "data": traces, "layout": layout("friction coefficient μ", "divergence rate [%]")}
+            "data": traces, "layout": layout(axis_title(parameter), "divergence rate [%]")}
 
 
 def bifurcation_sections(results):
     """Frequencies of two modes about that at which they meet and begin to flutter; the pairs that then grow most."""
     name = "branches_without_dissipation" if results.has("branches_without_dissipation") else "branches"
-    branches = branches_of(results, name)
+    branches, parameter = branches_of(results, name), results.table(name).parameter
     peaks = {branch: max(number(row[RATE]) for row in rows) for branch, rows in branches.items()}
     events = [row for row in results.table(name.replace("branches", "thresholds")).rows if row["event"] == "onset" and row["partner [-]"] in branches]
     events = sorted((row for row in events if peaks[row["branch [-]"]] > WEAK), key=lambda row: -peaks[row["branch [-]"]])[:len(COLOURS)]
@@ -95,11 +100,11 @@ def bifurcation_sections(results):
         for branch in (event["branch [-]"], event["partner [-]"]):
             rows, is_first = branches[branch], branch == event["branch [-]"]
             traces.append({"type": "scatter", "mode": "lines", "name": title, "legendgroup": group, "showlegend": is_first,
-                           "x": [short(row["mu [-]"]) for row in rows], "y": [short(number(row[FREQUENCY]) - meeting) for row in rows],
+                           "x": [short(row[parameter]) for row in rows], "y": [short(number(row[FREQUENCY]) - meeting) for row in rows],
                            "customdata": [[short(row[FREQUENCY]), short(row[RATE], 4)] for row in rows], "line": {"color": colour, "width": 1.6},
-                           "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>μ = %{x:.4g}<br>%{customdata[0]:.2f} Hz"
+                           "hovertemplate": f"<b>{rows[0]['label']}</b>" + "<br>" + symbol(parameter) + " = %{x:.4g}<br>%{customdata[0]:.2f} Hz"
                                             "<br>divergence rate %{customdata[1]:.4g} %<extra></extra>"})
     caption = ("Frequencies of two modes less that at which they meet; from there on both have one frequency, and one of them grows. "
                f"The {len(events)} pairs that grow most" + (", without radial dissipation." if "without" in name else "."))
     return [{"id": "bifurcations", "title": "Which modes meet", "caption": caption, "data": traces,
-             "height": 500, "layout": layout("friction coefficient μ", "frequency difference [Hz]")}]
+             "height": 500, "layout": layout(axis_title(parameter), "frequency difference [Hz]")}]
