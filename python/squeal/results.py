@@ -17,7 +17,7 @@ MU = "mu [-]"
 
 def axis_title(column):
     """The column of a parameter as the title of an axis."""
-    return "friction coefficient μ" if column == MU else column.removesuffix(" [-]")
+    return "friction coefficient μ [-]" if column == MU else column
 
 
 def symbol(column):

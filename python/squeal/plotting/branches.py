@@ -168,7 +168,7 @@ def family_figures(all_charts):
 
 def overview_figure(all_charts, band_end):
     """All modes of the band."""
-    picture = style.Picture("Modes of the band over " + axis_title(all_charts[0].parameter).removesuffix(" μ"), 2, 2, (5.4, 5.2))
+    picture = style.Picture("Modes of the band over " + axis_title(all_charts[0].parameter).split(" [")[0], 2, 2, (5.4, 5.2))
     for panel, title, quantity, label in zip(picture.panels, ("Frequencies", "Divergence rates"), ("frequency", "divergence"),
                                              (style.FREQUENCY, style.DIVERGENCE)):
         style.prepare(panel, title, axis_title(all_charts[0].parameter), label)
